@@ -1,0 +1,120 @@
+//! One image, as it arrives on the ground.
+
+use crate::ContractError;
+
+/// A rectangle of pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Window {
+    /// First column.
+    pub x: usize,
+    /// First row.
+    pub y: usize,
+    /// Number of columns.
+    pub columns: usize,
+    /// Number of rows.
+    pub rows: usize,
+}
+
+impl Window {
+    /// Whether the pixel (x, y) is inside.
+    pub fn contains(&self, x: usize, y: usize) -> bool {
+        (self.x..self.x + self.columns).contains(&x) && (self.y..self.y + self.rows).contains(&y)
+    }
+}
+
+/// One image in digital numbers, row by row from the top.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Frame {
+    number: u64,
+    columns: usize,
+    rows: usize,
+    bit_depth: u8,
+    dn: Vec<u16>,
+    windows: Option<Vec<Window>>,
+}
+
+impl Frame {
+    /// A frame of `columns` × `rows` digital numbers; `windows` are the regions that were transmitted, `None`
+    /// when the whole image was. Pixels outside every window are 0 and mean nothing.
+    ///
+    /// # Errors
+    /// [`ContractError::ImageSize`] when the number of values is wrong, [`ContractError::OutOfRange`] when the bit
+    /// depth is not 1 to 16 or a window leaves the image.
+    pub fn new(
+        number: u64,
+        columns: usize,
+        rows: usize,
+        bit_depth: u8,
+        dn: Vec<u16>,
+        windows: Option<Vec<Window>>,
+    ) -> Result<Self, ContractError> {
+        if columns.checked_mul(rows) != Some(dn.len()) {
+            return Err(ContractError::ImageSize { columns, rows, got: dn.len() });
+        }
+        if !(1..=16).contains(&bit_depth) {
+            return Err(ContractError::OutOfRange {
+                field: "bit depth of a frame",
+                value: f64::from(bit_depth),
+                expected: "1 to 16",
+            });
+        }
+        for window in windows.iter().flatten() {
+            let fits = |first: usize, count: usize, n: usize| {
+                count > 0 && first.checked_add(count).is_some_and(|end| end <= n)
+            };
+            if !fits(window.x, window.columns, columns) || !fits(window.y, window.rows, rows) {
+                return Err(ContractError::OutOfRange {
+                    field: "window of a frame",
+                    value: (window.y * columns + window.x) as f64,
+                    expected: "a rectangle inside the image (value: index of its first pixel)",
+                });
+            }
+        }
+        Ok(Self { number, columns, rows, bit_depth, dn, windows })
+    }
+
+    /// Number of the frame in its scenario or dataset.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Columns.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Rows.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Bits of the analogue-digital converter.
+    pub fn bit_depth(&self) -> u8 {
+        self.bit_depth
+    }
+
+    /// The largest digital number that the converter gives: 2^bits − 1.
+    pub fn full_scale_dn(&self) -> u16 {
+        (u32::MAX >> (32 - u32::from(self.bit_depth))) as u16
+    }
+
+    /// All digital numbers, row by row.
+    pub fn dn(&self) -> &[u16] {
+        &self.dn
+    }
+
+    /// One row.
+    pub fn row(&self, y: usize) -> &[u16] {
+        &self.dn[y * self.columns..(y + 1) * self.columns]
+    }
+
+    /// The digital number of the pixel (x, y).
+    pub fn at(&self, x: usize, y: usize) -> u16 {
+        self.dn[y * self.columns + x]
+    }
+
+    /// The regions that were transmitted; `None`: the whole image.
+    pub fn windows(&self) -> Option<&[Window]> {
+        self.windows.as_deref()
+    }
+}

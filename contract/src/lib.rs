@@ -1,0 +1,31 @@
+//! What simulator and pipelines both speak.
+//!
+//! Camera data, frames, telemetry, star lists, outcomes and the trait [`Pipeline`]: the words that cross the
+//! border between the simulator (which knows the truth) and a pipeline under test (which must not).
+//! Conventions and parameters live here; mathematics of projection or aberration does not, because an error
+//! in shared mathematics would cancel and the oracle would be blind to it.
+
+mod angle;
+mod camera;
+pub mod conformance;
+mod direction;
+mod error;
+mod frame;
+mod measurement;
+mod pipeline;
+mod pixel;
+mod rotation;
+mod star;
+mod telemetry;
+
+pub use angle::Angle;
+pub use camera::{Camera, Mounting};
+pub use direction::{Body, CameraFrame, Direction, Icrs};
+pub use error::ContractError;
+pub use frame::{Frame, Window};
+pub use measurement::{AttitudeSource, Cluster, Label, Measurement, NoSolution, Outcome, Solution};
+pub use pipeline::{Pipeline, PipelineFactory, Setup};
+pub use pixel::PixelPoint;
+pub use rotation::Rotation;
+pub use star::ListedStar;
+pub use telemetry::Telemetry;
