@@ -23,9 +23,8 @@ pub struct Violation {
 pub fn check(factory: &dyn PipelineFactory, setup: &Setup) -> Result<(), Vec<Violation>> {
     let inputs = inputs(setup);
     let run = || -> Result<Vec<Outcome>, Violation> {
-        let mut pipeline = factory
-            .build(setup)
-            .map_err(|error| Violation { input: "setup", broken: error.to_string() })?;
+        let mut pipeline =
+            factory.build(setup).map_err(|error| Violation { input: "setup", broken: error.to_string() })?;
         Ok(inputs.iter().map(|(_, frame, telemetry)| pipeline.process(frame, telemetry)).collect())
     };
     let (first, second) = match (run(), run()) {
@@ -66,7 +65,9 @@ fn not_sound(outcome: &Outcome, setup: &Setup) -> Option<String> {
     outcome
         .clusters
         .iter()
-        .find(|cluster| !(cluster.position.x.is_finite() && cluster.position.y.is_finite() && cluster.size.is_finite()))
+        .find(|cluster| {
+            !(cluster.position.x.is_finite() && cluster.position.y.is_finite() && cluster.size.is_finite())
+        })
         .map(|cluster| format!("a cluster is not finite: {cluster:?}"))
 }
 
@@ -81,8 +82,9 @@ fn inputs(setup: &Setup) -> Vec<(&'static str, Frame, Telemetry)> {
         dn[y.min(rows - 1) * columns + x.min(columns - 1)] = full_scale;
         dn
     };
-    let checkerboard: Vec<u16> =
-        (0..columns * rows).map(|i| if (i % columns + i / columns) % 2 == 0 { full_scale } else { 0 }).collect();
+    let checkerboard: Vec<u16> = (0..columns * rows)
+        .map(|i| if (i % columns + i / columns) % 2 == 0 { full_scale } else { 0 })
+        .collect();
     let images: Vec<(&'static str, f64, Vec<u16>)> = vec![
         ("an all-zero frame first", 0.0, flat(0)),
         ("a flat frame", 15.0, flat(full_scale / 50)),

@@ -202,8 +202,7 @@ mod tests {
 
     #[test]
     fn rows_of_the_matrix_are_the_axes_of_the_frame_turned_to() {
-        let rotation: Rotation<Body, Icrs> =
-            Rotation::from_axes(&Vector3::y(), &Vector3::z(), &Vector3::x());
+        let rotation: Rotation<Body, Icrs> = Rotation::from_axes(&Vector3::y(), &Vector3::z(), &Vector3::x());
         assert!((rotation.rotate(&Vector3::y()) - Vector3::x()).norm() < 1e-15);
     }
 
@@ -218,10 +217,7 @@ mod tests {
     #[test]
     fn a_quaternion_that_is_not_a_unit_is_refused() {
         for wxyz in [[0.9, 0.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0, 1.0], [0.0; 4]] {
-            assert!(matches!(
-                Rotation::<Body, Icrs>::from_wxyz(wxyz),
-                Err(ContractError::NotUnit { .. })
-            ));
+            assert!(matches!(Rotation::<Body, Icrs>::from_wxyz(wxyz), Err(ContractError::NotUnit { .. })));
         }
     }
 }

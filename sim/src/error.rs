@@ -2,8 +2,6 @@
 
 use thiserror::Error;
 
-use crate::catalog::CatalogError;
-
 /// Why a simulation cannot be made.
 #[derive(Debug, Error)]
 pub enum SimError {
@@ -20,9 +18,6 @@ pub enum SimError {
     /// A value that the contract refuses.
     #[error(transparent)]
     Contract(#[from] contract::ContractError),
-    /// The catalogue cannot be read.
-    #[error(transparent)]
-    Catalog(#[from] CatalogError),
 }
 
 /// Checks that `value` is finite and satisfies `holds`.

@@ -1,0 +1,136 @@
+//! Random draws that have an address, not a history.
+//!
+//! A stream is named by (seed, case, frame, effect, place): the same address gives the same numbers whatever was
+//! drawn before, on any thread and any machine. The generator is xoshiro256++ (Blackman & Vigna 2019), keyed by
+//! SplitMix64 (Steele, Lea & Flood 2014) over the words of the address; both are portable and named, so the
+//! numbers are part of Boresight's contract: to change them is a change of results.
+
+use rand::Rng;
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
+
+/// What a draw is for. Each effect has streams of its own, so that switching one off leaves every other draw as
+/// it was. The numbers are part of the address and never change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u64)]
+pub enum Effect {
+    /// Shot, dark and read noise of a pixel: one effect, one draw.
+    PixelNoise = 1,
+    /// Places and strengths of hot pixels (addressed with the sensor's seed).
+    HotPixels = 2,
+    /// Error of the attitude control.
+    AttitudeControl = 3,
+    /// Error of the attitude's knowledge in telemetry.
+    AttitudeKnowledge = 4,
+}
+
+/// The generator behind every draw.
+pub type Stream = Xoshiro256PlusPlus;
+
+/// Seed and case: what all streams of one simulated sequence have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Seed {
+    /// Seed of the scenario or study.
+    pub seed: u64,
+    /// Number of the case in a study; 0 outside one.
+    pub case: u64,
+}
+
+impl Seed {
+    /// The stream at an address. `place` is a row, a pixel, a component: whatever the effect counts by.
+    pub fn stream(&self, frame: u64, effect: Effect, place: u64) -> Stream {
+        let mut key = 0x426f_7265_7369_6768; // "Boresigh"
+        for word in [self.seed, self.case, frame, effect as u64, place] {
+            key = split_mix(key ^ word);
+        }
+        Stream::seed_from_u64(key)
+    }
+}
+
+/// One step of SplitMix64: a bijection that spreads every bit.
+fn split_mix(word: u64) -> u64 {
+    let mut z = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// A uniform number in the open interval (0, 1), with 53 bits.
+pub fn uniform(stream: &mut Stream) -> f64 {
+    // The half step keeps 0 out, so that a logarithm can be taken.
+    ((stream.next_u64() >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0)
+}
+
+/// A normal number of mean 0 and standard deviation 1 (Box & Muller 1958, the cosine half).
+pub fn normal(stream: &mut Stream) -> f64 {
+    let radius = (-2.0 * libm::log(uniform(stream))).sqrt();
+    radius * libm::cos(2.0 * std::f64::consts::PI * uniform(stream))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SEED: Seed = Seed { seed: 42, case: 0 };
+
+    #[test]
+    fn an_address_gives_the_same_numbers_again() {
+        let draw = || SEED.stream(7000, Effect::PixelNoise, 3).next_u64();
+        assert_eq!(draw(), draw());
+    }
+
+    /// The numbers themselves are frozen: a change here changes every result and belongs in CHANGELOG.md.
+    #[test]
+    fn the_first_number_is_frozen() {
+        assert_eq!(SEED.stream(0, Effect::PixelNoise, 0).next_u64(), FIRST_OF_42);
+    }
+
+    const FIRST_OF_42: u64 = 5_719_266_020_278_784_404;
+
+    #[test]
+    fn every_word_of_the_address_matters() {
+        let first = |seed: Seed, frame, effect, place| seed.stream(frame, effect, place).next_u64();
+        let draws = [
+            first(SEED, 0, Effect::PixelNoise, 0),
+            first(Seed { seed: 43, case: 0 }, 0, Effect::PixelNoise, 0),
+            first(Seed { seed: 42, case: 1 }, 0, Effect::PixelNoise, 0),
+            first(SEED, 1, Effect::PixelNoise, 0),
+            first(SEED, 0, Effect::HotPixels, 0),
+            first(SEED, 0, Effect::PixelNoise, 1),
+        ];
+        for (i, a) in draws.iter().enumerate() {
+            assert!(draws[i + 1..].iter().all(|b| a != b));
+        }
+    }
+
+    #[test]
+    fn neighbouring_streams_are_uncorrelated() {
+        let n = 20_000;
+        let rows: Vec<(f64, f64)> = (0..n)
+            .map(|row| {
+                let at = |place| normal(&mut SEED.stream(1, Effect::PixelNoise, place));
+                (at(row), at(row + 1))
+            })
+            .collect();
+        let correlation = rows.iter().map(|(a, b)| a * b).sum::<f64>() / n as f64;
+        // Standard error 1/sqrt(n) = 0.007; four of them.
+        assert!(correlation.abs() < 0.028, "correlation {correlation}");
+    }
+
+    #[test]
+    fn normal_numbers_have_the_normal_distribution() {
+        use statrs::distribution::{ContinuousCDF, Normal};
+        let standard = Normal::new(0.0, 1.0).unwrap();
+        let mut stream = SEED.stream(0, Effect::AttitudeControl, 0);
+        let n = 100_000;
+        let mut draws: Vec<f64> = (0..n).map(|_| normal(&mut stream)).collect();
+        draws.sort_by(f64::total_cmp);
+        let distance = draws
+            .iter()
+            .enumerate()
+            .map(|(i, x)| (standard.cdf(*x) - (i as f64 + 0.5) / n as f64).abs())
+            .fold(0.0, f64::max);
+        // Kolmogorov-Smirnov at the 1e-4 level: 2.23/sqrt(n).
+        assert!(distance < 2.23 / (n as f64).sqrt(), "distance {distance}");
+    }
+}
