@@ -1,1 +1,3 @@
-//! The oracle
+//! The oracle: what simulates, processes and scores, and the command `boresight` over it.
+
+pub mod toml_file;
