@@ -1,0 +1,70 @@
+//! The command `boresight`: arguments in, exit status out. Printing, clocks and environment live here.
+
+mod dataset;
+mod options;
+mod output;
+mod run;
+mod scenario;
+mod score;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::failure::Failure;
+
+/// Synthetic scene simulator and test oracle for optical navigation.
+///
+/// Without a command: `run argon`.
+#[derive(Debug, Parser)]
+#[command(name = "boresight", version, max_term_width = 110)]
+struct Arguments {
+    /// Print one JSON document on stdout and nothing else there
+    #[arg(long, global = true)]
+    json: bool,
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Simulate, process and score a scenario; write a run directory
+    Run(run::RunArguments),
+    /// Render a dataset for somebody else's pipeline, truth apart from the frames
+    Render(dataset::RenderArguments),
+    /// Run a pipeline over a dataset, real images included
+    Process(dataset::ProcessArguments),
+    /// Score anybody's measurements against the truth of a dataset or run directory
+    Score(score::ScoreArguments),
+    /// List, check and start scenarios
+    #[command(subcommand)]
+    Scenario(scenario::ScenarioCommand),
+}
+
+/// The answer of a command that ran: exit status 0 or 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Answer {
+    Yes,
+    No,
+}
+
+/// Runs the command of this process's arguments. Exit status: 0 done, 1 the answer is no, 2 usage or bad input.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let output = output::Output::new(arguments.json);
+    let answer = match arguments.command.unwrap_or_else(|| Command::Run(run::RunArguments::argon())) {
+        Command::Run(arguments) => run::run(&arguments, &output),
+        Command::Render(arguments) => dataset::render(&arguments, &output),
+        Command::Process(arguments) => dataset::process(&arguments, &output),
+        Command::Score(arguments) => score::score(&arguments, &output),
+        Command::Scenario(command) => scenario::scenario(&command, &output),
+    };
+    match answer {
+        Ok(Answer::Yes) => ExitCode::SUCCESS,
+        Ok(Answer::No) => ExitCode::from(1),
+        Err(failure) => {
+            output.failure(failure);
+            ExitCode::from(Failure::EXIT_STATUS)
+        }
+    }
+}

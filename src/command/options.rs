@@ -1,0 +1,75 @@
+//! Arguments that several commands share.
+
+use std::ops::Range;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+
+/// A range of frames, `A..B`: from A up to and without B.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct FrameRange(pub(super) Range<u64>);
+
+impl FromStr for FrameRange {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("`{text}` is not a range of frames; expected A..B with A < B, as in 0..100");
+        let (from, to) = text.split_once("..").ok_or_else(expected)?;
+        let from = from.trim().parse().map_err(|_| expected())?;
+        let to = to.trim().parse().map_err(|_| expected())?;
+        if from < to { Ok(Self(from..to)) } else { Err(expected()) }
+    }
+}
+
+/// Which scenario, which of its frames, which seed.
+#[derive(Debug, Args)]
+pub(super) struct Selection {
+    /// A built-in scenario (see `boresight scenario list`) or a TOML file
+    pub(super) scenario: String,
+    /// Only these frames, A up to and without B
+    #[arg(long, value_name = "A..B")]
+    pub(super) frames: Option<FrameRange>,
+    /// Seed instead of the scenario's own
+    #[arg(long, value_name = "N")]
+    pub(super) seed: Option<u64>,
+    /// Threads that make frames; default: all cores. The results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(super) jobs: Option<u16>,
+}
+
+/// Which pipeline, and how long a foreign one may take.
+#[derive(Debug, Args)]
+pub(super) struct PipelineOptions {
+    /// `far_range`, or `exec:COMMAND` for a program that speaks the protocol of docs/external-pipeline.md
+    #[arg(long, value_name = "NAME|exec:COMMAND", default_value = "far_range")]
+    pub(super) pipeline: String,
+    /// Longest time that an `exec:` pipeline may take for a frame, s
+    #[arg(long, value_name = "S", default_value_t = 10.0)]
+    pub(super) timeout_s: f64,
+}
+
+/// Where the results go.
+#[derive(Debug, Args)]
+pub(super) struct OutputDirectory {
+    /// A new or empty directory for the results
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: PathBuf,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_of_frames_is_read() {
+        assert_eq!("3..10".parse(), Ok(FrameRange(3..10)));
+    }
+
+    #[test]
+    fn a_range_that_is_empty_or_not_a_range_is_refused() {
+        for text in ["", "..", "3", "3..", "10..3", "3..3", "-1..3", "a..b", "0..99999999999999999999999"] {
+            assert!(text.parse::<FrameRange>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! What goes to stdout and stderr: a table for a person, or one JSON document.
+
+use std::fmt::Display;
+use std::io::{IsTerminal, Write};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use crate::failure::Failure;
+
+/// The two streams, and whether stdout belongs to a machine.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Output {
+    json: bool,
+}
+
+impl Output {
+    pub(super) fn new(json: bool) -> Self {
+        Self { json }
+    }
+
+    /// Prints `document` as JSON, or `text` for a person.
+    pub(super) fn answer(&self, document: &impl Serialize, text: impl Display) -> Result<(), Failure> {
+        if self.json {
+            let json = serde_json::to_string_pretty(document)
+                .map_err(|error| Failure::Usage(format!("the answer cannot be written as JSON: {error}")))?;
+            print_line(json)
+        } else {
+            print_line(text)
+        }
+    }
+
+    /// A remark on stderr.
+    pub(super) fn note(&self, text: impl Display) {
+        // Nobody can be told that stderr is closed.
+        let _ = writeln!(std::io::stderr(), "{text}");
+    }
+
+    /// Tells why there is no answer: on stderr with the place of the mistake, and with `--json` on stdout too.
+    pub(super) fn failure(&self, failure: Failure) {
+        if self.json {
+            let document = serde_json::json!({ "error": failure.to_string() });
+            let _ = print_line(document);
+        }
+        self.note(failure.explain());
+    }
+
+    /// A progress bar over `frames` on stderr; hidden when stderr is not a terminal.
+    pub(super) fn progress(&self, frames: u64, what: &str) -> ProgressBar {
+        if !std::io::stderr().is_terminal() {
+            return ProgressBar::hidden();
+        }
+        let style = "{msg} {wide_bar} {pos}/{len} frames, {per_sec}, {eta} left";
+        let bar = ProgressBar::new(frames).with_message(what.to_owned());
+        bar.enable_steady_tick(Duration::from_millis(200));
+        match ProgressStyle::with_template(style) {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        }
+    }
+
+    /// Whether a person at a terminal reads stdout.
+    pub(super) fn is_terminal(&self) -> bool {
+        std::io::stdout().is_terminal()
+    }
+}
+
+/// Prints one line; a reader that has gone away (`| head`) is not an error.
+fn print_line(text: impl Display) -> Result<(), Failure> {
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Usage(format!("stdout cannot be written: {error}")))
+        }
+        _ => Ok(()),
+    }
+}

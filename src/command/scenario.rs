@@ -1,0 +1,78 @@
+//! `boresight scenario`: what scenarios there are, whether one is right, what one may contain, and a start.
+
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::Subcommand;
+use serde_json::json;
+
+use super::Answer;
+use super::output::Output;
+use crate::failure::Failure;
+use crate::scenario::{BUILT_IN, STARTING_POINT, Scenario, ScenarioSource};
+
+#[derive(Debug, Subcommand)]
+pub(super) enum ScenarioCommand {
+    /// List the built-in scenarios
+    List,
+    /// Check a scenario: exit status 0 when it can be run, 2 with the place of the first mistake
+    Check {
+        /// A built-in scenario or a TOML file
+        scenario: String,
+    },
+    /// Print the JSON Schema of scenario files
+    Schema,
+    /// Write a commented starting point to a file that does not exist yet
+    New {
+        /// The TOML file to write
+        file: PathBuf,
+    },
+}
+
+pub(super) fn scenario(command: &ScenarioCommand, output: &Output) -> Result<Answer, Failure> {
+    match command {
+        ScenarioCommand::List => list(output),
+        ScenarioCommand::Check { scenario } => check(scenario, output),
+        ScenarioCommand::Schema => {
+            let schema = Scenario::json_schema();
+            let text = serde_json::to_string_pretty(&schema)
+                .map_err(|error| Failure::Usage(format!("the schema cannot be written: {error}")))?;
+            output.answer(&schema, text)
+        }
+        ScenarioCommand::New { file } => new(file, output),
+    }?;
+    Ok(Answer::Yes)
+}
+
+fn list(output: &Output) -> Result<(), Failure> {
+    let mut rows = Vec::new();
+    for built_in in BUILT_IN {
+        let source = ScenarioSource::read(built_in.name)?;
+        let frames = source.scenario.schedule.iter().map(|group| group.count).sum::<u64>();
+        rows.push((built_in.name, frames, source.scenario.title));
+    }
+    let document: Vec<_> = rows
+        .iter()
+        .map(|(name, frames, title)| json!({ "name": name, "frames": frames, "title": title }))
+        .collect();
+    let text: Vec<_> =
+        rows.iter().map(|(name, frames, title)| format!("{name:<16}{frames:>7} frames  {title}")).collect();
+    output.answer(&document, text.join("\n"))
+}
+
+fn check(scenario: &str, output: &Output) -> Result<(), Failure> {
+    let source = ScenarioSource::read(scenario)?;
+    let simulator = source.simulator()?;
+    let (frames, stars) = (simulator.schedule().len(), simulator.stars().len());
+    let document = json!({ "scenario": source.name, "frames": frames, "stars": stars, "ok": true });
+    output.answer(&document, format!("{}: {frames} frames, {stars} stars, no mistake found", source.name))
+}
+
+fn new(file: &PathBuf, output: &Output) -> Result<(), Failure> {
+    let refuse = |error: std::io::Error| Failure::Usage(format!("{}: cannot be created: {error}", file.display()));
+    let mut created = OpenOptions::new().write(true).create_new(true).open(file).map_err(refuse)?;
+    created.write_all(STARTING_POINT.as_bytes()).map_err(refuse)?;
+    let document = json!({ "file": file });
+    output.answer(&document, format!("wrote {0}; try: boresight run {0}", file.display()))
+}

@@ -1,0 +1,52 @@
+//! Why a command gives no answer.
+
+use miette::{GraphicalReportHandler, GraphicalTheme};
+use thiserror::Error;
+
+use crate::files::FileError;
+use crate::toml_file::TomlError;
+
+/// Bad input or usage: whatever keeps a command from giving an answer.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// A mistake in a TOML file, with its place.
+    #[error(transparent)]
+    Toml(Box<TomlError>),
+    /// A file that cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A simulation that cannot be made.
+    #[error(transparent)]
+    Simulation(#[from] sim::SimError),
+    /// A value that the contract does not allow, or a pipeline that cannot be built.
+    #[error(transparent)]
+    Contract(#[from] contract::ContractError),
+    /// Anything else, in words.
+    #[error("{0}")]
+    Usage(String),
+}
+
+impl Failure {
+    /// Exit status of a command that fails.
+    pub const EXIT_STATUS: u8 = 2;
+
+    /// The message for a person, with the lines of the file around the mistake where there is one.
+    pub fn explain(&self) -> String {
+        let Self::Toml(error) = self else {
+            return format!("error: {self}");
+        };
+        let mut text = String::new();
+        // Without colours and line drawing: the message must read well in a log as on a terminal.
+        let handler = GraphicalReportHandler::new_themed(GraphicalTheme::none()).with_width(100);
+        match handler.render_report(&mut text, error.as_ref()) {
+            Ok(()) => format!("error: {}", text.trim()),
+            Err(_) => format!("error: {self}"),
+        }
+    }
+}
+
+impl From<Box<TomlError>> for Failure {
+    fn from(error: Box<TomlError>) -> Self {
+        Self::Toml(error)
+    }
+}

@@ -1,0 +1,91 @@
+//! Where a scenario comes from, and reading it.
+
+use std::path::{Path, PathBuf};
+
+use sim::{SimError, Simulator};
+
+use super::{BUILT_IN, Scenario};
+use crate::failure::Failure;
+use crate::toml_file;
+
+/// A scenario that was read and checked, with its text for the places of later mistakes.
+#[derive(Debug, Clone)]
+pub struct ScenarioSource {
+    /// Name: that of the built-in one, or the file's without its extension.
+    pub name: String,
+    /// Folder that relative paths in the scenario start from.
+    pub folder: PathBuf,
+    /// The scenario.
+    pub scenario: Scenario,
+    file: PathBuf,
+    text: String,
+}
+
+impl ScenarioSource {
+    /// Reads `word`: a built-in name or the path of a TOML file.
+    ///
+    /// # Errors
+    /// A [`Failure`] when there is no such scenario, or with the place of the first mistake in it.
+    pub fn read(word: &str) -> Result<Self, Failure> {
+        if let Some(built_in) = BUILT_IN.iter().find(|built_in| built_in.name == word) {
+            let file = PathBuf::from(format!("scenarios/{word}.toml"));
+            return Self::parse(word.to_owned(), PathBuf::new(), file, built_in.text.to_owned());
+        }
+        let file = PathBuf::from(word);
+        let text = std::fs::read_to_string(&file).map_err(|error| {
+            let names = BUILT_IN.iter().map(|built_in| built_in.name);
+            let hint = match toml_file::nearest(word, names.clone()) {
+                Some(nearest) => format!("did you mean `{nearest}`?"),
+                None => format!("built-in scenarios: {}", names.collect::<Vec<_>>().join(", ")),
+            };
+            Failure::Usage(format!(
+                "`{word}` is neither a built-in scenario nor a TOML file that can be read ({error}); {hint}"
+            ))
+        })?;
+        let name = file.file_stem().map_or_else(|| word.to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let folder = file.parent().map(Path::to_path_buf).unwrap_or_default();
+        Self::parse(name, folder, file, text)
+    }
+
+    /// Reads the text of a scenario that came from `file`.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the first mistake.
+    pub fn parse(name: String, folder: PathBuf, file: PathBuf, text: String) -> Result<Self, Failure> {
+        let scenario: Scenario = toml_file::parse(&file, &text)?;
+        Ok(Self { name, folder, scenario, file, text })
+    }
+
+    /// The simulator of this scenario; every value is checked.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the first value that is not allowed.
+    pub fn simulator(&self) -> Result<Simulator, Failure> {
+        let limit = self.scenario.star_list.magnitude_limit;
+        if !(-2.0..=15.0).contains(&limit) {
+            let message = format!("is {limit}, expected -2 to 15");
+            return Err(self.refuse("star_list.magnitude_limit", message));
+        }
+        if let Err(error) = self.scenario.far_range.check() {
+            return Err(self.explain(error.into()));
+        }
+        Simulator::new(&self.scenario.simulation(), &self.folder).map_err(|error| self.explain(error))
+    }
+
+    /// Gives a refused value its place in the file.
+    fn explain(&self, error: SimError) -> Failure {
+        match &error {
+            SimError::Parameter { field, value, expected } => {
+                self.refuse(field, format!("is {value}, expected {expected}"))
+            }
+            SimError::Contract(contract::ContractError::OutOfRange { field, value, expected }) => {
+                self.refuse(field, format!("is {value}, expected {expected}"))
+            }
+            _ => error.into(),
+        }
+    }
+
+    fn refuse(&self, path: &str, message: String) -> Failure {
+        toml_file::refuse(&self.file, &self.text, path, message).into()
+    }
+}
