@@ -221,6 +221,16 @@ mod tests {
     }
 
     #[test]
+    fn a_mode_is_read_by_its_name_and_nothing_unknown_is_swallowed() {
+        let read = |text: &str| toml::from_str::<Guidance>(text);
+        assert_eq!(read("mode = 'local_orbital'").unwrap(), LOCAL);
+        assert_eq!(read("mode = 'target_pointing'").unwrap(), Guidance::TargetPointing {});
+        for wrong in ["mode = 'target_pointing'\nra_deg = 1.0", "mode = 'inertial'", "mode = 'spin'"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
     fn a_declination_past_the_pole_is_refused() {
         let guidance = Guidance::Inertial { ra_deg: 0.0, dec_deg: 91.0, roll_deg: 0.0 };
         assert!(guidance.check().unwrap_err().to_string().contains("dec_deg"));
