@@ -247,4 +247,13 @@ mod tests {
         }
         assert!(parse_utc("t", "2012-04-23T00:00:00 UTC").is_ok());
     }
+
+    proptest::proptest! {
+        #[test]
+        fn no_text_makes_the_reader_of_times_panic(
+            any in ".*", almost in "[0-9]{1,5}[-/ ]?[0-9]{0,3}-?[0-9]{0,3}[T ]?[0-9:.+Zé-]{0,14} ?[A-Z]{0,4}",
+        ) {
+            let _ = (parse_utc("t", &any), parse_utc("t", &almost));
+        }
+    }
 }
