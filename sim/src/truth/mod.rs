@@ -1,5 +1,28 @@
 //! Truth: where everything is, and how it looks from the chaser.
 
+mod attitude;
+mod drift;
+mod guidance;
+mod kepler;
+mod knowledge;
+mod manoeuvre;
+mod mounting;
+mod orbit;
+mod relative;
+mod schedule;
 mod table;
+mod trajectory;
 
+pub use attitude::{Attitude, AttitudeConfig, ControlConfig};
+pub use drift::DriftConfig;
+pub use guidance::Guidance;
+pub use knowledge::{Knowledge, KnowledgeConfig};
+pub use manoeuvre::ManoeuvreConfig;
+pub use mounting::MountingConfig;
+pub use orbit::{
+    EARTH_GM_KM3_S2, EARTH_J2, EARTH_RADIUS_KM, Elements, ElementsConfig, Rtn, SecularRates, State,
+};
+pub use relative::RelativeElements;
+pub use schedule::{GroupConfig, MAX_FRAMES, Schedule, Sequence};
 pub use table::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
+pub use trajectory::{OrbitConfig, States, Trajectory};

@@ -1,0 +1,252 @@
+//! The true attitude of the chaser: guidance through the nominal mounting, plus what control does not achieve.
+
+use contract::{Body, CameraFrame, Icrs, Rotation};
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::drift::{Drift, DriftConfig, check_axes, radians, turned_by, white};
+use super::guidance::Guidance;
+use super::mounting::MountingConfig;
+use super::trajectory::{States, Trajectory};
+use crate::SimError;
+use crate::error::require;
+use crate::randomness::{Effect, Seed};
+
+/// Half the interval of the difference that gives the angular rate, s. Its error is (2πh/P)²/6 of the rate of a
+/// sinusoid of period P (2e-4 at 10 s), and rounding 1e-12 rad/s.
+const HALF_STEP_S: f64 = 0.05;
+
+/// How the chaser is pointed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AttitudeConfig {
+    /// Where the camera is meant to look.
+    pub guidance: Guidance,
+    /// How far from there it really looks.
+    #[serde(default)]
+    pub control: ControlConfig,
+}
+
+/// Error of the attitude control, about the body axes. A positive error: the body is turned by the right-hand rule from
+/// where guidance wants it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ControlConfig {
+    /// Slow part; with three or more periods that have no common multiple, so that it does not repeat.
+    #[serde(default)]
+    pub drift: DriftConfig,
+    /// Jitter about x, y, z, new in every frame: standard deviation, arcsec, 0 to 36000.
+    #[serde(default)]
+    pub jitter_arcsec: [f64; 3],
+}
+
+impl AttitudeConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        self.guidance.check()?;
+        let drift = &self.control.drift;
+        drift.check("attitude.control.drift")?;
+        let count = drift.periods_s.len();
+        let still = drift.rms_arcsec == [0.0; 3];
+        require("attitude.control.drift.periods_s", count as f64, "3 to 16 periods", |_| {
+            still || count >= 3
+        })?;
+        check_axes("attitude.control.jitter_arcsec", self.control.jitter_arcsec)
+    }
+}
+
+/// The true attitude as a function of time and frame.
+#[derive(Debug, Clone)]
+pub struct Attitude {
+    guidance: Guidance,
+    /// Guidance believes in the nominal mounting.
+    body_from_camera: Rotation<Body, CameraFrame>,
+    drift: Drift,
+    jitter_rad: Vector3<f64>,
+    seed: Seed,
+}
+
+impl Attitude {
+    /// Draws what belongs to the whole run.
+    ///
+    /// # Errors
+    /// As [`AttitudeConfig::check`] and [`MountingConfig::check`].
+    pub fn new(config: &AttitudeConfig, mounting: &MountingConfig, seed: Seed) -> Result<Self, SimError> {
+        config.check()?;
+        mounting.check()?;
+        Ok(Self {
+            guidance: config.guidance.clone(),
+            body_from_camera: mounting.nominal.camera_from_body().inverse(),
+            drift: Drift::new(&config.control.drift, seed, Effect::AttitudeControl),
+            jitter_rad: radians(config.control.jitter_arcsec),
+            seed,
+        })
+    }
+
+    /// The true attitude in `frame`, taken when chaser and target are at `states`.
+    pub fn truth(&self, states: &States, frame: u64) -> Rotation<Body, Icrs> {
+        let jitter = white(self.seed, frame, Effect::AttitudeControl, 0, self.jitter_rad);
+        turned_by(self.drift.at(states.time_s) + jitter) * self.guided(states)
+    }
+
+    /// The true angular rate of the body against ICRS at `time_s` seconds after the orbit's epoch, rad/s, along the
+    /// body's axes: of guidance and slow control error, without the frame's jitter. Within 0.05 s of a manoeuvre the
+    /// local orbital frame's small jump is spread over 0.1 s.
+    pub fn angular_rate_rad_s(&self, trajectory: &Trajectory, time_s: f64) -> Vector3<f64> {
+        let smooth = |time_s: f64| {
+            let states = trajectory.at_seconds(time_s);
+            turned_by(self.drift.at(time_s)) * self.guided(&states)
+        };
+        let later_from_earlier = smooth(time_s + HALF_STEP_S) * smooth(time_s - HALF_STEP_S).inverse();
+        // Components turn against the axes.
+        -later_from_earlier.quaternion().scaled_axis() / (2.0 * HALF_STEP_S)
+    }
+
+    /// The attitude that guidance asks for.
+    fn guided(&self, states: &States) -> Rotation<Body, Icrs> {
+        self.body_from_camera * self.guidance.camera_from_icrs(states)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::truth::orbit::ElementsConfig;
+    use crate::truth::relative::RelativeElements;
+    use crate::truth::trajectory::OrbitConfig;
+    use contract::{Direction, Mounting};
+
+    pub(crate) const SEED: Seed = Seed { seed: 42, case: 0 };
+
+    pub(crate) fn trajectory() -> Trajectory {
+        Trajectory::new(&OrbitConfig {
+            epoch_utc: "2012-04-23T00:00:00".into(),
+            target: ElementsConfig {
+                semi_major_axis_km: 7130.0,
+                eccentricity: 0.0,
+                inclination_deg: 98.28,
+                raan_deg: 124.0,
+                argument_of_perigee_deg: 0.0,
+                mean_anomaly_deg: 0.0,
+            },
+            relative: RelativeElements { a_dlambda_m: -20_000.0, a_dey_m: 300.0, ..Default::default() },
+            manoeuvres: vec![],
+        })
+        .unwrap()
+    }
+
+    pub(crate) fn quiet() -> AttitudeConfig {
+        AttitudeConfig {
+            guidance: Guidance::LocalOrbital { phi_deg: 0.0, theta_deg: 0.0, psi_deg: 0.0 },
+            control: ControlConfig::default(),
+        }
+    }
+
+    pub(crate) fn restless() -> AttitudeConfig {
+        let control = ControlConfig {
+            drift: DriftConfig { rms_arcsec: [60.0; 3], periods_s: vec![97.0, 613.0, 5939.0] },
+            jitter_arcsec: [5.0, 10.0, 20.0],
+        };
+        AttitudeConfig { control, ..quiet() }
+    }
+
+    fn mounting() -> MountingConfig {
+        let nominal = Mounting { phi_deg: 10.0, theta_deg: -35.0, psi_deg: 100.0 };
+        MountingConfig { actual: Mounting { phi_deg: 10.2, ..nominal }, nominal }
+    }
+
+    #[test]
+    fn without_errors_the_nominal_camera_is_where_guidance_wants_it() {
+        let attitude = Attitude::new(&quiet(), &mounting(), SEED).unwrap();
+        let states = trajectory().at_seconds(4321.0);
+        let camera_from_icrs = mounting().nominal.camera_from_body() * attitude.truth(&states, 0);
+        let asked = quiet().guidance.camera_from_icrs(&states);
+        assert!(camera_from_icrs.angle_to(&asked).radians() < 1e-15);
+        // The actual camera is off by the 0.2° of its mounting.
+        let actual = mounting().actual.camera_from_body() * attitude.truth(&states, 0);
+        assert!((actual.angle_to(&asked).degrees() - 0.2).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_target_stays_near_the_boresight_of_the_local_orbital_frame() {
+        let attitude = Attitude::new(&restless(), &MountingConfig::default(), SEED).unwrap();
+        let trajectory = trajectory();
+        for frame in 0..400 {
+            let states = trajectory.at_seconds(15.0 * frame as f64);
+            let body_from_icrs = attitude.truth(&states, frame);
+            let seen = body_from_icrs * Direction::from_vector(states.line_of_sight_km()).unwrap();
+            // 300 m and the 600 m/20 km foreshortening at 20 km are 0.87°; control adds a few arcmin.
+            assert!(seen.separation(&Direction::z()).degrees() < 1.1);
+        }
+    }
+
+    #[test]
+    fn a_frame_alone_has_the_attitude_it_has_in_the_run() {
+        let trajectory = trajectory();
+        let make = || Attitude::new(&restless(), &mounting(), SEED).unwrap();
+        let run = make();
+        let of = |attitude: &Attitude, frame: u64| {
+            attitude.truth(&trajectory.at_seconds(15.0 * frame as f64), frame)
+        };
+        let in_run: Vec<_> = (0..700).map(|frame| of(&run, frame)).collect();
+        for frame in [699, 0, 350] {
+            assert_eq!(of(&make(), frame), in_run[frame as usize]);
+        }
+    }
+
+    #[test]
+    fn jitter_has_the_standard_deviation_asked_for() {
+        let mut config = restless();
+        config.control.drift = DriftConfig::default();
+        let attitude = Attitude::new(&config, &MountingConfig::default(), SEED).unwrap();
+        let still = Attitude::new(&quiet(), &MountingConfig::default(), SEED).unwrap();
+        let states = trajectory().at_seconds(100.0);
+        let n = 5000;
+        let mut chi2 = Vector3::zeros();
+        for frame in 0..n {
+            let off = attitude.truth(&states, frame) * still.truth(&states, frame).inverse();
+            let scaled = off.quaternion().scaled_axis().component_div(&radians([5.0, 10.0, 20.0]));
+            chi2 += scaled.component_mul(&scaled);
+        }
+        // χ² of n degrees: standard deviation √(2n) = 100; four of them.
+        for axis in 0..3 {
+            assert!((chi2[axis] - n as f64).abs() < 400.0, "{chi2}");
+        }
+    }
+
+    #[test]
+    fn the_angular_rate_in_the_local_orbital_frame_is_the_orbital_rate_about_the_normal() {
+        let attitude = Attitude::new(&quiet(), &MountingConfig::default(), SEED).unwrap();
+        let rate = attitude.angular_rate_rad_s(&trajectory(), 3000.0);
+        // The body is the camera here: N = −y. The oblateness changes the rate by 1e-3, the chaser's e of 4e-5 by 2e-4.
+        assert!((rate.y / -1.04862e-3 - 1.0).abs() < 2e-3, "{rate}");
+        // The node's drift of 2e-7 rad/s remains.
+        assert!(rate.xz().norm() < 3e-7, "{rate}");
+    }
+
+    #[test]
+    fn the_angular_rate_is_that_of_the_truth() {
+        let mut config = restless();
+        config.control.jitter_arcsec = [0.0; 3];
+        let attitude = Attitude::new(&config, &mounting(), SEED).unwrap();
+        let trajectory = trajectory();
+        let at = |time_s| attitude.truth(&trajectory.at_seconds(time_s), 0);
+        let rate = attitude.angular_rate_rad_s(&trajectory, 777.0);
+        // Turned on by the rate for half a second, the attitude is that of half a second later; the acceleration of
+        // 60″ in 97 s leaves (2π/97)²·3e-4·0.125 = 2e-7 rad.
+        let ahead = turned_by(rate * 0.5) * at(777.0);
+        assert!(ahead.angle_to(&at(777.5)).radians() < 4e-7);
+        assert!(turned_by(rate * -0.5).angle_to(&turned_by(rate * 0.5)).radians() > 1e-3);
+    }
+
+    #[test]
+    fn control_that_repeats_is_refused() {
+        let mut config = restless();
+        config.control.drift.periods_s.truncate(2);
+        assert!(config.check().unwrap_err().to_string().contains("periods_s"));
+    }
+}

@@ -1,0 +1,238 @@
+//! Where the camera is meant to look.
+//!
+//! Camera axes: z along the boresight, x along increasing column, y along increasing row.
+
+use contract::{Angle, CameraFrame, Direction, Icrs, Rotation};
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::trajectory::States;
+use crate::SimError;
+use crate::error::require;
+
+/// Guidance mode of the chaser's attitude.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "mode", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Guidance {
+    /// A fixed place in the sky. At roll 0 north is up in the image (−y) and east is to the left (−x).
+    Inertial {
+        /// Right ascension of the boresight, degrees, −360 to 360.
+        ra_deg: f64,
+        /// Declination of the boresight, degrees, −90 to 90.
+        dec_deg: f64,
+        /// Turn of the camera about its boresight from x towards y, degrees, −360 to 360.
+        #[serde(default)]
+        roll_deg: f64,
+    },
+    /// Fixed in the chaser's local orbital frame: boresight along T (the velocity, on a circular orbit), columns
+    /// along R (x = R: the zenith is to the right), rows against the orbit's normal (y = −N). Stars drift along +x
+    /// at the orbital rate. The offsets then turn the camera away from these axes.
+    LocalOrbital {
+        /// Offset φ, degrees, −180 to 180: Euler angles 123 from the axes above to the camera.
+        #[serde(default)]
+        phi_deg: f64,
+        /// Offset θ, degrees, −180 to 180.
+        #[serde(default)]
+        theta_deg: f64,
+        /// Offset ψ, degrees, −180 to 180.
+        #[serde(default)]
+        psi_deg: f64,
+    },
+    /// Boresight at the target; y as near to −N (against the orbit's normal) as that allows.
+    TargetPointing {},
+}
+
+impl Guidance {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        let turn = |angle: f64| angle.abs() <= 360.0;
+        let half_turn = |angle: f64| angle.abs() <= 180.0;
+        match *self {
+            Self::Inertial { ra_deg, dec_deg, roll_deg } => {
+                require("attitude.guidance.ra_deg", ra_deg, "-360 to 360", turn)?;
+                require("attitude.guidance.dec_deg", dec_deg, "-90 to 90", |d| d.abs() <= 90.0)?;
+                require("attitude.guidance.roll_deg", roll_deg, "-360 to 360", turn)
+            }
+            Self::LocalOrbital { phi_deg, theta_deg, psi_deg } => {
+                require("attitude.guidance.phi_deg", phi_deg, "-180 to 180", half_turn)?;
+                require("attitude.guidance.theta_deg", theta_deg, "-180 to 180", half_turn)?;
+                require("attitude.guidance.psi_deg", psi_deg, "-180 to 180", half_turn)
+            }
+            Self::TargetPointing {} => Ok(()),
+        }
+    }
+
+    /// The camera's attitude that guidance asks for.
+    pub fn camera_from_icrs(&self, states: &States) -> Rotation<CameraFrame, Icrs> {
+        match *self {
+            Self::Inertial { ra_deg, dec_deg, roll_deg } => {
+                let ra = Angle::from_degrees(ra_deg);
+                let z = *Direction::from_ra_dec(ra, Angle::from_degrees(dec_deg)).vector();
+                // East at the boresight; defined at the poles too, where only the right ascension can tell it.
+                let east = Vector3::new(-libm::sin(ra.radians()), libm::cos(ra.radians()), 0.0);
+                let unrolled: Rotation<CameraFrame, Icrs> = Rotation::from_axes(&-east, &east.cross(&z), &z);
+                let roll = Rotation::<CameraFrame, CameraFrame>::from_euler_123(
+                    Angle::ZERO,
+                    Angle::ZERO,
+                    Angle::from_degrees(roll_deg),
+                );
+                roll * unrolled
+            }
+            Self::LocalOrbital { phi_deg, theta_deg, psi_deg } => {
+                let (radial, transverse, normal) = local_axes(states);
+                let aligned: Rotation<CameraFrame, Icrs> =
+                    Rotation::from_axes(&radial, &-normal, &transverse);
+                let offset = Rotation::<CameraFrame, CameraFrame>::from_euler_123(
+                    Angle::from_degrees(phi_deg),
+                    Angle::from_degrees(theta_deg),
+                    Angle::from_degrees(psi_deg),
+                );
+                offset * aligned
+            }
+            Self::TargetPointing {} => {
+                let (radial, transverse, normal) = local_axes(states);
+                // A target at the very place of the chaser, or exactly along the normal, has no attitude of its
+                // own: the next best axis stands in.
+                let z = states.line_of_sight_km().try_normalize(1e-9).unwrap_or(transverse);
+                let x = z.cross(&normal).try_normalize(1e-9).unwrap_or(radial);
+                // x = y × z with y near −N gives x along z × N.
+                Rotation::from_axes(&x, &z.cross(&x), &z)
+            }
+        }
+    }
+}
+
+/// Radial, transverse and normal axes of the chaser's orbit, ICRS.
+fn local_axes(states: &States) -> (Vector3<f64>, Vector3<f64>, Vector3<f64>) {
+    let radial = states.chaser.position_km.normalize();
+    let normal = states.chaser.position_km.cross(&states.chaser.velocity_km_s).normalize();
+    (radial, normal.cross(&radial), normal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::truth::orbit::Elements;
+    use crate::truth::relative::RelativeElements;
+
+    fn states(time_s: f64, relative: RelativeElements) -> States {
+        let target = Elements {
+            semi_major_axis_km: 7130.0,
+            eccentricity: 0.0,
+            inclination_rad: 1.7153,
+            raan_rad: 2.0,
+            argument_of_perigee_rad: 0.0,
+            mean_anomaly_rad: 0.4,
+        };
+        let chaser = relative.chaser(&target);
+        States { time_s, chaser: chaser.after(time_s).state(), target: target.after(time_s).state() }
+    }
+
+    fn behind() -> RelativeElements {
+        RelativeElements { a_dlambda_m: -10_000.0, ..Default::default() }
+    }
+
+    const LOCAL: Guidance = Guidance::LocalOrbital { phi_deg: 0.0, theta_deg: 0.0, psi_deg: 0.0 };
+
+    #[test]
+    fn a_target_ahead_is_on_the_boresight_of_the_local_orbital_frame() {
+        let states = states(0.0, behind());
+        let line_of_sight = LOCAL.camera_from_icrs(&states).rotate(&states.line_of_sight_km());
+        assert!(line_of_sight.z > 9.99);
+        // The chord of 10 km dips below T by half the arc: 10/(2·7130) rad.
+        let expected_x = -10.0 / (2.0 * 7130.0);
+        assert!((line_of_sight.x / line_of_sight.z - expected_x).abs() < 1e-7);
+        assert!((line_of_sight.y / line_of_sight.z).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_target_above_is_to_the_right_and_one_along_the_normal_is_up() {
+        // The chaser 300 m lower sees the target higher; chaser below along N (u = 0.4 rad, θ = 0.4 + 90°: N < 0).
+        let lower = RelativeElements { a_da_m: -300.0, ..behind() };
+        let (sin, cos) = libm::sincos(0.4 + std::f64::consts::FRAC_PI_2);
+        let below = RelativeElements { a_dix_m: 300.0 * cos, a_diy_m: 300.0 * sin, ..behind() };
+        let seen = |relative| {
+            let states = states(0.0, relative);
+            LOCAL.camera_from_icrs(&states).rotate(&states.line_of_sight_km())
+        };
+        assert!(seen(lower).x > 0.25);
+        assert!(seen(below).y < -0.25);
+    }
+
+    #[test]
+    fn stars_drift_along_the_columns_at_the_orbital_rate() {
+        let (t, dt) = (500.0, 1.0);
+        let now = LOCAL.camera_from_icrs(&states(t, behind()));
+        let star = now.inverse() * Direction::z();
+        let later = LOCAL.camera_from_icrs(&states(t + dt, behind())) * star;
+        // n = 1.04862e-3 rad/s for 7130 km; the oblateness changes the rate of u by 1e-3 of it.
+        assert!((later.vector().x / 1.04862e-3 - 1.0).abs() < 2e-3, "{later:?}");
+        assert!(later.vector().y.abs() < 1e-6);
+    }
+
+    #[test]
+    fn target_pointing_puts_the_target_on_the_boresight_and_the_normal_up() {
+        let relative = RelativeElements { a_dey_m: 400.0, a_diy_m: 400.0, ..behind() };
+        let states = states(1234.0, relative);
+        let camera_from_icrs = Guidance::TargetPointing {}.camera_from_icrs(&states);
+        let line_of_sight = camera_from_icrs.rotate(&states.line_of_sight_km());
+        assert!(line_of_sight.xy().norm() < 1e-12 * line_of_sight.z);
+        let normal = camera_from_icrs.rotate(&local_axes(&states).2);
+        assert!(normal.x.abs() < 1e-12 && normal.y < -0.99);
+    }
+
+    #[test]
+    fn target_pointing_is_a_rotation_even_where_it_means_nothing() {
+        let mut states = states(0.0, behind());
+        let normal = local_axes(&states).2;
+        for position_km in [states.chaser.position_km, states.chaser.position_km + normal] {
+            states.target.position_km = position_km;
+            let matrix = Guidance::TargetPointing {}.camera_from_icrs(&states).matrix();
+            assert!((matrix.determinant() - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn inertial_guidance_has_north_up_and_east_left() {
+        let guidance = |roll_deg| Guidance::Inertial { ra_deg: 30.0, dec_deg: 20.0, roll_deg };
+        let at = |ra, dec| Direction::from_ra_dec(Angle::from_degrees(ra), Angle::from_degrees(dec));
+        let states = states(0.0, behind());
+        let unrolled = guidance(0.0).camera_from_icrs(&states);
+        assert!((unrolled * at(30.0, 20.0)).separation(&Direction::z()).radians() < 1e-15);
+        assert!((unrolled * at(30.0, 21.0)).vector().y < -0.01);
+        assert!((unrolled * at(31.0, 20.0)).vector().x < -0.01);
+        // Turned by 90° from x towards y, the camera sees the old y direction (south) along its x.
+        let rolled = guidance(90.0).camera_from_icrs(&states);
+        assert!((rolled * at(30.0, 19.0)).vector().x > 0.01);
+    }
+
+    #[test]
+    fn an_offset_moves_the_boresight() {
+        let states = states(0.0, behind());
+        // θ > 0 turns z towards x: the boresight looks up (towards R), so R is nearer to z.
+        let up = Guidance::LocalOrbital { phi_deg: 0.0, theta_deg: 5.0, psi_deg: 0.0 };
+        let boresight = up.camera_from_icrs(&states).inverse() * Direction::z();
+        let radial = local_axes(&states).0;
+        assert!((boresight.vector().dot(&radial) - libm::sin(5.0_f64.to_radians())).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_mode_is_read_by_its_name_and_nothing_unknown_is_swallowed() {
+        let read = |text: &str| toml::from_str::<Guidance>(text);
+        assert_eq!(read("mode = 'local_orbital'").unwrap(), LOCAL);
+        assert_eq!(read("mode = 'target_pointing'").unwrap(), Guidance::TargetPointing {});
+        for wrong in ["mode = 'target_pointing'\nra_deg = 1.0", "mode = 'inertial'", "mode = 'spin'"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_declination_past_the_pole_is_refused() {
+        let guidance = Guidance::Inertial { ra_deg: 0.0, dec_deg: 91.0, roll_deg: 0.0 };
+        assert!(guidance.check().unwrap_err().to_string().contains("dec_deg"));
+    }
+}

@@ -1,0 +1,237 @@
+//! What the chaser knows, or believes, about its own attitude and velocity.
+
+use contract::Telemetry;
+use hifitime::Epoch;
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::attitude::Attitude;
+use super::drift::{Drift, DriftConfig, check_axes, radians, turned_by, white};
+use super::trajectory::Trajectory;
+use crate::SimError;
+use crate::error::require;
+use crate::randomness::{Effect, Seed};
+
+/// First place of the velocity's noise in an address; the attitude's noise has places 0 to 2.
+const VELOCITY_PLACE: u64 = 3;
+
+/// Errors of the telemetry. A positive error about a body axis: telemetry tells an attitude that is turned by the
+/// right-hand rule from the true one.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct KnowledgeConfig {
+    /// Constant error about the body's x, y, z axes, arcsec, each −36000 to 36000.
+    #[serde(default)]
+    pub bias_arcsec: [f64; 3],
+    /// Slow error, with the orbital period for instance.
+    #[serde(default)]
+    pub drift: DriftConfig,
+    /// Noise about x, y, z, new in every frame: standard deviation, arcsec, 0 to 36000.
+    #[serde(default)]
+    pub noise_arcsec: [f64; 3],
+    /// Error of the time tag, s, −60 to 60: the attitude told for t is that of t − latency.
+    #[serde(default)]
+    pub latency_s: f64,
+    /// Noise of each component of the velocity, new in every frame: standard deviation, m/s, 0 to 1000.
+    #[serde(default)]
+    pub velocity_noise_m_s: f64,
+}
+
+impl KnowledgeConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        check_axes("knowledge.bias_arcsec", self.bias_arcsec.map(f64::abs))?;
+        self.drift.check("knowledge.drift")?;
+        check_axes("knowledge.noise_arcsec", self.noise_arcsec)?;
+        require("knowledge.latency_s", self.latency_s, "-60 to 60", |l| l.abs() <= 60.0)?;
+        require("knowledge.velocity_noise_m_s", self.velocity_noise_m_s, "0 to 1000", |v| {
+            (0.0..=1000.0).contains(&v)
+        })
+    }
+}
+
+/// Makes telemetry out of the truth.
+#[derive(Debug, Clone)]
+pub struct Knowledge {
+    bias_rad: Vector3<f64>,
+    drift: Drift,
+    noise_rad: Vector3<f64>,
+    latency_s: f64,
+    velocity_noise_km_s: f64,
+    seed: Seed,
+}
+
+impl Knowledge {
+    /// Draws what belongs to the whole run.
+    ///
+    /// # Errors
+    /// As [`KnowledgeConfig::check`].
+    pub fn new(config: &KnowledgeConfig, seed: Seed) -> Result<Self, SimError> {
+        config.check()?;
+        Ok(Self {
+            bias_rad: radians(config.bias_arcsec),
+            drift: Drift::new(&config.drift, seed, Effect::AttitudeKnowledge),
+            noise_rad: radians(config.noise_arcsec),
+            latency_s: config.latency_s,
+            velocity_noise_km_s: config.velocity_noise_m_s * 1e-3,
+            seed,
+        })
+    }
+
+    /// The telemetry of `frame`, whose exposure has its middle at `time` and lasts `exposure_s`.
+    ///
+    /// The latency shifts guidance and slow control error; the frame's jitter and the velocity are those of the
+    /// frame itself.
+    pub fn telemetry(
+        &self,
+        attitude: &Attitude,
+        trajectory: &Trajectory,
+        time: Epoch,
+        frame: u64,
+        exposure_s: f64,
+    ) -> Telemetry {
+        let time_s = trajectory.seconds(time);
+        let sensed = attitude.truth(&trajectory.at_seconds(time_s - self.latency_s), frame);
+        let noise = white(self.seed, frame, Effect::AttitudeKnowledge, 0, self.noise_rad);
+        let error = self.bias_rad + self.drift.at(time_s) + noise;
+        let sigma = Vector3::repeat(self.velocity_noise_km_s);
+        let velocity_noise = white(self.seed, frame, Effect::AttitudeKnowledge, VELOCITY_PLACE, sigma);
+        Telemetry {
+            time,
+            exposure_s,
+            body_from_icrs: turned_by(error) * sensed,
+            velocity_km_s: Some(trajectory.at_seconds(time_s).chaser.velocity_km_s + velocity_noise),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::truth::attitude::tests::{SEED, quiet, restless, trajectory};
+    use crate::truth::mounting::MountingConfig;
+    use hifitime::Duration;
+
+    const DT_S: f64 = 15.0;
+
+    fn attitude(restless_control: bool) -> Attitude {
+        let config = if restless_control { restless() } else { quiet() };
+        Attitude::new(&config, &MountingConfig::default(), SEED).unwrap()
+    }
+
+    fn told(config: &KnowledgeConfig, attitude: &Attitude, frame: u64) -> Telemetry {
+        let trajectory = trajectory();
+        let time = trajectory.epoch() + Duration::from_seconds(DT_S * frame as f64);
+        Knowledge::new(config, SEED).unwrap().telemetry(attitude, &trajectory, time, frame, 0.1)
+    }
+
+    /// By how much the told body axes are turned from the true ones, rad.
+    fn error(config: &KnowledgeConfig, attitude: &Attitude, frame: u64) -> Vector3<f64> {
+        let truth = attitude.truth(&trajectory().at_seconds(DT_S * frame as f64), frame);
+        let told_from_true = told(config, attitude, frame).body_from_icrs * truth.inverse();
+        -told_from_true.quaternion().scaled_axis()
+    }
+
+    #[test]
+    fn perfect_knowledge_tells_the_truth() {
+        let config = KnowledgeConfig::default();
+        assert!(error(&config, &attitude(true), 17).norm() < 1e-15);
+        let velocity = told(&config, &attitude(true), 17).velocity_km_s.unwrap();
+        assert_eq!(velocity, trajectory().at_seconds(DT_S * 17.0).chaser.velocity_km_s);
+    }
+
+    #[test]
+    fn a_bias_turns_the_told_axes_by_the_right_hand_rule() {
+        let config = KnowledgeConfig { bias_arcsec: [100.0, -40.0, 7.0], ..Default::default() };
+        assert!((error(&config, &attitude(true), 3) - radians([100.0, -40.0, 7.0])).norm() < 1e-15);
+        // Told with the body turned by +100″ about x, a star along the true z has moved towards +y.
+        let config = KnowledgeConfig { bias_arcsec: [100.0, 0.0, 0.0], ..Default::default() };
+        let attitude = attitude(false);
+        let truth = attitude.truth(&trajectory().at_seconds(0.0), 0);
+        let star = truth.inverse() * contract::Direction::z();
+        let seen = told(&config, &attitude, 0).body_from_icrs * star;
+        assert!((seen.vector().y - radians([100.0; 3]).x).abs() < 1e-9);
+    }
+
+    #[test]
+    fn noise_has_the_standard_deviation_asked_for() {
+        let noise_arcsec = [3.0, 5.0, 30.0];
+        let config = KnowledgeConfig { noise_arcsec, velocity_noise_m_s: 0.5, ..Default::default() };
+        let (attitude, trajectory) = (attitude(true), trajectory());
+        let knowledge = Knowledge::new(&config, SEED).unwrap();
+        let (time, states) = (trajectory.epoch(), trajectory.at_seconds(0.0));
+        let n = 5000;
+        let (mut turn, mut velocity) = (Vector3::zeros(), 0.0);
+        for frame in 0..n {
+            let told = knowledge.telemetry(&attitude, &trajectory, time, frame, 0.1);
+            let off = told.body_from_icrs * attitude.truth(&states, frame).inverse();
+            let scaled = off.quaternion().scaled_axis().component_div(&radians(noise_arcsec));
+            turn += scaled.component_mul(&scaled);
+            let dv = told.velocity_km_s.unwrap() - states.chaser.velocity_km_s;
+            velocity += (dv / 0.5e-3).norm_squared();
+        }
+        // χ² of n degrees has the standard deviation √(2n) = 100, of 3n degrees 173; four of them.
+        for axis in 0..3 {
+            assert!((turn[axis] - n as f64).abs() < 400.0, "{turn}");
+        }
+        assert!((velocity - 3.0 * n as f64).abs() < 700.0, "{velocity}");
+    }
+
+    #[test]
+    fn noise_of_knowledge_does_not_follow_the_jitter_of_control() {
+        let config = KnowledgeConfig { noise_arcsec: [10.0; 3], ..Default::default() };
+        let (loud, calm) = (attitude(true), attitude(false));
+        // The same draws whether control is restless or not.
+        assert!((error(&config, &loud, 5) - error(&config, &calm, 5)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn a_latency_tells_an_attitude_that_is_old() {
+        let config = KnowledgeConfig { latency_s: 2.0, ..Default::default() };
+        // The body turns about −y at 1.0486e-3 rad/s: two seconds ago it was turned the other way.
+        let expected = Vector3::new(0.0, 2.0 * 1.0486e-3, 0.0);
+        // The oblateness, the chaser's eccentricity: 1e-3 and 1e-4 of it.
+        assert!((error(&config, &attitude(false), 40) - expected).norm() < 6e-6);
+    }
+
+    #[test]
+    fn a_drift_is_seen_in_telemetry() {
+        let drift = DriftConfig { rms_arcsec: [50.0; 3], periods_s: vec![5992.0] };
+        let config = KnowledgeConfig { drift: drift.clone(), ..Default::default() };
+        let expected = Drift::new(&drift, SEED, Effect::AttitudeKnowledge).at(DT_S * 100.0);
+        assert!((error(&config, &attitude(true), 100) - expected).norm() < 1e-15);
+        assert!(expected.norm() > 0.0);
+    }
+
+    #[test]
+    fn a_frame_alone_is_told_as_in_the_run() {
+        let config = KnowledgeConfig {
+            noise_arcsec: [10.0; 3],
+            drift: DriftConfig { rms_arcsec: [50.0; 3], periods_s: vec![5992.0, 700.0] },
+            latency_s: 0.3,
+            ..Default::default()
+        };
+        let attitude = attitude(true);
+        let in_run: Vec<_> = (0..50).map(|frame| told(&config, &attitude, frame)).collect();
+        for frame in [49, 0, 25] {
+            assert_eq!(told(&config, &attitude, frame), in_run[frame as usize]);
+        }
+    }
+
+    #[test]
+    fn knowledge_outside_its_range_is_refused_by_name() {
+        let bad = [
+            (KnowledgeConfig { latency_s: f64::NAN, ..Default::default() }, "latency_s"),
+            (KnowledgeConfig { noise_arcsec: [-1.0, 0.0, 0.0], ..Default::default() }, "noise_arcsec"),
+            (KnowledgeConfig { bias_arcsec: [1e6, 0.0, 0.0], ..Default::default() }, "bias_arcsec"),
+            (KnowledgeConfig { velocity_noise_m_s: -1.0, ..Default::default() }, "velocity_noise_m_s"),
+        ];
+        for (config, name) in bad {
+            assert!(config.check().unwrap_err().to_string().contains(name));
+        }
+    }
+}

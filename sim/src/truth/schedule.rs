@@ -1,0 +1,259 @@
+//! Which frame is taken when.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use hifitime::{Duration, Epoch, TimeScale};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+
+/// Most frames that a scenario may have.
+pub const MAX_FRAMES: u64 = 100_000_000;
+
+/// A group of frames at a constant cadence: a day, a portion of an approach.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GroupConfig {
+    /// Name, not empty, different from those of the other groups.
+    pub name: String,
+    /// Middle of the exposure of the first frame, UTC, as in 2012-04-23T09:00:00.
+    pub start_utc: String,
+    /// Time from one frame to the next, s, 0.001 to 1e6; rounded to the nanosecond.
+    pub cadence_s: f64,
+    /// Number of frames, at least 1; all groups together at most 100000000.
+    pub count: u64,
+}
+
+impl GroupConfig {
+    /// Checks this group by itself.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        if self.name.trim().is_empty() {
+            return Err(refused("schedule[].name", "empty".into(), "a name"));
+        }
+        parse_utc("schedule[].start_utc", &self.start_utc)?;
+        require("schedule[].cadence_s", self.cadence_s, "0.001 to 1e6", |c| (1e-3..=1e6).contains(&c))?;
+        if !(1..=MAX_FRAMES).contains(&self.count) {
+            return Err(refused("schedule[].count", self.count.to_string(), "1 to 100000000"));
+        }
+        Ok(())
+    }
+}
+
+/// Frames that belong together, in order of time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sequence<'a> {
+    /// Name of the group.
+    pub name: &'a str,
+    /// Numbers of its frames in the scenario.
+    pub frames: Range<u64>,
+}
+
+/// All frames of a scenario, numbered from 0. Times are exact to the nanosecond; nothing is stored per frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Schedule {
+    groups: Vec<Group>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Group {
+    name: String,
+    frames: Range<u64>,
+    start: Epoch,
+    cadence_ns: i128,
+}
+
+impl Group {
+    fn time(&self, frame: u64) -> Epoch {
+        let nanoseconds = i128::from(frame - self.frames.start) * self.cadence_ns;
+        self.start + Duration::from_total_nanoseconds(nanoseconds)
+    }
+}
+
+impl Schedule {
+    /// Checks the groups and numbers their frames.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] when a group is wrong by itself, a name comes twice, a group does not begin after the
+    /// last frame of the one before, there is no group, or there are too many frames.
+    pub fn new(configs: &[GroupConfig]) -> Result<Self, SimError> {
+        let mut names = BTreeSet::new();
+        let mut groups: Vec<Group> = Vec::with_capacity(configs.len());
+        let mut first_frame = 0;
+        for config in configs {
+            config.check()?;
+            if !names.insert(config.name.as_str()) {
+                return Err(refused("schedule[].name", config.name.clone(), "a name used once"));
+            }
+            // Counted in TAI: in UTC, adding seconds across a leap second would lose one.
+            let start = parse_utc("schedule[].start_utc", &config.start_utc)?.to_time_scale(TimeScale::TAI);
+            if let Some(before) = groups.last()
+                && start <= before.time(before.frames.end - 1)
+            {
+                let value = format!("{} (group `{}`)", config.start_utc, config.name);
+                let expected = "after the last frame of the group before it";
+                return Err(refused("schedule[].start_utc", value, expected));
+            }
+            let frames = first_frame..first_frame + config.count;
+            first_frame = frames.end;
+            if first_frame > MAX_FRAMES {
+                let value = format!("{first_frame} in total");
+                return Err(refused("schedule[].count", value, "at most 100000000 in total"));
+            }
+            let cadence_ns = (config.cadence_s * 1e9).round() as i128;
+            groups.push(Group { name: config.name.clone(), frames, start, cadence_ns });
+        }
+        if groups.is_empty() {
+            return Err(refused("schedule", "empty".into(), "at least one group"));
+        }
+        Ok(Self { groups })
+    }
+
+    /// Number of frames; at least 1.
+    pub fn frame_count(&self) -> u64 {
+        self.groups.last().map_or(0, |group| group.frames.end)
+    }
+
+    /// Index of the group and middle of the exposure of frame `n`; `None` past the last frame.
+    pub fn frame(&self, n: u64) -> Option<(usize, Epoch)> {
+        let index = self.group_of(n)?;
+        Some((index, self.groups[index].time(n)))
+    }
+
+    /// Index of the group of frame `n`; `None` past the last frame.
+    pub fn group_of(&self, n: u64) -> Option<usize> {
+        let index = self.groups.partition_point(|group| group.frames.end <= n);
+        (index < self.groups.len()).then_some(index)
+    }
+
+    /// The groups in order.
+    pub fn sequences(&self) -> impl ExactSizeIterator<Item = Sequence<'_>> {
+        self.groups.iter().map(|group| Sequence { name: &group.name, frames: group.frames.clone() })
+    }
+}
+
+/// Reads a UTC date and time. `field` is where it stands in the scenario.
+///
+/// # Errors
+/// [`SimError::Parameter`] when it is not one, names another time scale, or is a leap second: second 60 would be
+/// read as second 59 (hifitime issue 417).
+pub(crate) fn parse_utc(field: &'static str, text: &str) -> Result<Epoch, SimError> {
+    let expected = "a UTC time like 2012-04-23T00:00:00, not second 60";
+    if text.contains(":60") {
+        return Err(refused(field, text.into(), expected));
+    }
+    match Epoch::from_gregorian_str(text) {
+        Ok(epoch) if epoch.time_scale == TimeScale::UTC => Ok(epoch),
+        _ => Err(refused(field, text.into(), expected)),
+    }
+}
+
+fn refused(field: &'static str, value: String, expected: &'static str) -> SimError {
+    SimError::Parameter { field, value, expected }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn group(name: &str, start_utc: &str, cadence_s: f64, count: u64) -> GroupConfig {
+        GroupConfig { name: name.into(), start_utc: start_utc.into(), cadence_s, count }
+    }
+
+    fn days() -> Vec<GroupConfig> {
+        vec![
+            group("day 1", "2012-04-23T09:00:00", 15.0, 1634),
+            group("day 2", "2012-04-24T06:00:00", 15.0, 2978),
+        ]
+    }
+
+    #[test]
+    fn frames_are_numbered_through_the_groups() {
+        let schedule = Schedule::new(&days()).unwrap();
+        assert_eq!(schedule.frame_count(), 4612);
+        assert_eq!(schedule.group_of(1633), Some(0));
+        let (index, time) = schedule.frame(1634).unwrap();
+        assert_eq!((index, time), (1, parse_utc("t", "2012-04-24T06:00:00").unwrap()));
+        assert_eq!(schedule.frame(4611).map(|(index, _)| index), Some(1));
+        assert_eq!(schedule.frame(4612), None);
+        assert_eq!(schedule.group_of(u64::MAX), None);
+    }
+
+    #[test]
+    fn sequences_cover_every_frame_once() {
+        let schedule = Schedule::new(&days()).unwrap();
+        let sequences: Vec<_> = schedule.sequences().map(|s| (s.name, s.frames)).collect();
+        assert_eq!(sequences, [("day 1", 0..1634), ("day 2", 1634..4612)]);
+    }
+
+    #[test]
+    fn times_do_not_gather_rounding() {
+        // 0.1 s is not a binary fraction: a sum of ten million would be off by 1e-4 s.
+        let schedule = Schedule::new(&[group("a", "2012-04-23T00:00:00", 0.1, 10_000_001)]).unwrap();
+        let (_, last) = schedule.frame(10_000_000).unwrap();
+        let start = parse_utc("t", "2012-04-23T00:00:00").unwrap();
+        assert_eq!(
+            (last.to_tai_duration() - start.to_tai_duration()).total_nanoseconds(),
+            1_000_000_000_000_000
+        );
+    }
+
+    #[test]
+    fn a_leap_second_takes_its_time() {
+        let schedule = Schedule::new(&[group("a", "2012-06-30T23:59:58", 1.0, 4)]).unwrap();
+        let midnight = parse_utc("t", "2012-07-01T00:00:00").unwrap();
+        assert_eq!(schedule.frame(3).unwrap().1, midnight);
+    }
+
+    #[test]
+    fn the_largest_schedule_allocates_nothing_per_frame() {
+        let schedule = Schedule::new(&[group("a", "2012-04-23T00:00:00", 0.001, MAX_FRAMES)]).unwrap();
+        assert!(schedule.frame(MAX_FRAMES - 1).is_some());
+    }
+
+    #[test]
+    fn wrong_groups_are_refused_by_name() {
+        let check = |configs: &[GroupConfig], name: &str| {
+            let message = Schedule::new(configs).unwrap_err().to_string();
+            assert!(message.contains(name), "{message}");
+        };
+        let start = "2012-04-23T09:00:00";
+        check(&[], "schedule");
+        check(&[group(" ", start, 15.0, 1)], "name");
+        check(&[group("a", start, 15.0, 0)], "count");
+        check(&[group("a", start, 15.0, u64::MAX)], "count");
+        check(&[group("a", start, 0.0, 1)], "cadence_s");
+        check(&[group("a", start, f64::NAN, 1)], "cadence_s");
+        check(
+            &[group("a", start, 15.0, 1), group("a", "2012-04-24T00:00:00", 15.0, 1)],
+            "`a`".trim_matches('`'),
+        );
+        // The second group begins at the last frame of the first.
+        check(&[group("a", start, 15.0, 2), group("b", "2012-04-23T09:00:15", 15.0, 1)], "group `b`");
+        let half = MAX_FRAMES / 2 + 1;
+        check(&[group("a", start, 0.001, half), group("b", "2013-01-01T00:00:00", 1.0, half)], "in total");
+    }
+
+    #[test]
+    fn a_time_that_is_not_utc_is_refused() {
+        for text in ["", "yesterday", "2012-06-30T23:59:60", "2012-04-23T00:00:00 TAI", "2012-13-01T00:00:00"]
+        {
+            assert!(parse_utc("t", text).is_err(), "{text}");
+        }
+        assert!(parse_utc("t", "2012-04-23T00:00:00 UTC").is_ok());
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_text_makes_the_reader_of_times_panic(
+            any in ".*", almost in "[0-9]{1,5}[-/ ]?[0-9]{0,3}-?[0-9]{0,3}[T ]?[0-9:.+Zé-]{0,14} ?[A-Z]{0,4}",
+        ) {
+            let _ = (parse_utc("t", &any), parse_utc("t", &almost));
+        }
+    }
+}
