@@ -144,7 +144,8 @@ impl Observer {
     ///
     /// Murray, Vectorial Astrometry (1983); Urban & Seidelmann, Explanatory Supplement (2013), Sec. 7.2. The Roemer
     /// delay, by which the light reaches the observer earlier than the barycentre, is taken along the catalogued
-    /// direction. Not modelled: the growing light time of a star itself (0.7 mas for Barnard's star in 2045).
+    /// direction. Not modelled: the relativistic terms of a star's own motion (0.10 mas for Barnard's star in 2044, 0.20 mas
+    /// for Kapteyn's).
     pub fn astrometric(&self, star: &StarMotion) -> Direction<Icrs> {
         Direction::from_unit(self.coordinate_direction(star))
     }

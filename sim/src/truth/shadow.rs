@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use super::Shadow;
 
 /// Radius of the Earth, km: equatorial, IERS Conventions (2010).
-pub const EARTH_RADIUS_KM: f64 = 6_378.1366;
+pub const EARTH_RADIUS_KM: f64 = 6_378.136_6;
 /// Radius of the Sun, km: nominal, IAU 2015 Resolution B3.
 pub const SUN_RADIUS_KM: f64 = 695_700.0;
 
