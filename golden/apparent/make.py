@@ -192,11 +192,13 @@ def make_space_motion(stars, epochs):
 def make_earth():
     first, last = -3652.5 * DAY_S, (-3652.5 + 685 * 32) * DAY_S
     generator = np.random.Generator(np.random.PCG64(19900101))
-    instants = np.concatenate([[first, last], first + 32 * DAY_S * np.arange(1, 20), generator.uniform(first, last, 179)])
+    seams = first + 32 * DAY_S * np.arange(1, 20)
+    instants = np.concatenate([[first, last], seams, generator.uniform(first, last, 179)])
     header = ["tdb_j2000_s"] + [f"{b}_{c}" for b in ["earth", "earth_velocity", "sun"] for c in "xyz"]
 
     barycentric, heliocentric = earth(instants)
-    states = [barycentric["p"] * AU_KM, barycentric["v"] * AU_KM / DAY_S, (barycentric["p"] - heliocentric["p"]) * AU_KM]
+    sun = (barycentric["p"] - heliocentric["p"]) * AU_KM
+    states = [barycentric["p"] * AU_KM, barycentric["v"] * AU_KM / DAY_S, sun]
     write_states("earth_erfa.csv", header, instants, states)
 
     kernel = SPK.open(skyfield_data.get_skyfield_data_path() + "/de421.bsp")

@@ -7,7 +7,8 @@ the barycentric Earth is within 13.4 km and 4.9 mm/s of DE405 (1900-2100). Frame
 
 Layout: little-endian f64, no header. PIECES records, each for PIECE_DAYS days from START_JD on, of
 3 x EARTH_TERMS coefficients (Earth x, then y, then z, the constant term first) and 3 x SUN_TERMS (the Sun's).
-Argument of the polynomials: -1 at the start of a piece, +1 at its end. sim/src/truth/ephemeris.rs holds the same constants.
+Argument of the polynomials: -1 at the start of a piece, +1 at its end. sim/src/truth/ephemeris.rs holds the same
+constants.
 
 Why 32 days and 18 terms: the Moon swings the Earth by 4700 km and 12 m/s every 27.3 days, and the last terms must
 follow that and its harmonics. The polynomials are fitted to the velocity and integrated, because a fit to the position

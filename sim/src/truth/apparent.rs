@@ -2,8 +2,8 @@
 //!
 //! The chain is that of the IAU's SOFA collection for an observer in space, catalogue to proper direction (ICRS to
 //! GCRS axes): straight space motion and parallax, deflection of light by the Sun, exact relativistic aberration.
-//! Written from the papers and held against ERFA (`golden/apparent`). Neglected: deflection by planets (17 mas at
-//! Jupiter's limb, under 1 mas from 7′ on) and by the Earth (0.6 mas at its limb).
+//! Written from the papers and held against ERFA (`golden/apparent`). Neglected: deflection by planets (16 mas at
+//! Jupiter's limb, under 1 mas from 6′ on) and by the Earth (0.4 mas at its limb from a low orbit).
 
 use contract::{Direction, Icrs};
 use hifitime::Epoch;
@@ -38,8 +38,8 @@ const FASTEST_KM_S: f64 = 1e3;
 pub struct StarMotion {
     /// Unit vector at the epoch.
     place: Vector3<f64>,
-    /// Space velocity over distance at the epoch, rad per Julian year: across, the proper motion; along, the change of
-    /// distance.
+    /// Space velocity over distance at the epoch, rad per Julian year: across, the proper motion; along, the
+    /// change of distance.
     motion_per_yr: Vector3<f64>,
     /// Parallax, rad.
     parallax: f64,
@@ -83,8 +83,19 @@ impl Observer {
     /// `velocity_km_s`, ICRS axes.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when the time is outside [`ephemeris::COVERAGE`], or the observer farther from the Earth
-    /// than 10⁷ km or faster than 1000 km/s, or a number is not finite.
+    /// [`SimError::Parameter`] when the time is outside [`ephemeris::COVERAGE`], or the observer farther from the
+    /// Earth than 10⁷ km or faster than 1000 km/s, or a number is not finite.
+    ///
+    /// ```
+    /// use boresight_sim::truth::{Observer, clock};
+    /// use nalgebra::Vector3;
+    ///
+    /// let time = clock::parse_utc("2012-04-25T12:18:54.5Z")?;
+    /// let observer = Observer::new(time, Vector3::new(7_100.0, 0.0, 0.0), Vector3::new(0.0, 0.0, 7.5))?;
+    /// // The Earth carries the spacecraft along at 30 km/s.
+    /// assert!((20.0..40.0).contains(&observer.barycentric_velocity_km_s().norm()));
+    /// # Ok::<(), boresight_sim::SimError>(())
+    /// ```
     pub fn new(
         time: Epoch,
         position_km: Vector3<f64>,
@@ -129,7 +140,7 @@ impl Observer {
         self.beta * LIGHT_SPEED_KM_S
     }
 
-    /// Direction to the centre of the Sun: geometric, without light time and aberration (20″ apart from the apparent).
+    /// Direction to the centre of the Sun: geometric, without light time and aberration (20″ from the apparent).
     pub fn sun(&self) -> Direction<Icrs> {
         Direction::from_unit(-self.from_sun)
     }
@@ -144,14 +155,14 @@ impl Observer {
     ///
     /// Murray, Vectorial Astrometry (1983); Urban & Seidelmann, Explanatory Supplement (2013), Sec. 7.2. The Roemer
     /// delay, by which the light reaches the observer earlier than the barycentre, is taken along the catalogued
-    /// direction. Not modelled: the relativistic terms of a star's own motion (0.10 mas for Barnard's star in 2044, 0.20 mas
-    /// for Kapteyn's).
+    /// direction. Not modelled: the relativistic terms of a star's own motion (in 2044, 0.20 mas for Kapteyn's
+    /// star, 0.10 mas for Barnard's).
     pub fn astrometric(&self, star: &StarMotion) -> Direction<Icrs> {
         Direction::from_unit(self.coordinate_direction(star))
     }
 
-    /// The direction in which an ideal camera sees a star: [`Observer::astrometric`], bent by the Sun ([`deflect`]), aberrated
-    /// ([`aberrate`], with the Sun's potential added: 0.4 µas, Klioner 2003, Eq. 7).
+    /// The direction in which an ideal camera sees a star: [`Observer::astrometric`], bent by the Sun
+    /// ([`deflect`]), aberrated ([`aberrate`], with the Sun's potential added: 0.4 µas, Klioner 2003, Eq. 7).
     pub fn apparent(&self, star: &StarMotion) -> Direction<Icrs> {
         let natural = bend(&self.coordinate_direction(star), &self.from_sun, self.sun_distance_au);
         let potential = SUN_SCHWARZSCHILD_AU / self.sun_distance_au;
@@ -166,9 +177,10 @@ impl Observer {
 
 /// The direction of light bent by the Sun, for a source far behind it.
 ///
-/// `natural = p + 2GM/(c² d) · (e − (p·e) p) / (1 + p·e)`, with e the unit vector from the Sun to the observer and d the
-/// distance: Klioner (2003), Astron. J. 125, 1580, Eq. 70. 4.07 mas at 90° from the Sun, 1.75″ at its limb. Inside 4.9′
-/// of the Sun's centre (behind its disk) the bending is reduced, to zero at the centre, as SOFA does.
+/// `p + 2GM/(c² d) · (e − (p·e) p) / (1 + p·e)`, with p the direction to the star, e the unit vector from the Sun to
+/// the observer, d the distance of the Sun: Klioner (2003), Astron. J. 125, 1580, Eq. 70. 4.07 mas at 90° from the
+/// Sun, 1.75″ at its limb. Inside 4.9′ of the Sun's centre (behind its disk) the bending is reduced, to zero at the
+/// centre, as SOFA does.
 pub fn deflect(direction: Direction<Icrs>, sun: Direction<Icrs>, sun_distance_au: f64) -> Direction<Icrs> {
     Direction::from_unit(bend(direction.vector(), &-sun.vector(), sun_distance_au).normalize())
 }
@@ -182,8 +194,8 @@ pub fn aberrate(direction: Direction<Icrs>, beta: &Vector3<f64>) -> Direction<Ic
     Direction::from_unit(boost(direction.vector(), beta, inverse_gamma, 0.0))
 }
 
-/// The direction that a moving observer sees as `apparent`: the exact inverse of [`aberrate`], which is the aberration
-/// of the opposite velocity.
+/// The direction that a moving observer sees as `apparent`: the exact inverse of [`aberrate`], which is the
+/// aberration of the opposite velocity.
 pub fn unaberrate(apparent: Direction<Icrs>, beta: &Vector3<f64>) -> Direction<Icrs> {
     aberrate(apparent, &-beta)
 }
@@ -325,7 +337,7 @@ mod tests {
         let far = observer.astrometric(&StarMotion::new(&star()));
         let seen = observer.astrometric(&StarMotion::new(&near));
         let angle = far.separation(&observer.sun()).radians();
-        // sin θ arcsec at 1 au; the Sun stands up to 0.008 au from the barycentre, the Earth 1.7 % from 1 au.
+        // sin θ arcsec at 1 au; the Sun is up to 0.01 au from the barycentre, the Earth 1.7 % from 1 au.
         assert!((seen.separation(&far).arcsec() / libm::sin(angle) - 1.0).abs() < 0.03);
         assert!(seen.separation(&observer.sun()).radians() < angle);
         near.parallax_mas = -1_000.0;

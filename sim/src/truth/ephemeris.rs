@@ -112,7 +112,7 @@ mod tests {
         let mut day = START_S;
         while day < END_S {
             let state = earth(day).unwrap();
-            // 29.29 to 30.29 km/s about the Sun (vis viva with e = 0.0167), 13 m/s for the Sun and 13 m/s for the Moon.
+            // 29.29 to 30.29 km/s about the Sun (vis viva, e = 0.0167), and 13 m/s each for the Sun and the Moon.
             let speed = state.velocity_km_s.norm();
             assert!((29.25..30.33).contains(&speed), "{speed} km/s at {day}");
             // Perihelion 147.10, aphelion 152.10 million km, give or take the Moon and the planets.
@@ -149,7 +149,7 @@ mod tests {
         let time = super::super::clock::parse_utc("2012-03-20T05:14:00Z").unwrap();
         let sun = earth(super::super::clock::tdb_j2000_s(time)).unwrap().sun_geocentric_km();
         let ra_arcsec = libm::atan2(sun.y, sun.x).to_degrees() * 3_600.0;
-        // Right ascension is longitude × cos ε there: −614 × 0.9175 + 20.5 × 0.9175 = −545; 60 s are 2.5″, nutation 16″.
+        // Right ascension there is longitude × cos ε: (−614 + 20.5) × 0.9175 = −545. A minute is 2.5″, nutation 16″.
         assert!((ra_arcsec + 545.0).abs() < 20.0, "{ra_arcsec}");
     }
 }

@@ -16,9 +16,9 @@ pub const SUN_RADIUS_KM: f64 = 695_700.0;
 /// The fraction of the Sun's disk that is seen, in [0, 1].
 ///
 /// `position_km` is the spacecraft and `sun_km` the Sun, both from the centre of the Earth, in any one frame. The two
-/// disks are circles of the angles under which the bodies appear, their overlap taken as in the plane (Montenbruck &
-/// Gill, Satellite Orbits, 2000, Sec. 3.4.2, Eq. 3.85–3.87). From a low orbit the Earth's disk is large, and the limb is
-/// more curved in the plane than on the sphere: the fraction errs by less than 0.001.
+/// disks are circles of the angles under which the bodies appear, their overlap taken as in the plane (Montenbruck
+/// & Gill, Satellite Orbits, 2000, Sec. 3.4.2, Eq. 3.85–3.87). From a low orbit the Earth's disk is large, and its
+/// limb more curved in the plane than on the sphere: the fraction errs by less than 0.001.
 /// A position inside the Earth sees nothing.
 pub fn sunlit_fraction(position_km: &Vector3<f64>, sun_km: &Vector3<f64>) -> f64 {
     let to_sun = sun_km - position_km;
@@ -101,7 +101,8 @@ mod tests {
             // The line to the Sun's centre touches the sphere.
             let x = -f64::sqrt(radius * radius - EARTH_RADIUS_KM * EARTH_RADIUS_KM);
             let seen = fraction(x, EARTH_RADIUS_KM);
-            // The curved limb covers less than half: at 8.7° of radius 0.6 % of the disk, and 0.01° of parallax.
+            // The Sun is at a finite distance: its centre stands 6378 km / 1 au off the limb, 0.6 % of its disk. The
+            // limb is curved: 0.3 % from the highest orbit.
             assert!((seen - 0.5).abs() < 0.01, "{seen} at {radius} km");
         }
     }
