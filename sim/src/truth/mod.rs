@@ -1,7 +1,10 @@
 //! Truth: where everything is, and how it looks from the chaser.
 
+mod apparent;
 mod attitude;
+pub mod clock;
 mod drift;
+pub mod ephemeris;
 mod guidance;
 mod kepler;
 mod knowledge;
@@ -10,9 +13,11 @@ mod mounting;
 mod orbit;
 mod relative;
 mod schedule;
+pub mod shadow;
 mod table;
 mod trajectory;
 
+pub use apparent::{Observer, StarMotion, aberrate, deflect, unaberrate};
 pub use attitude::{Attitude, AttitudeConfig, ControlConfig};
 pub use drift::DriftConfig;
 pub use guidance::Guidance;

@@ -1,0 +1,134 @@
+//! The Earth's shadow: how much of the Sun is seen.
+//!
+//! Sun and Earth are spheres, light goes straight. Neglected: the oblateness of the Earth (its polar radius is 21 km
+//! less: the instant of a crossing shifts by up to some seconds in a low orbit), the atmosphere (refraction and
+//! absorption lengthen and redden the twilight by some ten seconds), the darkening of the Sun's limb.
+
+use nalgebra::Vector3;
+
+use super::Shadow;
+
+/// Radius of the Earth, km: equatorial, IERS Conventions (2010).
+pub const EARTH_RADIUS_KM: f64 = 6_378.136_6;
+/// Radius of the Sun, km: nominal, IAU 2015 Resolution B3.
+pub const SUN_RADIUS_KM: f64 = 695_700.0;
+
+/// The fraction of the Sun's disk that is seen, in [0, 1].
+///
+/// `position_km` is the spacecraft and `sun_km` the Sun, both from the centre of the Earth, in any one frame. The two
+/// disks are circles of the angles under which the bodies appear, their overlap taken as in the plane (Montenbruck
+/// & Gill, Satellite Orbits, 2000, Sec. 3.4.2, Eq. 3.85–3.87). From a low orbit the Earth's disk is large, and its
+/// limb more curved in the plane than on the sphere: the fraction errs by less than 0.001.
+/// A position inside the Earth sees nothing.
+pub fn sunlit_fraction(position_km: &Vector3<f64>, sun_km: &Vector3<f64>) -> f64 {
+    let to_sun = sun_km - position_km;
+    let sun = libm::asin((SUN_RADIUS_KM / to_sun.norm()).min(1.0));
+    let distance = position_km.norm();
+    if distance <= EARTH_RADIUS_KM {
+        return 0.0;
+    }
+    let earth = libm::asin(EARTH_RADIUS_KM / distance);
+    let separation = libm::atan2(position_km.cross(&to_sun).norm(), -position_km.dot(&to_sun));
+    1.0 - covered_fraction(sun, earth, separation)
+}
+
+/// The class of a sunlit fraction.
+pub fn classify(sunlit_fraction: f64) -> Shadow {
+    match sunlit_fraction {
+        f if f >= 1.0 => Shadow::Sunlit,
+        f if f > 0.0 => Shadow::Penumbra,
+        _ => Shadow::Umbra,
+    }
+}
+
+/// The fraction of a disk of radius `sun` that a disk of radius `earth` covers, the centres `separation` apart.
+fn covered_fraction(sun: f64, earth: f64, separation: f64) -> f64 {
+    if separation >= sun + earth {
+        return 0.0;
+    }
+    if separation <= earth - sun {
+        return 1.0;
+    }
+    if separation <= sun - earth {
+        // Farther than 1.4 million km the Earth no longer covers the whole Sun.
+        return (earth / sun) * (earth / sun);
+    }
+    // The chord common to both circles: x from the Sun's centre towards the Earth's, half-length y.
+    let x = (separation * separation + sun * sun - earth * earth) / (2.0 * separation);
+    let y = (sun * sun - x * x).max(0.0).sqrt();
+    let lens =
+        sun * sun * libm::atan2(y, x) + earth * earth * libm::atan2(y, separation - x) - separation * y;
+    (lens / (std::f64::consts::PI * sun * sun)).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AU_KM: f64 = 149_597_870.7;
+
+    fn sun() -> Vector3<f64> {
+        Vector3::x() * AU_KM
+    }
+
+    fn fraction(x: f64, y: f64) -> f64 {
+        sunlit_fraction(&Vector3::new(x, y, 0.0), &sun())
+    }
+
+    #[test]
+    fn before_the_earth_is_light_and_behind_it_is_darkness() {
+        assert_eq!(fraction(7_100.0, 0.0), 1.0);
+        assert_eq!(fraction(0.0, 7_100.0), 1.0);
+        assert_eq!(fraction(-7_100.0, 0.0), 0.0);
+        assert_eq!(fraction(-42_164.0, 0.0), 0.0);
+        assert_eq!(fraction(0.0, 0.0), 0.0);
+    }
+
+    #[test]
+    fn the_umbra_ends_where_the_cone_does() {
+        // Length of the cone: R⊕ d / (R☉ − R⊕) = 1.384 million km for radii seen as asin(R/d).
+        let tip = EARTH_RADIUS_KM * AU_KM / (SUN_RADIUS_KM - EARTH_RADIUS_KM);
+        assert_eq!(fraction(-0.999 * tip, 0.0), 0.0);
+        let beyond = fraction(-1.5 * tip, 0.0);
+        let seen = EARTH_RADIUS_KM / (1.5 * tip) / (SUN_RADIUS_KM / (AU_KM + 1.5 * tip));
+        // 1e-4: sine against angle at 0.25°.
+        assert!((beyond - (1.0 - seen * seen)).abs() < 1e-4, "{beyond}");
+    }
+
+    #[test]
+    fn half_the_sun_is_seen_when_its_centre_stands_on_the_limb() {
+        for radius in [6_700.0, 7_100.0, 42_164.0] {
+            // The line to the Sun's centre touches the sphere.
+            let x = -f64::sqrt(radius * radius - EARTH_RADIUS_KM * EARTH_RADIUS_KM);
+            let seen = fraction(x, EARTH_RADIUS_KM);
+            // The Sun is at a finite distance: its centre stands 6378 km / 1 au off the limb, 0.6 % of its disk. The
+            // limb is curved: 0.3 % from the highest orbit.
+            assert!((seen - 0.5).abs() < 0.01, "{seen} at {radius} km");
+        }
+    }
+
+    #[test]
+    fn the_fraction_grows_without_a_jump_through_the_penumbra() {
+        let mut last = 0.0;
+        let mut partial = 0;
+        // 20 m steps over the limb at 7100 km: the penumbra is 2 × 0.266° × 3120 km = 29 km wide.
+        for i in 0..4_000 {
+            let seen = fraction(-3_119.0, 6_338.0 + 0.02 * f64::from(i));
+            assert!((0.0..=1.0).contains(&seen));
+            // The steepest slope is 2/π a radius: 20 m / 14.5 km × 2 / π = 0.0009.
+            assert!(seen >= last && seen - last < 1.5e-3, "{last} to {seen} at step {i}");
+            partial += i32::from(seen > 0.0 && seen < 1.0);
+            last = seen;
+        }
+        assert_eq!(last, 1.0);
+        assert!((1_350..1_550).contains(&partial), "a penumbra of {partial} steps of 20 m");
+    }
+
+    #[test]
+    fn classes_follow_the_fraction() {
+        assert_eq!(classify(1.0), Shadow::Sunlit);
+        assert_eq!(classify(1e-12), Shadow::Penumbra);
+        assert_eq!(classify(1.0 - 1e-12), Shadow::Penumbra);
+        assert_eq!(classify(0.0), Shadow::Umbra);
+    }
+}
