@@ -18,7 +18,8 @@ const MAX_LAG: usize = 4096;
 /// - A sequence in which nothing varies tells nothing about its correlation; it counts as independent, so a whole
 ///   series without variation has n_eff = n. Its interval is a lower bound of what is not known.
 /// - A slow trend within a sequence looks like a long memory and lowers n_eff: the interval is then too wide.
-/// - Sequences must be several times longer than their memory; in shorter ones it cannot be seen.
+/// - Sequences must be many times longer than their memory, or it cannot be seen. Measured on a rate of 0.9 with
+///   τ = 9: the interval of 95 % holds the truth in 96 % of the series of 4500 values, and in 86 % of those of 200.
 ///
 /// 0 for no value at all; otherwise from 1 to n.
 pub fn effective_size(sequences: &[Vec<f64>]) -> f64 {
