@@ -1,0 +1,28 @@
+//! The score: a pure function of the truth and of what a pipeline said.
+//!
+//! Every frame is counted exactly once and gets one [`Verdict`]. Two notions are kept apart:
+//!
+//! - *Detected*, as the far-range paper counts it: the pipeline says that it has a target, rightly or wrongly.
+//!   The accuracy figures of the paper (its Table 2) are counted over these.
+//! - *Correct*: most of the light in the cluster that it chose comes from the target, by the table of truth.
+//!
+//! The verdict needs nothing but the truth and the reported position and line of sight, so that anybody's
+//! measurement file gets the same figures as a built-in run. Only the *cause* of a miss profits from the labelled
+//! clusters that a pipeline may tell; without them it rests on the truth alone.
+
+mod accumulate;
+mod angles;
+mod argon_table2;
+mod belonging;
+mod cause;
+#[cfg(test)]
+mod hand_made;
+mod report;
+mod verdict;
+
+pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, Unproject};
+pub use angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
+pub use argon_table2::{ARGON_TABLE_2, Table2};
+pub use cause::Cause;
+pub use report::{Figure, GroupScore, Score, names};
+pub use verdict::{FrameVerdict, Taken, Verdict, VerdictRow};
