@@ -52,13 +52,13 @@ fn not_sound(outcome: &Outcome, setup: &Setup) -> Option<String> {
             return Some(format!("the target is not on the detector: ({}, {})", position.x, position.y));
         }
         if let Some(los) = &measurement.line_of_sight
-            && !((los.vector().norm() - 1.0).abs() < 1e-6)
+            && !is_one(los.vector().norm())
         {
             return Some(format!("the line of sight is not a unit vector: {los:?}"));
         }
     }
     if let Some(attitude) = &outcome.camera_from_icrs
-        && !((attitude.quaternion().norm() - 1.0).abs() < 1e-6)
+        && !is_one(attitude.quaternion().norm())
     {
         return Some(format!("the camera's attitude is not a unit quaternion: {attitude:?}"));
     }
@@ -69,6 +69,11 @@ fn not_sound(outcome: &Outcome, setup: &Setup) -> Option<String> {
             !(cluster.position.x.is_finite() && cluster.position.y.is_finite() && cluster.size.is_finite())
         })
         .map(|cluster| format!("a cluster is not finite: {cluster:?}"))
+}
+
+/// Whether a norm is that of a unit; never so for a NaN.
+fn is_one(norm: f64) -> bool {
+    (norm - 1.0).abs() < 1e-6
 }
 
 /// A short sequence with every kind of frame that has broken a pipeline.

@@ -61,8 +61,7 @@ impl<To, From> Rotation<To, From> {
         let [w, x, y, z] = wxyz;
         let quaternion = Quaternion::new(w, x, y, z);
         let norm = quaternion.norm();
-        // Negated, so that a NaN is refused as well.
-        if !((norm - 1.0).abs() <= 1e-5) {
+        if norm.is_nan() || (norm - 1.0).abs() > 1e-5 {
             return Err(ContractError::NotUnit { wxyz, norm });
         }
         Ok(Self::from_unit_quaternion(if (norm - 1.0).abs() < 1e-12 {
