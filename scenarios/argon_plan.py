@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Plans the approach of the scenario `argon`: prints its orbit and schedule as TOML, or a check of them with --check.
 
-    python3 scenarios/argon_plan.py > scenarios/argon_orbit.toml.txt
-    python3 scenarios/argon_plan.py --check
+    python3 scenarios/argon_plan.py            # prints [orbit] and [[schedule]], to be put into scenarios/argon.toml
+    python3 scenarios/argon_plan.py --check    # prints ranges, field angles, light
 
 The seed paper gives the frame of the ARGON experiment (30 km to 3 km, 23 to 27 April 2012, about 16 km on 25 April
 11:30 to 13:00 UTC, a relative orbit that shrinks) and no manoeuvre. Everything else here is assumed. The plan is
@@ -241,7 +241,7 @@ def chaser_at(arcs, t):
 
 
 def stamp(t):
-    return (EPOCH + timedelta(seconds=t)).strftime("%Y-%m-%dT%H:%M:%S")
+    return (EPOCH + timedelta(seconds=t)).strftime("%Y-%m-%dT%H:%M:%SZ")
 
 
 def toml():
@@ -276,7 +276,7 @@ def toml():
         lines += ["", "[[orbit.manoeuvres]]", f'time_utc = "{stamp(t)}"', f"dv_rtn_m_s = [{components}]"]
     lines += ["", "# Counts from the paper; hours and cadence assumed."]
     for name, start, count in DAYS:
-        lines += ["[[schedule]]", f'name = "{name}"', f'start_utc = "{start}"', f"cadence_s = {CADENCE_S}",
+        lines += ["[[schedule]]", f'name = "{name}"', f'start_utc = "{start}Z"', f"cadence_s = {CADENCE_S}",
                   f"count = {count}", ""]
     return "\n".join(lines).rstrip()
 

@@ -17,7 +17,8 @@ fn dependencies_point_down_and_nowhere_else() {
         .packages
         .iter()
         .map(|package| {
-            let targets = package.dependencies.iter().map(|d| d.name.clone()).filter(|name| ours.contains(name));
+            let targets =
+                package.dependencies.iter().map(|d| d.name.clone()).filter(|name| ours.contains(name));
             (package.name.to_string(), targets.collect())
         })
         .collect();

@@ -15,7 +15,7 @@ struct Fragment {
 }
 
 fn fragment() -> Fragment {
-    toml::from_str(include_str!("../../scenarios/argon_orbit.toml.txt")).expect("the fragment reads")
+    toml::from_str(include_str!("../../scenarios/argon.toml")).expect("the scenario has orbit and schedule")
 }
 
 fn noon(day: u8) -> Epoch {

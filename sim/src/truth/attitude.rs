@@ -124,7 +124,7 @@ pub(crate) mod tests {
 
     pub(crate) fn trajectory() -> Trajectory {
         Trajectory::new(&OrbitConfig {
-            epoch_utc: "2012-04-23T00:00:00".into(),
+            epoch_utc: "2012-04-23T00:00:00Z".into(),
             target: ElementsConfig {
                 semi_major_axis_km: 7130.0,
                 eccentricity: 0.0,

@@ -48,6 +48,17 @@ pub fn parse_utc(text: &str) -> Result<Epoch, SimError> {
     }
 }
 
+/// As [`parse_utc`]; an error names `field`, the path in the scenario.
+///
+/// # Errors
+/// Those of [`parse_utc`].
+pub(crate) fn parse_utc_of(field: &'static str, text: &str) -> Result<Epoch, SimError> {
+    parse_utc(text).map_err(|error| match error {
+        SimError::Parameter { value, expected, .. } => SimError::Parameter { field, value, expected },
+        other => other,
+    })
+}
+
 /// Writes an instant as UTC in ISO 8601 with nine decimals and `Z`; inside a leap second the second is 60.
 ///
 /// Before 1972, where UTC was another thing, the text is that of TAI − 10 s.

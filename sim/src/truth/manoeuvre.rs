@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::clock::parse_utc_of;
 use super::orbit::{Elements, State};
-use super::schedule::parse_utc;
 use crate::SimError;
 
 /// An impulse given to the chaser.
@@ -35,7 +35,7 @@ impl ManoeuvreConfig {
 
     /// When.
     pub(crate) fn time(&self) -> Result<Epoch, SimError> {
-        parse_utc("orbit.manoeuvres[].time_utc", &self.time_utc)
+        parse_utc_of("orbit.manoeuvres[].time_utc", &self.time_utc)
     }
 
     /// The orbit after the impulse, from the orbit just before: the position stays, the velocity changes, exactly.
@@ -81,7 +81,7 @@ mod tests {
     };
 
     fn impulse(dv_rtn_m_s: [f64; 3]) -> RelativeElements {
-        let manoeuvre = ManoeuvreConfig { time_utc: "2012-04-23T00:00:00".into(), dv_rtn_m_s };
+        let manoeuvre = ManoeuvreConfig { time_utc: "2012-04-23T00:00:00Z".into(), dv_rtn_m_s };
         RelativeElements::between(&manoeuvre.apply(&CIRCULAR).unwrap(), &CIRCULAR)
     }
 
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn an_impulse_leaves_the_position_where_it_was() {
         let manoeuvre =
-            ManoeuvreConfig { time_utc: "2012-04-23T00:00:00".into(), dv_rtn_m_s: [1.0, -2.0, 3.0] };
+            ManoeuvreConfig { time_utc: "2012-04-23T00:00:00Z".into(), dv_rtn_m_s: [1.0, -2.0, 3.0] };
         let before = Elements { eccentricity: 0.003, ..CIRCULAR };
         let after = manoeuvre.apply(&before).unwrap();
         // Rounding of 7130 km: 1e-12 km, through the angles a few times.
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn an_impulse_that_is_not_a_number_is_refused_by_its_index() {
         let manoeuvre =
-            ManoeuvreConfig { time_utc: "2012-04-23T00:00:00".into(), dv_rtn_m_s: [f64::NAN, 0.0, 0.0] };
+            ManoeuvreConfig { time_utc: "2012-04-23T00:00:00Z".into(), dv_rtn_m_s: [f64::NAN, 0.0, 0.0] };
         assert!(manoeuvre.check(3).unwrap_err().to_string().contains("manoeuvre 3"));
     }
 }

@@ -10,10 +10,10 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::clock::parse_utc_of;
 use super::manoeuvre::ManoeuvreConfig;
 use super::orbit::{Elements, ElementsConfig, Rtn, State};
 use super::relative::RelativeElements;
-use super::schedule::parse_utc;
 use crate::SimError;
 
 /// Orbits of target and chaser.
@@ -99,7 +99,7 @@ impl Trajectory {
     /// [`SimError::Parameter`] for a time that is none, an orbit outside what is supported, or a manoeuvre (named by
     /// its index) that is out of order, not after the epoch, or leaves no supported orbit.
     pub fn new(config: &OrbitConfig) -> Result<Self, SimError> {
-        let epoch = parse_utc("orbit.epoch_utc", &config.epoch_utc)?;
+        let epoch = parse_utc_of("orbit.epoch_utc", &config.epoch_utc)?;
         let target = config.target.elements()?;
         config.relative.check()?;
         let chaser = config.relative.chaser(&target);
@@ -178,7 +178,7 @@ mod tests {
         let manoeuvre =
             |time_utc: &str, dv_rtn_m_s| ManoeuvreConfig { time_utc: time_utc.into(), dv_rtn_m_s };
         OrbitConfig {
-            epoch_utc: "2012-04-23T00:00:00".into(),
+            epoch_utc: "2012-04-23T00:00:00Z".into(),
             target: ElementsConfig {
                 semi_major_axis_km: 7130.0,
                 eccentricity: 0.003,
@@ -189,8 +189,8 @@ mod tests {
             },
             relative: RelativeElements { a_dlambda_m: -30_000.0, a_dey_m: 400.0, ..Default::default() },
             manoeuvres: vec![
-                manoeuvre("2012-04-23T06:00:00", [0.0, -0.02, 0.01]),
-                manoeuvre("2012-04-23T06:50:00", [0.001, 0.01, 0.0]),
+                manoeuvre("2012-04-23T06:00:00Z", [0.0, -0.02, 0.01]),
+                manoeuvre("2012-04-23T06:50:00Z", [0.001, 0.01, 0.0]),
             ],
         }
     }
@@ -234,9 +234,9 @@ mod tests {
             config.manoeuvres[k].time_utc = time.into();
             config.check().unwrap_err().to_string()
         };
-        assert!(with(0, "2012-04-22T23:00:00").contains("manoeuvre 0"));
-        assert!(with(1, "2012-04-23T05:00:00").contains("manoeuvre 1"));
-        assert!(with(1, "2012-04-23T06:00:00").contains("manoeuvre 1"));
+        assert!(with(0, "2012-04-22T23:00:00Z").contains("manoeuvre 0"));
+        assert!(with(1, "2012-04-23T05:00:00Z").contains("manoeuvre 1"));
+        assert!(with(1, "2012-04-23T06:00:00Z").contains("manoeuvre 1"));
         assert!(with(1, "soon").contains("time_utc"));
     }
 
@@ -250,9 +250,9 @@ mod tests {
     #[test]
     fn a_leap_second_is_counted() {
         // 2012-06-30 had 86401 seconds.
-        let config = OrbitConfig { epoch_utc: "2012-06-30T00:00:00".into(), manoeuvres: vec![], ..config() };
+        let config = OrbitConfig { epoch_utc: "2012-06-30T00:00:00Z".into(), manoeuvres: vec![], ..config() };
         let trajectory = Trajectory::new(&config).unwrap();
-        let next_day = parse_utc("time", "2012-07-01T00:00:00").unwrap();
+        let next_day = parse_utc_of("time", "2012-07-01T00:00:00Z").unwrap();
         assert_eq!(trajectory.seconds(next_day), 86_401.0);
         assert_eq!(trajectory.seconds(trajectory.epoch() - hifitime::Duration::from_seconds(1.5)), -1.5);
     }
