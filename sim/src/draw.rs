@@ -1,0 +1,187 @@
+//! The expected image: photo-electrons before any noise.
+
+use crate::optics::Stamp;
+
+/// Expected photo-electrons of a frame: a flat level, and signal where something was drawn.
+///
+/// Most pixels of a star field hold the flat level and nothing else. The image knows which ones do not, so that
+/// clearing it, and drawing the noise, cost as much as there is signal. It is reused from frame to frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExpectedImage {
+    columns: usize,
+    rows: usize,
+    flat_e: f64,
+    /// Electrons above the flat level, row by row.
+    signal: Vec<f64>,
+    /// One bit a pixel, `words_per_row` words a row: whether something was drawn there.
+    drawn: Vec<u64>,
+    words_per_row: usize,
+}
+
+impl ExpectedImage {
+    /// An image without light.
+    pub fn new(columns: usize, rows: usize) -> Self {
+        let words_per_row = columns.div_ceil(64);
+        Self {
+            columns,
+            rows,
+            flat_e: 0.0,
+            signal: vec![0.0; columns * rows],
+            drawn: vec![0; words_per_row * rows],
+            words_per_row,
+        }
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> (usize, usize) {
+        (self.columns, self.rows)
+    }
+
+    /// Takes away everything drawn and sets the flat level, electrons a pixel.
+    pub fn clear(&mut self, flat_e: f64) {
+        for (row, words) in self
+            .signal
+            .chunks_exact_mut(self.columns.max(1))
+            .zip(self.drawn.chunks_exact_mut(self.words_per_row.max(1)))
+        {
+            for (pixels, word) in row.chunks_mut(64).zip(words) {
+                if *word != 0 {
+                    pixels.fill(0.0);
+                    *word = 0;
+                }
+            }
+        }
+        self.flat_e = flat_e;
+    }
+
+    /// Raises the flat level of every pixel, electrons.
+    pub fn add_flat(&mut self, electrons: f64) {
+        self.flat_e += electrons;
+    }
+
+    /// Adds the image of an object. Pixels of the stamp that lie off the image are left out.
+    pub fn add(&mut self, stamp: &Stamp) {
+        for (x, y, row) in stamp.rows() {
+            if y >= self.rows || x >= self.columns {
+                continue;
+            }
+            let row = &row[..row.len().min(self.columns - x)];
+            // Only from the first to the last pixel that has light.
+            let Some(first) = row.iter().position(|&electrons| electrons > 0.0) else { continue };
+            let end = row.iter().rposition(|&electrons| electrons > 0.0).map_or(first, |last| last + 1);
+            let start = y * self.columns + x;
+            for (pixel, electrons) in self.signal[start + first..start + end].iter_mut().zip(&row[first..end])
+            {
+                *pixel += electrons;
+            }
+            self.mark(y, x + first, x + end);
+        }
+    }
+
+    /// Adds electrons to one pixel; outside the image nothing happens.
+    pub fn add_pixel(&mut self, x: usize, y: usize, electrons: f64) {
+        if x < self.columns && y < self.rows {
+            self.signal[y * self.columns + x] += electrons;
+            self.mark(y, x, x + 1);
+        }
+    }
+
+    /// The flat level, electrons a pixel.
+    pub fn flat_e(&self) -> f64 {
+        self.flat_e
+    }
+
+    /// Expected electrons of a pixel, flat level included.
+    pub fn at(&self, x: usize, y: usize) -> f64 {
+        self.flat_e + self.signal[y * self.columns + x]
+    }
+
+    /// Expected electrons of all pixels, row by row, flat level included.
+    pub fn iter(&self) -> impl Iterator<Item = f64> {
+        self.signal.iter().map(|signal| self.flat_e + signal)
+    }
+
+    /// Index (row by row) and electrons above the flat level of every pixel where something was drawn, in the order
+    /// of the image.
+    pub fn drawn(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.drawn.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(move |(i, &word)| {
+            let (row, column) = (i / self.words_per_row, i % self.words_per_row * 64);
+            let first = row * self.columns + column;
+            SetBits(word).map(move |bit| (first + bit, self.signal[first + bit]))
+        })
+    }
+
+    /// Marks columns `from..to` of a row as drawn.
+    fn mark(&mut self, y: usize, from: usize, to: usize) {
+        for word in from / 64..to.div_ceil(64) {
+            let start = from.max(word * 64) - word * 64;
+            let length = to.min((word + 1) * 64) - word * 64 - start;
+            self.drawn[y * self.words_per_row + word] |= (u64::MAX >> (64 - length)) << start;
+        }
+    }
+}
+
+/// The places of the ones in a word, lowest first.
+struct SetBits(u64);
+
+impl Iterator for SetBits {
+    type Item = usize;
+    fn next(&mut self) -> Option<usize> {
+        if self.0 == 0 {
+            return None;
+        }
+        let bit = self.0.trailing_zeros() as usize;
+        self.0 &= self.0 - 1;
+        Some(bit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::{Psf, PsfConfig};
+    use contract::PixelPoint;
+
+    fn star(image: &mut ExpectedImage, x: f64, y: f64) {
+        let mut psf = Psf::new(&PsfConfig::Gaussian { sigma_px: 2.0 }).unwrap();
+        let mut stamp = Stamp::new();
+        psf.stamp(PixelPoint::new(x, y), 1e4, 0.01, image.size(), &mut stamp);
+        image.add(&stamp);
+    }
+
+    #[test]
+    fn every_pixel_that_differs_from_the_flat_level_is_told_once_and_in_order() {
+        let mut image = ExpectedImage::new(150, 70);
+        image.clear(5.0);
+        for (x, y) in [(64.0, 30.0), (66.0, 31.0), (0.0, 0.0), (149.0, 69.0), (127.5, 5.0)] {
+            star(&mut image, x, y);
+        }
+        image.add_pixel(63, 60, 7.0);
+        let told: Vec<usize> = image.drawn().map(|(index, _)| index).collect();
+        assert!(told.windows(2).all(|pair| pair[0] < pair[1]));
+        let differ: Vec<usize> =
+            image.iter().enumerate().filter(|(_, e)| *e != 5.0).map(|(i, _)| i).collect();
+        assert_eq!(told, differ);
+        assert_eq!(image.at(63, 60), 12.0);
+    }
+
+    #[test]
+    fn a_cleared_image_is_as_good_as_new() {
+        let mut image = ExpectedImage::new(150, 70);
+        star(&mut image, 64.0, 30.0);
+        image.add_pixel(149, 69, 3.0);
+        image.clear(0.0);
+        assert_eq!(image, ExpectedImage::new(150, 70));
+    }
+
+    #[test]
+    fn a_stamp_made_for_a_larger_detector_is_clipped() {
+        let mut image = ExpectedImage::new(10, 10);
+        let mut stamp = Stamp::new();
+        let mut psf = Psf::new(&PsfConfig::Gaussian { sigma_px: 2.0 }).unwrap();
+        psf.stamp(PixelPoint::new(9.0, 9.0), 1e4, 0.01, (100, 100), &mut stamp);
+        image.add(&stamp);
+        image.add_pixel(10, 0, 1.0);
+        assert!(image.iter().sum::<f64>() < 5e3);
+    }
+}

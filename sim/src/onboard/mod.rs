@@ -1,0 +1,9 @@
+//! On board: shutter control, regions of interest, and what is sent to the ground.
+
+mod downlink;
+mod roi;
+mod shutter;
+
+pub use downlink::{downlink, downlink_bytes};
+pub use roi::{RoiConfig, RoiExtractor};
+pub use shutter::{Shutter, ShutterConfig};

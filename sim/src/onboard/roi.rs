@@ -1,0 +1,256 @@
+//! Regions of interest: the camera keeps fixed rectangles around bright pixels and drops the rest.
+//!
+//! The camera of the far-range paper (sections 3 and 4) sends regions of fixed size. It meets an object at its
+//! topmost bright row, so the region's place hangs on the top of the object: one taller than the region keeps its
+//! top and loses its bottom. That cuts in y, not in x, and spoils the declination.
+
+use contract::Window;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::sensor::RawImage;
+
+/// Regions of interest of a fixed size.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RoiConfig {
+    /// Regions in a frame at most, 1 to 10000. Of more objects, those with the brightest pixel are kept.
+    pub count: usize,
+    /// Columns of a region, 1 to the columns of the detector.
+    pub columns: usize,
+    /// Rows of a region, 1 to the rows of the detector.
+    pub rows: usize,
+    /// Column of the region in which the first bright pixel of an object lies, from 0, below `columns`.
+    pub anchor_column: usize,
+    /// Row of the region in which the first bright pixel of an object lies, from 0, below `rows`.
+    pub anchor_row: usize,
+    /// A pixel is bright when its digital number is above this, 0 to 65535.
+    pub threshold_dn: u16,
+}
+
+impl RoiConfig {
+    /// Checks every number against a detector of `columns` × `rows`.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first field outside its range.
+    pub fn check(&self, columns: usize, rows: usize) -> Result<(), SimError> {
+        let side = |limit: usize| move |v: f64| v >= 1.0 && v <= limit as f64;
+        require("roi.count", self.count as f64, "1 to 10000", side(10_000))?;
+        require("roi.columns", self.columns as f64, "1 to the detector's columns", side(columns))?;
+        require("roi.rows", self.rows as f64, "1 to the detector's rows", side(rows))?;
+        require("roi.anchor_column", self.anchor_column as f64, "0 to roi.columns − 1", |v| {
+            v < self.columns as f64
+        })?;
+        require("roi.anchor_row", self.anchor_row as f64, "0 to roi.rows − 1", |v| v < self.rows as f64)
+    }
+}
+
+/// Finds the regions of a frame, as the camera does. Reused from frame to frame.
+#[derive(Debug, Clone)]
+pub struct RoiExtractor {
+    config: RoiConfig,
+    /// Pixels that belong to an object already met; all false between frames.
+    taken: Vec<bool>,
+    /// Pixels of the object at hand, column and row.
+    pixels: Vec<(usize, usize)>,
+}
+
+/// An object as the camera meets it.
+#[derive(Debug, Clone, Copy)]
+struct Blob {
+    first: (usize, usize),
+    peak_dn: u16,
+}
+
+impl RoiExtractor {
+    /// The extractor for a detector of `columns` × `rows`.
+    ///
+    /// # Errors
+    /// Those of [`RoiConfig::check`].
+    pub fn new(config: &RoiConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
+        config.check(columns, rows)?;
+        Ok(Self { config: config.clone(), taken: vec![false; columns * rows], pixels: Vec::new() })
+    }
+
+    /// The regions of an image, in the order of the scan (by rows from the top, each from the left).
+    ///
+    /// A bright pixel that belongs to no object met before is a new object: the bright pixels connected to it, by
+    /// edges or corners. The region is laid so that this first pixel is at the anchor, and shifted, not shrunk, where
+    /// it would leave the image. Regions of neighbouring objects may overlap. When there are too many, those of the
+    /// brightest peaks are kept; of equal peaks, the one met first.
+    pub fn extract(&mut self, image: &RawImage) -> Vec<Window> {
+        let mut blobs = self.blobs(image);
+        if blobs.len() > self.config.count {
+            // Stable: equal peaks stay in the order of the scan.
+            blobs.sort_by_key(|blob| std::cmp::Reverse(blob.peak_dn));
+            blobs.truncate(self.config.count);
+            blobs.sort_by_key(|blob| (blob.first.1, blob.first.0));
+        }
+        blobs.iter().map(|blob| self.window_at(blob.first, image.size())).collect()
+    }
+
+    fn window_at(&self, first: (usize, usize), size: (usize, usize)) -> Window {
+        let RoiConfig { columns, rows, anchor_column, anchor_row, .. } = self.config;
+        Window {
+            x: first.0.saturating_sub(anchor_column).min(size.0.saturating_sub(columns)),
+            y: first.1.saturating_sub(anchor_row).min(size.1.saturating_sub(rows)),
+            columns: columns.min(size.0),
+            rows: rows.min(size.1),
+        }
+    }
+
+    /// All objects, in the order of the scan.
+    fn blobs(&mut self, image: &RawImage) -> Vec<Blob> {
+        /// Pixels looked at in one go: nearly all such pieces of a row are dark.
+        const PIECE: usize = 64;
+        let (columns, rows) = image.size();
+        let threshold = self.config.threshold_dn;
+        let dn = image.dn();
+        self.taken.resize(columns * rows, false);
+        let mut blobs = Vec::new();
+        let mut all_taken = Vec::new();
+        for (p, piece) in dn.chunks(PIECE).enumerate() {
+            if piece.iter().fold(0, |peak, &dn| peak.max(dn)) <= threshold {
+                continue;
+            }
+            for index in p * PIECE..p * PIECE + piece.len() {
+                if dn[index] > threshold && !self.taken[index] {
+                    blobs.push(self.take_blob(image, (index % columns, index / columns)));
+                    all_taken.append(&mut self.pixels);
+                }
+            }
+        }
+        for (x, y) in all_taken {
+            self.taken[y * columns + x] = false;
+        }
+        blobs
+    }
+
+    /// Takes the bright pixels connected to `first` and leaves them in `self.pixels`.
+    fn take_blob(&mut self, image: &RawImage, first: (usize, usize)) -> Blob {
+        let (columns, rows) = image.size();
+        let dn = image.dn();
+        let mut peak_dn = 0;
+        self.taken[first.1 * columns + first.0] = true;
+        self.pixels.push(first);
+        let mut next = 0;
+        while let Some(&(x, y)) = self.pixels.get(next) {
+            next += 1;
+            peak_dn = peak_dn.max(dn[y * columns + x]);
+            for near_y in y.saturating_sub(1)..(y + 2).min(rows) {
+                for near_x in x.saturating_sub(1)..(x + 2).min(columns) {
+                    let index = near_y * columns + near_x;
+                    if dn[index] > self.config.threshold_dn && !self.taken[index] {
+                        self.taken[index] = true;
+                        self.pixels.push((near_x, near_y));
+                    }
+                }
+            }
+        }
+        Blob { first, peak_dn }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sensor::RawImage;
+
+    fn config() -> RoiConfig {
+        RoiConfig { count: 10, columns: 8, rows: 6, anchor_column: 4, anchor_row: 1, threshold_dn: 100 }
+    }
+
+    /// An image of 100 × 50 with bright rectangles (x, y, columns, rows, DN).
+    fn image(blobs: &[(usize, usize, usize, usize, u16)]) -> RawImage {
+        let mut dn = vec![50; 5000];
+        for &(x, y, columns, rows, value) in blobs {
+            for row in y..y + rows {
+                dn[row * 100 + x..row * 100 + x + columns].fill(value);
+            }
+        }
+        RawImage::from_dn(100, 50, 12, dn)
+    }
+
+    fn windows(config: &RoiConfig, blobs: &[(usize, usize, usize, usize, u16)]) -> Vec<Window> {
+        RoiExtractor::new(config, 100, 50).unwrap().extract(&image(blobs))
+    }
+
+    fn window(x: usize, y: usize) -> Window {
+        Window { x, y, columns: 8, rows: 6 }
+    }
+
+    #[test]
+    fn a_small_object_is_whole() {
+        let found = windows(&config(), &[(30, 20, 3, 3, 200)]);
+        assert_eq!(found, [window(26, 19)]);
+        assert!((30..33).all(|x| (20..23).all(|y| found[0].contains(x, y))));
+    }
+
+    #[test]
+    fn a_tall_object_loses_its_bottom_and_nothing_else() {
+        let found = windows(&config(), &[(30, 20, 3, 9, 200)]);
+        assert_eq!(found, [window(26, 19)]);
+        let kept = |y| (30..33).all(|x| found[0].contains(x, y));
+        assert!((20..25).all(kept) && !(25..29).any(kept));
+    }
+
+    /// The first pixel met is the leftmost of the topmost row: the anchor leaves room on both sides.
+    #[test]
+    fn a_round_object_is_not_cut_in_x() {
+        let found = windows(&config(), &[(32, 20, 2, 1, 200), (31, 21, 4, 1, 200), (30, 22, 6, 7, 200)]);
+        assert_eq!(found, [window(28, 19)]);
+        assert!((30..36).all(|x| found[0].contains(x, 22)));
+    }
+
+    #[test]
+    fn pixels_that_touch_at_a_corner_are_one_object() {
+        assert_eq!(
+            windows(&config(), &[(30, 20, 1, 1, 200), (31, 21, 1, 1, 200), (30, 22, 1, 1, 300)]).len(),
+            1
+        );
+        assert_eq!(windows(&config(), &[(30, 20, 1, 1, 200), (32, 20, 1, 1, 200)]).len(), 2);
+    }
+
+    #[test]
+    fn of_too_many_objects_the_brightest_are_kept_in_the_order_of_the_scan() {
+        let config = RoiConfig { count: 2, ..config() };
+        let found = windows(&config, &[(10, 5, 1, 1, 300), (50, 10, 1, 1, 200), (30, 20, 1, 1, 900)]);
+        assert_eq!(found, [window(6, 4), window(26, 19)]);
+        let found = windows(&config, &[(10, 5, 1, 1, 300), (50, 10, 1, 1, 300), (30, 20, 1, 1, 300)]);
+        assert_eq!(found, [window(6, 4), window(46, 9)]);
+    }
+
+    #[test]
+    fn at_a_border_a_region_is_shifted_and_keeps_its_size() {
+        let found = windows(&config(), &[(0, 0, 1, 1, 200), (99, 0, 1, 1, 200), (99, 49, 1, 1, 200)]);
+        assert_eq!(found, [window(0, 0), window(92, 0), window(92, 44)]);
+    }
+
+    #[test]
+    fn the_threshold_itself_is_not_bright() {
+        assert!(windows(&config(), &[(30, 20, 3, 3, 100)]).is_empty());
+        assert_eq!(windows(&config(), &[(30, 20, 3, 3, 101)]).len(), 1);
+    }
+
+    #[test]
+    fn one_frame_leaves_nothing_for_the_next() {
+        let mut extractor = RoiExtractor::new(&config(), 100, 50).unwrap();
+        let first = extractor.extract(&image(&[(30, 20, 3, 9, 200)]));
+        assert_eq!(extractor.extract(&image(&[])), []);
+        assert_eq!(extractor.extract(&image(&[(30, 20, 3, 9, 200)])), first);
+    }
+
+    #[test]
+    fn a_frame_that_is_bright_all_over_is_one_object() {
+        assert_eq!(windows(&config(), &[(0, 0, 100, 50, 200)]), [window(0, 0)]);
+    }
+
+    #[test]
+    fn a_region_larger_than_the_detector_is_refused() {
+        let error = RoiExtractor::new(&RoiConfig { columns: 101, ..config() }, 100, 50).unwrap_err();
+        assert!(error.to_string().contains("roi.columns"));
+        assert!(RoiConfig { anchor_row: 6, ..config() }.check(100, 50).is_err());
+    }
+}

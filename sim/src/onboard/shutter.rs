@@ -1,0 +1,168 @@
+//! Shutter control: the exposure as a function of the brightest object, without memory.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+
+/// How the exposure is chosen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "mode", rename_all = "snake_case", deny_unknown_fields)]
+pub enum ShutterConfig {
+    /// Always the same.
+    Fixed {
+        /// Exposure, s, 1e-6 to 1000.
+        exposure_s: f64,
+    },
+    /// Shortened as the brightest object grows, so that it is not over-exposed.
+    Automatic {
+        /// Shortest exposure, s, 1e-6 to `max_s`.
+        min_s: f64,
+        /// Longest exposure, s, up to 1000.
+        max_s: f64,
+        /// Level that the brightest object's peak pixel may reach, as a fraction of saturation, in (0, 1].
+        target_level: f64,
+        /// Ratio of neighbouring exposures of the ladder that the camera can command, 1.001 to 100.
+        step_factor: f64,
+        /// Age of the brightness that the control acts on, s, 0 to 1e5.
+        lag_s: f64,
+    },
+}
+
+impl ShutterConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        let exposure = |v: f64| (1e-6..=1000.0).contains(&v);
+        match *self {
+            Self::Fixed { exposure_s } => require("shutter.exposure_s", exposure_s, "1e-6 to 1000", exposure),
+            Self::Automatic { min_s, max_s, target_level, step_factor, lag_s } => {
+                require("shutter.max_s", max_s, "1e-6 to 1000", exposure)?;
+                require("shutter.min_s", min_s, "1e-6 to shutter.max_s", |v| exposure(v) && v <= max_s)?;
+                require("shutter.target_level", target_level, "in (0, 1]", |v| v > 0.0 && v <= 1.0)?;
+                require("shutter.step_factor", step_factor, "1.001 to 100", |v| {
+                    (1.001..=100.0).contains(&v)
+                })?;
+                require("shutter.lag_s", lag_s, "0 to 1e5", |v| (0.0..=1e5).contains(&v))
+            }
+        }
+    }
+}
+
+/// A shutter control. What a real one remembers is replaced by what it would have seen: it is given the brightness
+/// at the time of the frame minus [`Shutter::lag_s`], so that any frame can be computed alone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shutter {
+    config: ShutterConfig,
+    saturation_e: f64,
+}
+
+impl Shutter {
+    /// The control of a camera whose pixels saturate at `saturation_e` electrons.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for a number out of range.
+    pub fn new(config: &ShutterConfig, saturation_e: f64) -> Result<Self, SimError> {
+        config.check()?;
+        require("saturation of the sensor, e⁻", saturation_e, "greater than 0", |v| v > 0.0)?;
+        Ok(Self { config: config.clone(), saturation_e })
+    }
+
+    /// How long before a frame the brightness is to be taken, s; 0 for a fixed exposure.
+    pub fn lag_s(&self) -> f64 {
+        match self.config {
+            ShutterConfig::Fixed { .. } => 0.0,
+            ShutterConfig::Automatic { lag_s, .. } => lag_s,
+        }
+    }
+
+    /// The exposure, s, for the expected electrons a second in the peak pixel of the brightest object in the field
+    /// that the control looks at; `None` when there is none.
+    ///
+    /// The longest of the ladder max_s/factor^n that keeps the peak at or below its level, within [min_s, max_s].
+    pub fn exposure_s(&self, peak_rate_e_per_s: Option<f64>) -> f64 {
+        match self.config {
+            ShutterConfig::Fixed { exposure_s } => exposure_s,
+            ShutterConfig::Automatic { min_s, max_s, target_level, step_factor, .. } => {
+                let rate = peak_rate_e_per_s.unwrap_or(0.0);
+                // Negated, so that no light and a NaN both leave the shutter open.
+                if !(rate * max_s > target_level * self.saturation_e) {
+                    return max_s;
+                }
+                let ideal_s = target_level * self.saturation_e / rate;
+                let rungs = (libm::log(max_s / ideal_s) / libm::log(step_factor)).ceil();
+                (max_s * libm::pow(step_factor, -rungs)).max(min_s)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn automatic() -> ShutterConfig {
+        ShutterConfig::Automatic {
+            min_s: 0.001,
+            max_s: 1.0,
+            target_level: 0.8,
+            step_factor: libm::pow(2.0, 0.25),
+            lag_s: 30.0,
+        }
+    }
+
+    fn exposure_s(rate: f64) -> f64 {
+        Shutter::new(&automatic(), 40_000.0).unwrap().exposure_s(Some(rate))
+    }
+
+    #[test]
+    fn the_peak_stays_below_its_level_and_within_a_step_of_it() {
+        let mut rate = 32_001.0;
+        while rate < 3e7 {
+            let peak = rate * exposure_s(rate);
+            // The rounding of pow and log: 1e-12 of the level.
+            assert!(peak <= 32_000.0 * (1.0 + 1e-12), "{rate}: {peak}");
+            assert!(peak > 32_000.0 / 1.19, "{rate}: {peak}");
+            rate *= 1.037;
+        }
+    }
+
+    #[test]
+    fn exposures_lie_on_the_ladder() {
+        for rate in [4e4, 1e5, 7.7e5, 9e6] {
+            let rungs = -4.0 * libm::log2(exposure_s(rate));
+            assert!((rungs - rungs.round()).abs() < 1e-9, "{rungs}");
+        }
+    }
+
+    #[test]
+    fn the_limits_hold() {
+        assert_eq!(exposure_s(0.0), 1.0);
+        assert_eq!(exposure_s(100.0), 1.0);
+        assert_eq!(exposure_s(1e12), 0.001);
+        assert_eq!(exposure_s(f64::INFINITY), 0.001);
+        assert_eq!(exposure_s(f64::NAN), 1.0);
+        assert_eq!(Shutter::new(&automatic(), 4e4).unwrap().exposure_s(None), 1.0);
+    }
+
+    #[test]
+    fn a_fixed_shutter_is_fixed() {
+        let shutter = Shutter::new(&ShutterConfig::Fixed { exposure_s: 0.4 }, 4e4).unwrap();
+        assert_eq!((shutter.exposure_s(Some(1e9)), shutter.lag_s()), (0.4, 0.0));
+    }
+
+    #[test]
+    fn a_shortest_exposure_above_the_longest_is_refused() {
+        let config = ShutterConfig::Automatic {
+            min_s: 2.0,
+            max_s: 1.0,
+            target_level: 0.5,
+            step_factor: 2.0,
+            lag_s: 0.0,
+        };
+        assert!(config.check().unwrap_err().to_string().contains("shutter.min_s"));
+    }
+}

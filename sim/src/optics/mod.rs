@@ -1,0 +1,11 @@
+//! Optics: where a direction falls on the detector, and how its light spreads there.
+
+mod projection;
+mod psf;
+mod radiometry;
+mod stamp;
+
+pub use projection::Projection;
+pub use psf::{Psf, PsfConfig};
+pub use radiometry::RadiometryConfig;
+pub use stamp::{Stamp, StampTruth};

@@ -1,0 +1,394 @@
+//! The simulator's camera model: pinhole with Brown's distortion, forwards exactly and backwards by Newton.
+//!
+//! The distortion maps the undistorted offset (u, v) from the principal point to the distorted one. In the form
+//! given at [`contract::Camera`] its Jacobian is symmetric, so that the map is the gradient of a potential: where
+//! the Jacobian is positive definite on a convex set, the potential is strictly convex there and no two points
+//! share an image. That is how a camera whose distortion folds inside the detector is recognised.
+
+use std::f64::consts::PI;
+
+use contract::{Angle, Camera, CameraFrame, Direction, PixelPoint};
+use nalgebra::Vector3;
+
+use crate::SimError;
+
+/// Directions in the camera frame to pixels and back.
+///
+/// ```
+/// use boresight_sim::optics::Projection;
+/// use contract::{Camera, Direction};
+/// let camera = Camera {
+///     columns: 752, rows: 580, focal_length_mm: 20.187, pixel_width_um: 8.6, pixel_height_um: 8.3,
+///     principal_x_px: 395.0, principal_y_px: 288.0, radial: [2.6e-8, 0.0, 0.0], tangential: [0.0, 0.0],
+/// };
+/// let projection = Projection::new(&camera)?;
+/// let boresight = projection.project(&Direction::z()).ok_or("behind the camera")?;
+/// assert_eq!((boresight.x, boresight.y), (395.0, 288.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Projection {
+    columns: usize,
+    rows: usize,
+    /// Focal length, px, along columns and along rows.
+    focal_x_px: f64,
+    focal_y_px: f64,
+    principal: PixelPoint,
+    distortion: Distortion,
+    /// Radius of undistorted offsets, px, within which the distortion is known to be one-to-one.
+    domain_px: f64,
+    half_diagonal: Angle,
+}
+
+impl Projection {
+    /// How far beyond the detector's farthest corner the distortion is followed, as a multiple of its distance.
+    const DOMAIN_FACTOR: f64 = 3.0;
+    /// Points on each side of the detector's border that are tried on construction, corners included.
+    const BORDER_POINTS: usize = 129;
+
+    /// The model of a camera.
+    ///
+    /// # Errors
+    /// [`SimError::Contract`] for a number out of range; [`SimError::Parameter`] when the distortion folds inside
+    /// the detector, so that a pixel has no direction or more than one.
+    pub fn new(camera: &Camera) -> Result<Self, SimError> {
+        camera.check()?;
+        let (focal_x_px, focal_y_px) = camera.focal_length_px();
+        let principal = PixelPoint::new(camera.principal_x_px, camera.principal_y_px);
+        let distortion = Distortion { radial: camera.radial, tangential: camera.tangential };
+        let (right, bottom) = (camera.columns as f64 - 0.5, camera.rows as f64 - 0.5);
+        let corner_px = [(-0.5, -0.5), (right, -0.5), (-0.5, bottom), (right, bottom)]
+            .into_iter()
+            .map(|(x, y)| principal.distance(PixelPoint::new(x, y)))
+            .fold(1.0, f64::max);
+        let mut projection = Self {
+            columns: camera.columns,
+            rows: camera.rows,
+            focal_x_px,
+            focal_y_px,
+            principal,
+            distortion,
+            domain_px: distortion.one_to_one_radius(Self::DOMAIN_FACTOR * corner_px),
+            half_diagonal: Angle::ZERO,
+        };
+        projection.half_diagonal = projection.border_angle().ok_or_else(|| SimError::Parameter {
+            field: "camera.radial, camera.tangential",
+            value: format!("{:?}, {:?}", camera.radial, camera.tangential),
+            expected: "a distortion that does not fold inside the detector",
+        })?;
+        Ok(projection)
+    }
+
+    /// Where a direction falls. The point may lie off the detector.
+    ///
+    /// `None` behind the camera (z ≤ 0), and so far off the detector (more than three times its half diagonal, or
+    /// beyond a fold) that the distortion polynomial means nothing: there it could bring a star from outside the
+    /// field back into it.
+    pub fn project(&self, direction: &Direction<CameraFrame>) -> Option<PixelPoint> {
+        let vector = direction.vector();
+        if vector.z <= 0.0 {
+            return None;
+        }
+        let offset =
+            Offset { u: self.focal_x_px * (vector.x / vector.z), v: self.focal_y_px * (vector.y / vector.z) };
+        // Negated, so that an overflow to NaN is refused as well.
+        if !(offset.length() <= self.domain_px) {
+            return None;
+        }
+        let distorted = self.distortion.apply(offset);
+        Some(PixelPoint::new(self.principal.x + distorted.u, self.principal.y + distorted.v))
+    }
+
+    /// The direction that falls on a point: the inverse of [`Projection::project`], to 1e-12 px and the rounding
+    /// of the coordinates. `None` where no direction does; never so on the detector.
+    pub fn unproject(&self, point: PixelPoint) -> Option<Direction<CameraFrame>> {
+        let distorted = Offset { u: point.x - self.principal.x, v: point.y - self.principal.y };
+        let offset = self.distortion.remove(distorted)?;
+        if !(offset.length() <= self.domain_px) {
+            return None;
+        }
+        let vector = Vector3::new(offset.u / self.focal_x_px, offset.v / self.focal_y_px, 1.0);
+        Direction::from_vector(vector).ok()
+    }
+
+    /// The largest angle between the boresight and a direction that falls on the detector: the radius of the cone
+    /// that holds the whole field, distortion included.
+    pub fn half_diagonal(&self) -> Angle {
+        self.half_diagonal
+    }
+
+    /// Pixels a radian at the boresight, along columns and along rows.
+    pub fn plate_scale_px_per_rad(&self) -> (f64, f64) {
+        (self.focal_x_px, self.focal_y_px)
+    }
+
+    /// Columns and rows of the detector.
+    pub fn detector(&self) -> (usize, usize) {
+        (self.columns, self.rows)
+    }
+
+    /// The largest angle to the boresight on the detector's border; `None` when a point of it has no direction.
+    ///
+    /// The disk on which the distortion is one-to-one has an image without holes, so when it holds the border it
+    /// holds the detector; and an angle to the boresight has no maximum inside, so the border has the largest.
+    fn border_angle(&self) -> Option<Angle> {
+        let (width, height) = (self.columns as f64, self.rows as f64);
+        let mut largest = 0.0_f64;
+        for i in 0..Self::BORDER_POINTS {
+            let t = i as f64 / (Self::BORDER_POINTS - 1) as f64;
+            for (across, down) in [(t, 0.0), (t, 1.0), (0.0, t), (1.0, t)] {
+                let point = PixelPoint::new(across * width - 0.5, down * height - 0.5);
+                let direction = self.unproject(point)?;
+                largest = largest.max(direction.separation(&Direction::z()).radians());
+            }
+        }
+        Some(Angle::from_radians(largest))
+    }
+}
+
+/// An offset from the principal point, px.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Offset {
+    u: f64,
+    v: f64,
+}
+
+impl Offset {
+    fn length(self) -> f64 {
+        libm::hypot(self.u, self.v)
+    }
+}
+
+/// The symmetric Jacobian of the distortion.
+struct Jacobian {
+    uu: f64,
+    uv: f64,
+    vv: f64,
+}
+
+impl Jacobian {
+    fn determinant(&self) -> f64 {
+        self.uu * self.vv - self.uv * self.uv
+    }
+
+    fn is_positive_definite(&self) -> bool {
+        self.uu > 0.0 && self.determinant() > 0.0
+    }
+}
+
+/// Brown's radial and tangential distortion on pixel offsets (formula at [`contract::Camera`]).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Distortion {
+    radial: [f64; 3],
+    tangential: [f64; 2],
+}
+
+impl Distortion {
+    /// Rings and rays on which the Jacobian is tried.
+    const RINGS: usize = 256;
+    const RAYS: usize = 64;
+    /// Newton's method doubles its digits; with the halved steps of a bad start it stays far below this.
+    const MAX_STEPS: usize = 100;
+
+    fn apply(&self, Offset { u, v }: Offset) -> Offset {
+        let [k1, k2, k3] = self.radial;
+        let [p1, p2] = self.tangential;
+        let r2 = u * u + v * v;
+        let radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        Offset {
+            u: u * radial + 2.0 * p1 * u * v + p2 * (r2 + 2.0 * u * u),
+            v: v * radial + p1 * (r2 + 2.0 * v * v) + 2.0 * p2 * u * v,
+        }
+    }
+
+    fn jacobian(&self, Offset { u, v }: Offset) -> Jacobian {
+        let [k1, k2, k3] = self.radial;
+        let [p1, p2] = self.tangential;
+        let r2 = u * u + v * v;
+        let radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        // Twice the derivative of the radial factor with respect to r².
+        let slope = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3));
+        Jacobian {
+            uu: radial + u * u * slope + 2.0 * p1 * v + 6.0 * p2 * u,
+            uv: u * v * slope + 2.0 * p1 * u + 2.0 * p2 * v,
+            vv: radial + v * v * slope + 6.0 * p1 * v + 2.0 * p2 * u,
+        }
+    }
+
+    /// The undistorted offset, by Newton's method with halved steps; `None` when it does not converge.
+    fn remove(&self, distorted: Offset) -> Option<Offset> {
+        let residual_at = |at: Offset| {
+            let image = self.apply(at);
+            Offset { u: distorted.u - image.u, v: distorted.v - image.v }
+        };
+        let tolerance_px = 1e-12 + 8.0 * f64::EPSILON * distorted.length();
+        let mut at = distorted;
+        let mut residual = residual_at(at);
+        for _ in 0..Self::MAX_STEPS {
+            let jacobian = self.jacobian(at);
+            let determinant = jacobian.determinant();
+            if residual == (Offset { u: 0.0, v: 0.0 }) || determinant == 0.0 {
+                break;
+            }
+            let step_u = (jacobian.vv * residual.u - jacobian.uv * residual.v) / determinant;
+            let step_v = (jacobian.uu * residual.v - jacobian.uv * residual.u) / determinant;
+            let mut shorter = (0..20).map(|halvings| 1.0 / f64::from(1_u32 << halvings)).map(|part| {
+                let next = Offset { u: at.u + part * step_u, v: at.v + part * step_v };
+                (next, residual_at(next))
+            });
+            // No step that comes closer: either the last bit is reached, or there is no inverse.
+            match shorter.find(|(_, left)| left.length() < residual.length()) {
+                Some((next, left)) => (at, residual) = (next, left),
+                None => break,
+            }
+        }
+        (residual.length() <= tolerance_px).then_some(at)
+    }
+
+    /// The largest radius up to `limit_px` on whose disk the Jacobian is positive definite at every point of a
+    /// polar grid; without distortion, infinity.
+    fn one_to_one_radius(&self, limit_px: f64) -> f64 {
+        if self.radial == [0.0; 3] && self.tangential == [0.0; 2] {
+            return f64::INFINITY;
+        }
+        let mut radius = 0.0;
+        for ring in 1..=Self::RINGS {
+            let next = limit_px * ring as f64 / Self::RINGS as f64;
+            let holds = (0..Self::RAYS).all(|ray| {
+                let (sin, cos) = libm::sincos(2.0 * PI * ray as f64 / Self::RAYS as f64);
+                self.jacobian(Offset { u: next * cos, v: next * sin }).is_positive_definite()
+            });
+            if !holds {
+                break;
+            }
+            radius = next;
+        }
+        radius
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The camera of the far-range paper, Table 1, with its principal point counted from zero.
+    fn table_1() -> Camera {
+        Camera {
+            columns: 752,
+            rows: 580,
+            focal_length_mm: 20.187,
+            pixel_width_um: 8.6,
+            pixel_height_um: 8.3,
+            principal_x_px: 395.0,
+            principal_y_px: 288.0,
+            radial: [2.6e-8, 0.0, 0.0],
+            tangential: [0.0, 0.0],
+        }
+    }
+
+    fn direction(x: f64, y: f64, z: f64) -> Direction<CameraFrame> {
+        Direction::from_vector(Vector3::new(x, y, z)).unwrap()
+    }
+
+    #[test]
+    fn without_distortion_a_direction_falls_where_similar_triangles_say() {
+        let camera = Camera {
+            focal_length_mm: 10.0,
+            pixel_width_um: 10.0,
+            pixel_height_um: 5.0,
+            radial: [0.0; 3],
+            ..table_1()
+        };
+        let point = Projection::new(&camera).unwrap().project(&direction(0.1, -0.05, 1.0)).unwrap();
+        // f/pixel is 1000 and 2000 px: 395 + 100, 288 − 100.
+        assert!(point.distance(PixelPoint::new(495.0, 188.0)) < 1e-10);
+    }
+
+    #[test]
+    fn the_far_corner_of_table_1_is_displaced_by_3_1_px() {
+        let camera = table_1();
+        let straight = Camera { radial: [0.0; 3], ..camera.clone() };
+        let corner = Projection::new(&straight).unwrap().unproject(PixelPoint::new(0.0, 0.0)).unwrap();
+        let seen = Projection::new(&camera).unwrap().project(&corner).unwrap();
+        let displaced = seen.distance(PixelPoint::new(0.0, 0.0));
+        // k1 r³ with r² = 395² + 288².
+        assert!((displaced - 2.6e-8 * libm::pow(488.845, 3.0)).abs() < 1e-4, "{displaced}");
+        assert!((displaced - 3.1).abs() < 0.1, "{displaced}");
+    }
+
+    #[test]
+    fn tangential_distortion_has_the_sign_of_its_formula() {
+        let camera = Camera { radial: [0.0; 3], tangential: [1e-5, -2e-5], ..table_1() };
+        let projection = Projection::new(&camera).unwrap();
+        let (fx, fy) = camera.focal_length_px();
+        let point = projection.project(&direction(100.0 / fx, 50.0 / fy, 1.0)).unwrap();
+        // u = 100, v = 50, r² = 12500.
+        let u = 100.0 + 2.0 * 1e-5 * 5000.0 - 2e-5 * (12500.0 + 20000.0);
+        let v = 50.0 + 1e-5 * (12500.0 + 5000.0) - 2.0 * 2e-5 * 5000.0;
+        assert!(point.distance(PixelPoint::new(395.0 + u, 288.0 + v)) < 1e-10);
+    }
+
+    #[test]
+    fn nothing_behind_the_camera_is_projected() {
+        let projection = Projection::new(&table_1()).unwrap();
+        assert_eq!(projection.project(&direction(0.0, 0.0, -1.0)), None);
+        assert_eq!(projection.project(&direction(1.0, 0.0, 0.0)), None);
+    }
+
+    /// Barrel distortion of this strength brings directions beyond its fold at r = 1/sqrt(3 |k1|) = 1826 px back.
+    #[test]
+    fn a_star_beyond_the_fold_does_not_come_back_into_the_field() {
+        let camera = Camera { radial: [-1e-7, 0.0, 0.0], ..table_1() };
+        let projection = Projection::new(&camera).unwrap();
+        let (fx, _) = camera.focal_length_px();
+        assert!(projection.project(&direction(400.0 / fx, 0.0, 1.0)).is_some());
+        // 3100 px (1 − 0.961) = 121 px: on the detector, were the polynomial believed.
+        assert_eq!(projection.project(&direction(3100.0 / fx, 0.0, 1.0)), None);
+    }
+
+    #[test]
+    fn a_distortion_that_folds_inside_the_detector_is_refused() {
+        for (radial, tangential) in
+            [([-4e-6, 0.0, 0.0], [0.0; 2]), ([0.0, 0.0, -1e-15], [0.0; 2]), ([0.0; 3], [5e-3, 0.0])]
+        {
+            let camera = Camera { radial, tangential, ..table_1() };
+            let error = Projection::new(&camera).unwrap_err().to_string();
+            assert!(error.contains("fold"), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_half_diagonal_reaches_every_pixel_and_no_farther() {
+        let projection = Projection::new(&table_1()).unwrap();
+        let half_diagonal = projection.half_diagonal().radians();
+        let mut largest = 0.0_f64;
+        for x in 0..752 {
+            for y in [-0.5, 100.0, 288.0, 579.5] {
+                let at = projection.unproject(PixelPoint::new(f64::from(x), y)).unwrap();
+                largest = largest.max(at.separation(&Direction::z()).radians());
+            }
+        }
+        assert!(largest <= half_diagonal);
+        // Table 1 has its farthest corner at the upper left: half a pixel (0.0002 rad) from the last one tried.
+        assert!(half_diagonal - largest < 3e-4);
+        // Half of the diagonal of 18.2° × 13.6° is 11.4°; the principal point is 24 px off the middle.
+        assert!((projection.half_diagonal().degrees() - 11.7).abs() < 0.1);
+    }
+
+    proptest! {
+        #[test]
+        fn the_round_trip_holds_over_the_whole_field(
+            x in -0.5..751.5_f64, y in -0.5..579.5_f64,
+            k1 in -5e-8..5e-8_f64, k2 in -1e-14..1e-14_f64, k3 in -1e-20..1e-20_f64,
+            p1 in -1e-6..1e-6_f64, p2 in -1e-6..1e-6_f64,
+        ) {
+            let camera = Camera { radial: [k1, k2, k3], tangential: [p1, p2], ..table_1() };
+            let projection = Projection::new(&camera).unwrap();
+            let point = PixelPoint::new(x, y);
+            let back = projection.project(&projection.unproject(point).unwrap()).unwrap();
+            // 1e-9 px: Newton's 1e-12 px, and the rounding of a unit vector times f = 2400 px (5e-13 px).
+            prop_assert!(back.distance(point) < 1e-9, "{back:?}");
+        }
+    }
+}

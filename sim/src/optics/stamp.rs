@@ -1,0 +1,161 @@
+//! The image of one object: a small patch of expected electrons.
+
+use contract::{PixelPoint, Window};
+
+/// Expected electrons of one object, in a rectangle of the detector. Reused from object to object.
+///
+/// A stamp is clipped to the detector: what falls off it is in no pixel and in no sum.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Stamp {
+    pub(super) x: usize,
+    pub(super) y: usize,
+    pub(super) columns: usize,
+    pub(super) rows: usize,
+    pub(super) centre: PixelPoint,
+    /// Row by row.
+    pub(super) electrons: Vec<f64>,
+}
+
+/// What the truth table tells about the image of one object.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StampTruth {
+    /// Sum over its pixels, electrons.
+    pub electrons: f64,
+    /// Its brightest pixel, electrons.
+    pub peak_electrons: f64,
+    /// Signal-to-noise ratio of a matched filter that knows the noise: sqrt(Σ s²/(s + b + σ²)).
+    pub snr: f64,
+    /// Distance from the centre to the farthest pixel centre in which it exceeds the noise of the empty
+    /// background, sqrt(b + σ²), px; at least 0.5.
+    pub radius_px: f64,
+}
+
+impl Stamp {
+    /// A stamp of nothing.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Makes this the stamp of a single pixel, a hot one for instance.
+    pub fn set_pixel(&mut self, x: usize, y: usize, electrons: f64) {
+        (self.x, self.y, self.columns, self.rows) = (x, y, 1, 1);
+        self.centre = PixelPoint::new(x as f64, y as f64);
+        self.electrons.clear();
+        self.electrons.push(electrons);
+    }
+
+    /// Makes this a stamp of zeros over columns `x.0..x.1` and rows `y.0..y.1`; an empty range makes it empty.
+    pub(super) fn reset(&mut self, centre: PixelPoint, x: (usize, usize), y: (usize, usize)) {
+        (self.x, self.y) = (x.0, y.0);
+        (self.columns, self.rows) = (x.1.saturating_sub(x.0), y.1.saturating_sub(y.0));
+        self.centre = centre;
+        self.electrons.clear();
+        self.electrons.resize(self.columns * self.rows, 0.0);
+    }
+
+    /// The rectangle it covers; `None` when no pixel of the detector is in it.
+    pub fn window(&self) -> Option<Window> {
+        (!self.electrons.is_empty()).then_some(Window {
+            x: self.x,
+            y: self.y,
+            columns: self.columns,
+            rows: self.rows,
+        })
+    }
+
+    /// Its rows: first column, row, expected electrons.
+    pub fn rows(&self) -> impl Iterator<Item = (usize, usize, &[f64])> {
+        // An empty stamp has rows of no columns; a chunk of zero is not allowed.
+        let rows = self.electrons.chunks_exact(self.columns.max(1)).enumerate();
+        rows.map(|(j, row)| (self.x, self.y + j, row))
+    }
+
+    /// What the truth table tells, over a flat background of `background_e` electrons a pixel (sky and dark
+    /// current) and a read noise of `read_noise_e`.
+    pub fn truth(&self, background_e: f64, read_noise_e: f64) -> StampTruth {
+        let variance = background_e + read_noise_e * read_noise_e;
+        let noise_e = variance.sqrt();
+        let (mut electrons, mut peak_electrons, mut snr2, mut radius2) = (0.0, 0.0_f64, 0.0, 0.25_f64);
+        for (x, y, row) in self.rows() {
+            let dy = y as f64 - self.centre.y;
+            for (i, &signal) in row.iter().enumerate() {
+                if signal > 0.0 {
+                    electrons += signal;
+                    peak_electrons = peak_electrons.max(signal);
+                    snr2 += signal * (signal / (signal + variance));
+                }
+                if signal > noise_e {
+                    let dx = (x + i) as f64 - self.centre.x;
+                    radius2 = radius2.max(dx * dx + dy * dy);
+                }
+            }
+        }
+        StampTruth { electrons, peak_electrons, snr: snr2.sqrt(), radius_px: radius2.sqrt() }
+    }
+
+    /// The fraction of its electrons outside every window, in [0, 1]; 0 for an empty stamp.
+    pub fn cut(&self, windows: &[Window]) -> f64 {
+        let covers = |window: &Window| {
+            window.x <= self.x
+                && window.y <= self.y
+                && self.x + self.columns <= window.x + window.columns
+                && self.y + self.rows <= window.y + window.rows
+        };
+        if windows.iter().any(covers) {
+            return 0.0;
+        }
+        let (mut total, mut lost) = (0.0, 0.0);
+        for (x, y, row) in self.rows() {
+            for (i, &signal) in row.iter().enumerate() {
+                total += signal;
+                if !windows.iter().any(|window| window.contains(x + i, y)) {
+                    lost += signal;
+                }
+            }
+        }
+        if total > 0.0 { lost / total } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two_by_two() -> Stamp {
+        let mut stamp = Stamp::new();
+        stamp.reset(PixelPoint::new(10.0, 20.0), (10, 12), (20, 22));
+        stamp.electrons.copy_from_slice(&[100.0, 30.0, 20.0, 0.0]);
+        stamp
+    }
+
+    #[test]
+    fn the_truth_of_a_stamp_is_what_its_formulas_say() {
+        let truth = two_by_two().truth(9.0, 4.0);
+        assert_eq!(truth.electrons, 150.0);
+        assert_eq!(truth.peak_electrons, 100.0);
+        let snr = (1e4 / 125.0 + 900.0 / 55.0 + 400.0 / 45.0_f64).sqrt();
+        assert!((truth.snr - snr).abs() < 1e-12);
+        // The noise is 5 e⁻: pixels one away exceed it, the diagonal one does not.
+        assert_eq!(truth.radius_px, 1.0);
+    }
+
+    #[test]
+    fn a_faint_object_has_the_radius_of_a_pixel() {
+        let mut stamp = Stamp::new();
+        stamp.set_pixel(3, 4, 1.0);
+        assert_eq!(stamp.truth(100.0, 10.0).radius_px, 0.5);
+    }
+
+    #[test]
+    fn the_cut_is_the_share_outside_every_window() {
+        let window = |x, y, columns, rows| Window { x, y, columns, rows };
+        let stamp = two_by_two();
+        assert_eq!(stamp.cut(&[window(0, 0, 50, 50)]), 0.0);
+        assert_eq!(stamp.cut(&[window(0, 0, 5, 5)]), 1.0);
+        assert_eq!(stamp.cut(&[]), 1.0);
+        assert_eq!(stamp.cut(&[window(0, 0, 50, 21)]), 20.0 / 150.0);
+        // Windows that overlap count once.
+        assert_eq!(stamp.cut(&[window(10, 20, 1, 2), window(10, 20, 1, 1)]), 30.0 / 150.0);
+        assert_eq!(Stamp::new().cut(&[]), 0.0);
+    }
+}

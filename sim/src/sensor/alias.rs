@@ -1,0 +1,140 @@
+//! Draws from a discrete law in constant time: Walker's alias method, in integers.
+
+/// A discrete law over digital numbers, drawn from with one word of 32 bits (Walker 1977; built as by Vose 1991).
+///
+/// Every probability is rounded to a whole number of 2^-32, the resolution of the word; the rounded ones add up
+/// to exactly 1. What is rarer than half of 2^-32 does not happen.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct AliasTable {
+    cells: Vec<Cell>,
+    /// The word's highest bits choose the cell, the others its side.
+    shift: u32,
+    side_mask: u32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Cell {
+    /// Sides below this give `own`, the others `other`.
+    threshold: u32,
+    own: u16,
+    other: u16,
+}
+
+impl AliasTable {
+    /// The table of the law that gives `first` + i with probability `probabilities[i]`. They need not add up to 1.
+    /// At most 65,536 of them; none of them, or nothing but zeros, gives `first` for certain.
+    pub(super) fn new(first: u16, probabilities: &[f64]) -> Self {
+        let mut weights = whole_weights(probabilities);
+        // Two cells at least: the size of a single one, 2^32, would not fit its threshold.
+        let count = weights.len().next_power_of_two().max(2);
+        weights.resize(count, 0);
+        let cell_weight = (1_u64 << 32) / count as u64;
+        let number = |i: usize| first.saturating_add(u16::try_from(i).unwrap_or(u16::MAX));
+        // A full cell needs no other side. The weights are whole and add up to a whole number of cells, so that
+        // whatever is not paired below is exactly full.
+        let mut cells: Vec<Cell> = (0..count)
+            .map(|i| Cell { threshold: cell_weight as u32, own: number(i), other: number(i) })
+            .collect();
+        let (mut small, mut large): (Vec<usize>, Vec<usize>) =
+            (0..count).partition(|&i| weights[i] < cell_weight);
+        while let (Some(&giver), Some(taker)) = (large.last(), small.pop()) {
+            cells[taker].threshold = weights[taker] as u32;
+            cells[taker].other = number(giver);
+            weights[giver] -= cell_weight - weights[taker];
+            if weights[giver] < cell_weight {
+                large.pop();
+                small.push(giver);
+            }
+        }
+        Self { cells, shift: 32 - count.trailing_zeros(), side_mask: cell_weight as u32 - 1 }
+    }
+
+    /// The digital number of a uniform word.
+    #[inline(always)]
+    pub(super) fn draw(&self, word: u32) -> u16 {
+        let cell = self.cells[(word >> self.shift) as usize];
+        if word & self.side_mask < cell.threshold { cell.own } else { cell.other }
+    }
+}
+
+/// Probabilities as whole multiples of 2^-32 that add up to 1: differences of the rounded cumulative law, so that
+/// none is off by more than one multiple.
+fn whole_weights(probabilities: &[f64]) -> Vec<u64> {
+    let whole = (1_u64 << 32) as f64;
+    let total: f64 = probabilities.iter().sum();
+    if !(total > 0.0) {
+        return vec![1 << 32];
+    }
+    let (mut cumulative, mut before) = (0.0, 0);
+    let mut weights: Vec<u64> = probabilities
+        .iter()
+        .map(|probability| {
+            cumulative += probability;
+            let up_to = ((cumulative / total).min(1.0) * whole).round() as u64;
+            let weight = up_to - before;
+            before = up_to;
+            weight
+        })
+        .collect();
+    if let Some(last) = weights.last_mut() {
+        *last += (1 << 32) - before;
+    }
+    weights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The exact probability, in multiples of 2^-32, that a table gives each number.
+    fn law_of(table: &AliasTable, numbers: usize) -> Vec<u64> {
+        let mut law = vec![0; numbers];
+        for cell in &table.cells {
+            law[usize::from(cell.own)] += u64::from(cell.threshold);
+            law[usize::from(cell.other)] += u64::from(table.side_mask) + 1 - u64::from(cell.threshold);
+        }
+        law
+    }
+
+    #[test]
+    fn the_law_of_the_table_is_the_law_it_was_made_of() {
+        for count in [1_usize, 2, 3, 7, 8, 100, 1000] {
+            let probabilities: Vec<f64> = (0..count).map(|i| libm::exp(-((i * i) as f64) / 50.0)).collect();
+            let total: f64 = probabilities.iter().sum();
+            let table = AliasTable::new(5, &probabilities);
+            let law = law_of(&table, 5 + count.next_power_of_two().max(2));
+            assert_eq!(law.iter().sum::<u64>(), 1 << 32);
+            for (i, probability) in probabilities.iter().enumerate() {
+                let expected = probability / total * libm::pow(2.0, 32.0);
+                assert!((law[5 + i] as f64 - expected).abs() <= 1.0, "{count}, {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_word_picks_its_cell_and_its_side() {
+        let table = AliasTable::new(7, &[0.25, 0.75]);
+        let share = |from: u64, to: u64| {
+            let step = 1 << 16;
+            let words = (from..to).step_by(step);
+            words.clone().filter(|&word| table.draw(word as u32) == 7).count() as f64 / words.count() as f64
+        };
+        assert!((share(0, 1 << 32) - 0.25).abs() < 1e-4);
+        // The number 8 fills its own half of the words.
+        assert_eq!(share(1 << 31, 1 << 32), 0.0);
+    }
+
+    #[test]
+    fn a_law_without_probabilities_is_certain() {
+        for table in [AliasTable::new(9, &[]), AliasTable::new(9, &[0.0, 0.0]), AliasTable::new(9, &[1.0])] {
+            assert!([0, 1 << 31, u32::MAX].iter().all(|&word| table.draw(word) == 9));
+        }
+    }
+
+    #[test]
+    fn a_number_beyond_the_last_is_never_drawn() {
+        let table = AliasTable::new(u16::MAX - 2, &[0.2, 0.3, 0.5]);
+        assert!((0..1000).all(|i| table.draw(i * 4_294_967) <= u16::MAX));
+        assert_eq!(table.draw(u32::MAX), u16::MAX);
+    }
+}

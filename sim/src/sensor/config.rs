@@ -1,0 +1,157 @@
+//! What a sensor is made of, in numbers.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+
+/// Whether an effect is simulated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Switch {
+    /// It is.
+    #[default]
+    On,
+    /// It is left out.
+    Off,
+}
+
+impl Switch {
+    /// `value` when on, 0 when off.
+    pub fn of(self, value: f64) -> f64 {
+        match self {
+            Self::On => value,
+            Self::Off => 0.0,
+        }
+    }
+}
+
+/// The parts of the pixel noise. They are one effect with one draw a pixel: switching a part changes that draw, and
+/// no other draw of the simulation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct NoiseConfig {
+    /// Poisson statistics of the collected electrons; off: exactly the expected number is collected.
+    pub shot: Switch,
+    /// Normal noise of the readout.
+    pub read: Switch,
+    /// Dark current, with its own shot noise.
+    pub dark: Switch,
+}
+
+/// Pixels with a high dark current: always the same ones, whatever the frame.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HotPixelConfig {
+    /// How many, at most a tenth of all pixels; 0 for none.
+    pub count: usize,
+    /// Seed of this piece of hardware; not the seed of the scenario.
+    pub seed: u64,
+    /// Median of their log-normal distribution of dark current, electrons a second, 0 to 1e9.
+    pub median_e_per_s: f64,
+    /// Standard deviation of the natural logarithm of the dark current, 0 to 5; 1 and more gives a heavy tail.
+    pub spread: f64,
+}
+
+/// Detector, readout and analogue-digital converter.
+///
+/// The digital number of a pixel is floor(e/gain + bias + ½), held within 0 and 2^bits − 1, where e is the number of
+/// collected electrons, at most the full well, plus the read noise.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SensorConfig {
+    /// Bits of the analogue-digital converter, 8 to 16.
+    pub bit_depth: u8,
+    /// Electrons a digital number, 0.05 to 1e5.
+    pub gain_e_per_dn: f64,
+    /// Digital number of a pixel without electrons, 0 to 65535; fractions are allowed.
+    pub bias_dn: f64,
+    /// Electrons that a pixel holds, 1 to 1e9; more are lost (no blooming).
+    pub full_well_e: f64,
+    /// Standard deviation of the read noise, electrons, 0 to 500.
+    pub read_noise_e: f64,
+    /// Dark current of an ordinary pixel, electrons a second, 0 to 1e6.
+    pub dark_current_e_per_s: f64,
+    /// Photo-electrons of the sky, the same in every pixel, electrons a second, 0 to 1e6.
+    pub background_e_per_s: f64,
+    /// Parts of the noise that are on.
+    #[serde(default)]
+    pub noise: NoiseConfig,
+    /// Pixels with a high dark current.
+    #[serde(default)]
+    pub hot_pixels: HotPixelConfig,
+}
+
+impl SensorConfig {
+    /// Checks every number. Where a limit is not physical, it bounds the time and memory a hostile file can take.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        let within = |low: f64, high: f64| move |v: f64| (low..=high).contains(&v);
+        require("sensor.bit_depth", f64::from(self.bit_depth), "8 to 16", within(8.0, 16.0))?;
+        require("sensor.gain_e_per_dn", self.gain_e_per_dn, "0.05 to 1e5", within(0.05, 1e5))?;
+        require("sensor.bias_dn", self.bias_dn, "0 to 65535", within(0.0, 65535.0))?;
+        require("sensor.full_well_e", self.full_well_e, "1 to 1e9", within(1.0, 1e9))?;
+        require("sensor.read_noise_e", self.read_noise_e, "0 to 500", within(0.0, 500.0))?;
+        require("sensor.dark_current_e_per_s", self.dark_current_e_per_s, "0 to 1e6", within(0.0, 1e6))?;
+        require("sensor.background_e_per_s", self.background_e_per_s, "0 to 1e6", within(0.0, 1e6))?;
+        let hot = &self.hot_pixels;
+        require("sensor.hot_pixels.median_e_per_s", hot.median_e_per_s, "0 to 1e9", within(0.0, 1e9))?;
+        require("sensor.hot_pixels.spread", hot.spread, "0 to 5", within(0.0, 5.0))
+    }
+
+    /// The largest digital number, 2^bits − 1.
+    pub fn full_scale_dn(&self) -> u16 {
+        u16::MAX >> 16_u32.saturating_sub(u32::from(self.bit_depth))
+    }
+
+    /// Electrons at which a pixel saturates: the full well or the end of the converter, whichever comes first.
+    pub fn saturation_e(&self) -> f64 {
+        self.full_well_e.min((f64::from(self.full_scale_dn()) - self.bias_dn) * self.gain_e_per_dn)
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// A twelve-bit sensor like that of a star tracker.
+    pub(in crate::sensor) fn twelve_bit() -> SensorConfig {
+        SensorConfig {
+            bit_depth: 12,
+            gain_e_per_dn: 10.0,
+            bias_dn: 50.3,
+            full_well_e: 40_000.0,
+            read_noise_e: 15.0,
+            dark_current_e_per_s: 10.0,
+            background_e_per_s: 30.0,
+            noise: NoiseConfig::default(),
+            hot_pixels: HotPixelConfig { count: 5, seed: 3, median_e_per_s: 2000.0, spread: 1.0 },
+        }
+    }
+
+    #[test]
+    fn full_scale_follows_the_bit_depth() {
+        for (bit_depth, expected) in [(8, 255), (12, 4095), (16, 65535)] {
+            assert_eq!(SensorConfig { bit_depth, ..twelve_bit() }.full_scale_dn(), expected);
+        }
+    }
+
+    #[test]
+    fn saturation_is_the_well_or_the_converter() {
+        // (4095 − 50.3) × 10 = 40447 e⁻.
+        assert_eq!(twelve_bit().saturation_e(), 40_000.0);
+        let deep = SensorConfig { full_well_e: 1e6, ..twelve_bit() };
+        assert!((deep.saturation_e() - 40_447.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_number_out_of_range_is_named() {
+        let wrong = SensorConfig { gain_e_per_dn: 0.0, ..twelve_bit() };
+        assert_eq!(wrong.check().unwrap_err().to_string(), "sensor.gain_e_per_dn is 0, expected 0.05 to 1e5");
+        assert!(SensorConfig { bit_depth: 17, ..twelve_bit() }.check().is_err());
+        assert!(SensorConfig { read_noise_e: f64::NAN, ..twelve_bit() }.check().is_err());
+    }
+}

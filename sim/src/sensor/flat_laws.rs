@@ -1,0 +1,165 @@
+//! The laws of all pixels without signal, and of those with little: tables instead of samplers.
+//!
+//! Most pixels of a frame have the same mean, hence the same law of their digital number: one table, one word a
+//! pixel. A pixel with a little signal s above the flat mean λ follows by superposition: Poisson(λ + s) is
+//! Poisson(λ) plus an independent n from Poisson(s), and given n its law is that of the flat mean with n electrons
+//! added for certain: one table for each n.
+
+use std::collections::BTreeMap;
+
+use super::alias::AliasTable;
+use super::pixel_law::PixelLaw;
+
+/// Tables for the flat means met so far, kept from frame to frame. What they give does not depend on what they
+/// keep: an empty one works as well, only slower.
+#[derive(Debug, Clone, Default)]
+pub struct FlatLaws {
+    law: Option<PixelLaw>,
+    /// By the bits of the mean.
+    means: BTreeMap<u64, FlatLaw>,
+}
+
+impl FlatLaws {
+    /// Means kept at most; a shutter's ladder has fewer exposures.
+    const MEANS: usize = 64;
+
+    /// Nothing kept yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The tables of a flat mean, electrons.
+    pub(super) fn of(&mut self, law: &PixelLaw, mean_e: f64) -> &mut FlatLaw {
+        if self.law != Some(*law)
+            || (self.means.len() >= Self::MEANS && !self.means.contains_key(&mean_e.to_bits()))
+        {
+            self.means.clear();
+            self.law = Some(*law);
+        }
+        self.means.entry(mean_e.to_bits()).or_insert_with(|| FlatLaw::new(*law, mean_e))
+    }
+}
+
+/// The law of the pixels of one flat mean.
+#[derive(Debug, Clone)]
+pub(super) struct FlatLaw {
+    law: PixelLaw,
+    mean_e: f64,
+    flat: AliasTable,
+    /// For 0, 1, 2 … electrons more, made when first met.
+    more: Vec<Option<AliasTable>>,
+}
+
+impl FlatLaw {
+    /// Signals up to this have their tables. More than 24 electrons from a mean of 4 come with a probability of
+    /// 1.4e-12, far below the 2^-32 that a word resolves.
+    pub(super) const FAINT_E: f64 = 4.0;
+    const MOST_ELECTRONS: usize = 24;
+
+    fn new(law: PixelLaw, mean_e: f64) -> Self {
+        let table = table(&law, mean_e, 0);
+        Self { law, mean_e, flat: table, more: vec![None; Self::MOST_ELECTRONS + 1] }
+    }
+
+    /// The table of the pixels without signal.
+    pub(super) fn flat(&self) -> &AliasTable {
+        &self.flat
+    }
+
+    /// A digital number of a pixel with a signal of at most [`FlatLaw::FAINT_E`], from a uniform word: its upper half
+    /// decides the number of signal electrons (to 2^-32), its lower half the digital number.
+    pub(super) fn draw_faint(&mut self, signal_e: f64, word: u64) -> u16 {
+        let u = ((word >> 32) as f64 + 0.5) * (1.0 / 4_294_967_296.0);
+        let n = electrons_of(signal_e, u).min(Self::MOST_ELECTRONS);
+        if n == 0 {
+            return self.flat.draw(word as u32);
+        }
+        self.more[n].get_or_insert_with(|| table(&self.law, self.mean_e, n as u32)).draw(word as u32)
+    }
+}
+
+fn table(law: &PixelLaw, mean_e: f64, extra_e: u32) -> AliasTable {
+    let probabilities = law.probabilities(mean_e, extra_e);
+    AliasTable::new(probabilities.first_dn, &probabilities.probabilities)
+}
+
+/// The smallest n with P(N ≤ n) ≥ u, for a Poisson number of a small mean.
+fn electrons_of(mean: f64, u: f64) -> usize {
+    // exp(−s) ≥ 1 − s: no exponential for most of the faintest.
+    if u <= 1.0 - mean {
+        return 0;
+    }
+    let (mut n, mut left, mut probability) = (0, u, libm::exp(-mean));
+    while left > probability && n < FlatLaw::MOST_ELECTRONS {
+        left -= probability;
+        n += 1;
+        probability *= mean / n as f64;
+    }
+    n
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::config::tests::twelve_bit;
+    use super::super::pixel_law::tests::{chi_square_p, counts_of, from_zero};
+    use super::*;
+    use crate::randomness::{Effect, Seed};
+    use crate::sensor::SensorConfig;
+    use rand::Rng;
+
+    fn law(gain_e_per_dn: f64) -> PixelLaw {
+        PixelLaw::new(&SensorConfig { gain_e_per_dn, ..twelve_bit() })
+    }
+
+    #[test]
+    fn flat_draws_follow_the_law_of_the_direct_sampler() {
+        for (place, mean_e) in [0.1, 1.0, 20.0, 150.0, 1000.0].into_iter().enumerate() {
+            let law = law(2.0);
+            let mut stream = Seed { seed: 21, case: 0 }.stream(0, Effect::PixelNoise, place as u64);
+            let mut laws = FlatLaws::new();
+            let table = laws.of(&law, mean_e).flat();
+            let n = 500_000;
+            let drawn = counts_of((0..n).map(|_| usize::from(table.draw(stream.next_u32()))));
+            let p = chi_square_p(&drawn, &from_zero(&law.probabilities(mean_e, 0)));
+            assert!(p > 1e-4, "mean {mean_e}: p = {p} against the probabilities");
+            // The sampler shares nothing with the table but the parameters.
+            let sampled = counts_of((0..n).map(|_| usize::from(law.sample(mean_e, &mut stream))));
+            let (mut chi2, mut bins) = (0.0, 0.0);
+            for (a, b) in drawn.iter().zip(&sampled).filter(|(a, b)| *a + *b >= 20) {
+                chi2 += (*a as f64 - *b as f64) * (*a as f64 - *b as f64) / (a + b) as f64;
+                bins += 1.0;
+            }
+            let p = super::super::pixel_law::tests::chi_square_tail(chi2, bins);
+            assert!(p > 1e-4, "mean {mean_e}: p = {p} against the sampler");
+        }
+    }
+
+    #[test]
+    fn a_little_signal_superposes_to_the_law_of_the_sum() {
+        // A gain of 1 e⁻/DN and a low read noise, so that single electrons are seen.
+        let law = PixelLaw::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() });
+        for (frame, signal_e) in [0.02, 0.5, 1.0, 2.7, FlatLaw::FAINT_E].into_iter().enumerate() {
+            let streams = Seed { seed: 22, case: 0 }.streams(frame as u64, Effect::PixelNoise);
+            let mut laws = FlatLaws::new();
+            let flat = laws.of(&law, 3.0);
+            let counts = counts_of(
+                (0..300_000).map(|place| usize::from(flat.draw_faint(signal_e, streams.word(place)))),
+            );
+            let p = chi_square_p(&counts, &from_zero(&law.probabilities(3.0 + signal_e, 0)));
+            assert!(p > 1e-4, "signal {signal_e}: p = {p}");
+        }
+    }
+
+    #[test]
+    fn what_is_kept_changes_nothing() {
+        let word = |i: u32| i.wrapping_mul(0x9e37_79b9);
+        let mut kept = FlatLaws::new();
+        for i in 0..200 {
+            kept.of(&law(1.0), f64::from(i));
+        }
+        kept.of(&law(3.0), 17.0);
+        let fresh = FlatLaws::new().of(&law(1.0), 17.0).flat().clone();
+        let kept = kept.of(&law(1.0), 17.0).flat();
+        assert!((0..10_000).all(|i| fresh.draw(word(i)) == kept.draw(word(i))));
+    }
+}

@@ -1,0 +1,37 @@
+//! The sensor: expected photo-electrons → charge → digital numbers.
+//!
+//! Each stage is a type of its own: [`crate::draw::ExpectedImage`] holds photo-electrons, [`Charge`] adds what the
+//! detector itself collects (dark current, hot pixels), [`RawImage`] holds digital numbers. A charge can only be
+//! had from an image, and digital numbers only from a charge:
+//! ```
+//! use boresight_sim::draw::ExpectedImage;
+//! use boresight_sim::randomness::Seed;
+//! use boresight_sim::sensor::{FlatLaws, RawImage, Sensor};
+//! fn right(sensor: &Sensor, image: &mut ExpectedImage, laws: &mut FlatLaws, raw: &mut RawImage) {
+//!     let charge = sensor.collect(image, 0.5);
+//!     let _ = sensor.read_out(&charge, &Seed { seed: 1, case: 0 }, 0, laws, raw);
+//! }
+//! ```
+//! A readout of photo-electrons does not compile:
+//! ```compile_fail,E0308
+//! use boresight_sim::draw::ExpectedImage;
+//! use boresight_sim::randomness::Seed;
+//! use boresight_sim::sensor::{FlatLaws, RawImage, Sensor};
+//! fn wrong(sensor: &Sensor, image: &ExpectedImage, laws: &mut FlatLaws, raw: &mut RawImage) {
+//!     let _ = sensor.read_out(image, &Seed { seed: 1, case: 0 }, 0, laws, raw);
+//! }
+//! ```
+
+mod alias;
+mod config;
+mod flat_laws;
+mod hot_pixels;
+mod pixel_law;
+mod poisson;
+mod readout;
+
+pub use config::{HotPixelConfig, NoiseConfig, SensorConfig, Switch};
+pub use flat_laws::FlatLaws;
+pub use hot_pixels::HotPixel;
+pub use poisson::poisson;
+pub use readout::{Charge, RawImage, Sensor};

@@ -1,0 +1,323 @@
+//! The law of one pixel: from its expected electrons to its digital number.
+//!
+//! Collected electrons are Poisson, held at the full well; the read noise is normal; the converter rounds and
+//! clips. The law is here twice: as a sampler, and as the probability of every digital number.
+
+use super::config::{SensorConfig, Switch};
+use super::poisson::poisson;
+use crate::randomness::{Stream, normal};
+
+/// What the law of a pixel depends on besides its mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PixelLaw {
+    gain_e_per_dn: f64,
+    bias_dn: f64,
+    full_well_e: f64,
+    read_noise_e: f64,
+    pub(super) shot: Switch,
+    full_scale_dn: u16,
+}
+
+/// The probability of each digital number from `first_dn` on.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct DnLaw {
+    pub(super) first_dn: u16,
+    pub(super) probabilities: Vec<f64>,
+}
+
+/// Standard deviations beyond which a normal law is cut: 6e-14 of it lies there, less than 2^-43.
+const NORMAL_REACH: f64 = 7.5;
+
+impl PixelLaw {
+    pub(super) fn new(config: &SensorConfig) -> Self {
+        Self {
+            gain_e_per_dn: config.gain_e_per_dn,
+            bias_dn: config.bias_dn,
+            full_well_e: config.full_well_e,
+            read_noise_e: config.noise.read.of(config.read_noise_e),
+            shot: config.noise.shot,
+            full_scale_dn: config.full_scale_dn(),
+        }
+    }
+
+    /// A digital number of a pixel with a mean of `mean_e` electrons.
+    pub(super) fn sample(&self, mean_e: f64, stream: &mut Stream) -> u16 {
+        // Twelve standard deviations above a full well the well is full but once in 10^32; a mean without bound
+        // would leave the range of the sampler.
+        let surely_full = self.full_well_e + 12.0 * self.full_well_e.sqrt() + 144.0;
+        let collected_e = match self.shot {
+            Switch::On if mean_e < surely_full => poisson(mean_e, stream),
+            Switch::On | Switch::Off => mean_e,
+        };
+        let noise_e = if self.read_noise_e > 0.0 { self.read_noise_e * normal(stream) } else { 0.0 };
+        self.digitise(collected_e.min(self.full_well_e) + noise_e)
+    }
+
+    /// The converter: floor(e/gain + bias + ½), clipped.
+    fn digitise(&self, electrons: f64) -> u16 {
+        let dn = (electrons / self.gain_e_per_dn + self.bias_dn + 0.5).floor();
+        dn.clamp(0.0, f64::from(self.full_scale_dn)) as u16
+    }
+
+    /// The probability of every digital number when a Poisson number of mean `mean_e`, plus `extra_e` electrons for
+    /// certain, is collected. The absolute error of a probability is below 2^-40.
+    pub(super) fn probabilities(&self, mean_e: f64, extra_e: u32) -> DnLaw {
+        let extra_e = f64::from(extra_e);
+        let reach = PoissonReach::new(mean_e);
+        let smooth = self.read_noise_e >= 1.0 && reach.high + extra_e < self.full_well_e;
+        match self.shot {
+            Switch::On if smooth => self.by_characteristic_function(mean_e, extra_e, reach),
+            Switch::On => self.by_sum(&poisson_atoms(mean_e, reach), extra_e),
+            Switch::Off => self.by_sum(&[(mean_e, 1.0)], extra_e),
+        }
+    }
+
+    /// The plain sum over numbers of electrons (value, probability): each gives a normal law cut into digital numbers.
+    fn by_sum(&self, atoms: &[(f64, f64)], extra_e: f64) -> DnLaw {
+        let collected = |value: f64| (value + extra_e).min(self.full_well_e);
+        let reach_e = NORMAL_REACH * self.read_noise_e;
+        let ends = |ends: (f64, f64)| (self.digitise(ends.0 - reach_e), self.digitise(ends.1 + reach_e));
+        let values = || atoms.iter().map(|&(value, _)| collected(value));
+        let (first_dn, last_dn) =
+            ends((values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)));
+        let mut probabilities = vec![0.0; usize::from(last_dn - first_dn) + 1];
+        for &(value, probability) in atoms {
+            let value = collected(value);
+            let (low, high) = ends((value, value));
+            let mut below = 0.0;
+            for dn in low..high {
+                let edge_e = (f64::from(dn) + 0.5 - self.bias_dn) * self.gain_e_per_dn;
+                let up_to = normal_cdf((edge_e - value) / self.read_noise_e);
+                probabilities[usize::from(dn - first_dn)] += probability * (up_to - below);
+                below = up_to;
+            }
+            probabilities[usize::from(high - first_dn)] += probability * (1.0 - below);
+        }
+        DnLaw { first_dn, probabilities }
+    }
+
+    /// The same from the characteristic function of Poisson plus normal,
+    /// φ(u) = exp(λ(e^{iu} − 1) + iux − σ²u²/2), for a smooth law: tens of terms a digital number, not hundreds.
+    ///
+    /// With n digital numbers of width g that hold the whole law, the probability of the one centred at c is the
+    /// Fourier series (1/n) [1 + 2 Σ_j Re(φ(u_j) e^{−i u_j c}) sinc(u_j g/2)], u_j = 2πj/(n g). It is exact but for
+    /// the law's mass outside of them, and ends where φ is below 1e-15.
+    fn by_characteristic_function(&self, mean_e: f64, extra_e: f64, reach: PoissonReach) -> DnLaw {
+        const NEGLIGIBLE_EXPONENT: f64 = 35.0;
+        let (gain, sigma) = (self.gain_e_per_dn, self.read_noise_e);
+        let to_dn = |electrons: f64| (electrons / gain + self.bias_dn + 0.5).floor();
+        let first = to_dn(reach.low + extra_e - NORMAL_REACH * sigma);
+        let count = (to_dn(reach.high + extra_e + NORMAL_REACH * sigma) - first) as usize + 1;
+        let first_centre_e = (first - self.bias_dn) * gain - extra_e;
+        let base = 2.0 * std::f64::consts::PI / (count as f64 * gain);
+        let last = ((2.0 * NEGLIGIBLE_EXPONENT).sqrt() / sigma / base) as usize;
+        let mut series = vec![0.5; count];
+        for j in 1..=last {
+            let u = base * j as f64;
+            let (sin, cos) = libm::sincos(u);
+            let exponent = mean_e * (1.0 - cos) + 0.5 * sigma * sigma * u * u;
+            if exponent > NEGLIGIBLE_EXPONENT {
+                continue;
+            }
+            let half_width = 0.5 * u * gain;
+            let amplitude = libm::exp(-exponent) * libm::sin(half_width) / half_width;
+            // The angle falls by u g from one digital number to the next: a rotation, not a cosine, each.
+            let (mut im, mut re) = libm::sincos(mean_e * sin - u * first_centre_e);
+            let (turn_im, turn_re) = libm::sincos(u * gain);
+            for term in &mut series {
+                *term += amplitude * re;
+                (re, im) = (re * turn_re + im * turn_im, im * turn_re - re * turn_im);
+            }
+        }
+        let full_scale = f64::from(self.full_scale_dn);
+        let clip = |dn: f64| dn.clamp(0.0, full_scale) as u16;
+        let (first_dn, last_dn) = (clip(first), clip(first + (count - 1) as f64));
+        let mut probabilities = vec![0.0; usize::from(last_dn - first_dn) + 1];
+        for (i, term) in series.into_iter().enumerate() {
+            // Rounding leaves some 1e-17 where there is nothing, of either sign.
+            let probability = (2.0 * term / count as f64).max(0.0);
+            probabilities[usize::from(clip(first + i as f64) - first_dn)] += probability;
+        }
+        DnLaw { first_dn, probabilities }
+    }
+}
+
+/// Numbers beyond which a Poisson law is cut, with less than 2^-40 on either side, by Chernoff's bounds in Bernstein's
+/// form: P(N ≥ λ + x) ≤ exp(−x²/(2λ + 2x/3)) and P(N ≤ λ − x) ≤ exp(−x²/(2λ)).
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct PoissonReach {
+    low: f64,
+    high: f64,
+}
+
+impl PoissonReach {
+    fn new(mean: f64) -> Self {
+        // exp(−28) < 2^-40.
+        const EXPONENT: f64 = 28.0;
+        let third = EXPONENT / 3.0;
+        Self {
+            low: (mean - (2.0 * EXPONENT * mean).sqrt()).floor().max(0.0),
+            high: (mean + third + (third * third + 2.0 * EXPONENT * mean).sqrt()).ceil(),
+        }
+    }
+}
+
+/// The numbers of a Poisson law within its reach and their probabilities.
+fn poisson_atoms(mean: f64, reach: PoissonReach) -> Vec<(f64, f64)> {
+    if mean <= 0.0 {
+        return vec![(0.0, 1.0)];
+    }
+    let ln_mean = libm::log(mean);
+    let probability = |k: f64| libm::exp(k * ln_mean - mean - libm::lgamma(k + 1.0));
+    let count = (reach.high - reach.low) as usize + 1;
+    (0..count).map(|i| reach.low + i as f64).map(|k| (k, probability(k))).collect()
+}
+
+fn normal_cdf(z: f64) -> f64 {
+    0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::super::config::tests::twelve_bit;
+    use super::*;
+    use crate::randomness::{Effect, Seed};
+
+    /// How often each number occurs.
+    pub(in crate::sensor) fn counts_of(numbers: impl Iterator<Item = usize>) -> Vec<usize> {
+        let mut counts = Vec::new();
+        for number in numbers {
+            if number >= counts.len() {
+                counts.resize(number + 1, 0);
+            }
+            counts[number] += 1;
+        }
+        counts
+    }
+
+    /// The probability that chi-square exceeds a value.
+    pub(in crate::sensor) fn chi_square_tail(chi2: f64, degrees_of_freedom: f64) -> f64 {
+        use statrs::distribution::{ChiSquared, ContinuousCDF};
+        ChiSquared::new(degrees_of_freedom).unwrap().sf(chi2)
+    }
+
+    /// Pearson's test of counts against probabilities, bins joined until each is expected ten times.
+    pub(in crate::sensor) fn chi_square_p(counts: &[usize], probabilities: &[f64]) -> f64 {
+        let n = counts.iter().sum::<usize>() as f64;
+        let (mut chi2, mut bins, mut seen, mut expected) = (0.0, 0.0, 0.0, 0.0);
+        let mut joined = 0.0;
+        for i in 0..counts.len().max(probabilities.len()) {
+            seen += counts.get(i).copied().unwrap_or(0) as f64;
+            expected += n * probabilities.get(i).copied().unwrap_or(0.0);
+            // The last bin takes all the rest, so that nothing unexpected is left out.
+            if expected >= 10.0 && n - joined - expected >= 10.0 {
+                chi2 += (seen - expected) * (seen - expected) / expected;
+                bins += 1.0;
+                joined += expected;
+                (seen, expected) = (0.0, 0.0);
+            }
+        }
+        let rest = n - joined;
+        chi2 += (seen - rest) * (seen - rest) / rest;
+        if bins < 1.0 { 1.0 } else { chi_square_tail(chi2, bins) }
+    }
+
+    /// A law as probabilities that start at the digital number 0.
+    pub(in crate::sensor) fn from_zero(law: &DnLaw) -> Vec<f64> {
+        let mut all = vec![0.0; usize::from(law.first_dn)];
+        all.extend(&law.probabilities);
+        all
+    }
+
+    fn laws() -> Vec<(PixelLaw, f64)> {
+        let mut laws = Vec::new();
+        for mean_e in [0.0, 0.1, 3.0, 20.0, 300.0, 1000.0] {
+            for (gain_e_per_dn, read_noise_e, bias_dn) in
+                [(10.0, 15.0, 50.3), (1.0, 1.5, 0.0), (30.0, 4.0, 2.7), (0.5, 20.0, 0.0), (7.0, 0.0, 1.0)]
+            {
+                let config = SensorConfig { gain_e_per_dn, read_noise_e, bias_dn, ..twelve_bit() };
+                laws.push((PixelLaw::new(&config), mean_e));
+            }
+        }
+        laws
+    }
+
+    #[test]
+    fn both_ways_to_the_probabilities_agree() {
+        for (law, mean_e) in laws().into_iter().filter(|(law, _)| law.read_noise_e >= 1.0) {
+            for extra_e in [0.0, 3.0] {
+                let reach = PoissonReach::new(mean_e);
+                let sum = from_zero(&law.by_sum(&poisson_atoms(mean_e, reach), extra_e));
+                let series = from_zero(&law.by_characteristic_function(mean_e, extra_e, reach));
+                for dn in 0..sum.len().max(series.len()) {
+                    let at = |law: &[f64]| law.get(dn).copied().unwrap_or(0.0);
+                    let error = at(&sum) - at(&series);
+                    // 2^-40, of each.
+                    assert!(error.abs() < 2.0 * 9.1e-13, "{law:?}, mean {mean_e}, {dn} DN: {error}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_probabilities_have_the_moments_of_poisson_plus_normal_plus_rounding() {
+        for (law, mean_e) in laws() {
+            // Far from both ends, and smooth, so that Sheppard's correction of 1/12 DN² holds.
+            if law.read_noise_e < 0.75 * law.gain_e_per_dn || law.bias_dn < 40.0 {
+                continue;
+            }
+            let probabilities = from_zero(&law.probabilities(mean_e, 0));
+            let moment = |f: &dyn Fn(f64) -> f64| -> f64 {
+                probabilities.iter().enumerate().map(|(dn, p)| p * f(dn as f64)).sum()
+            };
+            assert!((moment(&|_| 1.0) - 1.0).abs() < 1e-11);
+            let expected_dn = law.bias_dn + mean_e / law.gain_e_per_dn;
+            let gain2 = law.gain_e_per_dn * law.gain_e_per_dn;
+            let variance = (mean_e + law.read_noise_e * law.read_noise_e) / gain2 + 1.0 / 12.0;
+            // The rounding's own ripple is exp(−2π²σ²/g²), below 1e-15 at 1.5 DN of read noise.
+            assert!((moment(&|dn| dn) - expected_dn).abs() < 1e-8);
+            assert!((moment(&|dn| (dn - expected_dn) * (dn - expected_dn)) - variance).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn the_sampler_follows_the_probabilities() {
+        let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 0);
+        for (law, mean_e) in laws() {
+            let counts = counts_of((0..50_000).map(|_| usize::from(law.sample(mean_e, &mut stream))));
+            let p = chi_square_p(&counts, &from_zero(&law.probabilities(mean_e, 0)));
+            // Thirty tests: one in 3,000 runs would fail by chance, and the seed is fixed.
+            assert!(p > 1e-5, "{law:?}, mean {mean_e}: p = {p}");
+        }
+    }
+
+    #[test]
+    fn a_full_well_and_a_full_converter_saturate() {
+        let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 1);
+        for bit_depth in 8..=16 {
+            let config = SensorConfig { bit_depth, full_well_e: 1e9, ..twelve_bit() };
+            for mean_e in [1e8, 1e12, 1e300] {
+                assert_eq!(PixelLaw::new(&config).sample(mean_e, &mut stream), config.full_scale_dn());
+            }
+        }
+        let config = SensorConfig { full_well_e: 5000.0, ..twelve_bit() };
+        let law = PixelLaw::new(&config);
+        let counts = counts_of((0..20_000).map(|_| usize::from(law.sample(1e6, &mut stream))));
+        // Five thousand electrons for certain, and the read noise.
+        let full = PixelLaw { shot: Switch::Off, ..law }.probabilities(5000.0, 0);
+        assert!(chi_square_p(&counts, &from_zero(&full)) > 1e-4);
+        let half_full = counts_of((0..20_000).map(|_| usize::from(law.sample(5000.0, &mut stream))));
+        assert!(chi_square_p(&half_full, &from_zero(&law.probabilities(5000.0, 0))) > 1e-4);
+    }
+
+    #[test]
+    fn without_any_noise_the_number_is_certain() {
+        let mut config = twelve_bit();
+        (config.noise.shot, config.noise.read) = (Switch::Off, Switch::Off);
+        let law = PixelLaw::new(&config);
+        let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 2);
+        // 1234.5/10 + 50.3 + 0.5 = 174.25.
+        assert_eq!(law.sample(1234.5, &mut stream), 174);
+        assert_eq!(law.probabilities(1234.5, 0), DnLaw { first_dn: 174, probabilities: vec![1.0] });
+    }
+}

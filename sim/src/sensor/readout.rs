@@ -1,0 +1,328 @@
+//! From expected photo-electrons to digital numbers.
+
+use rand::Rng;
+
+use super::config::{SensorConfig, Switch};
+use super::flat_laws::{FlatLaw, FlatLaws};
+use super::hot_pixels::{HotPixel, hot_pixels};
+use super::pixel_law::PixelLaw;
+use crate::SimError;
+use crate::draw::ExpectedImage;
+use crate::randomness::{Effect, Seed};
+
+/// A detector with its readout. What is fixed for its life, hot pixels included, is made once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensor {
+    config: SensorConfig,
+    law: PixelLaw,
+    columns: usize,
+    rows: usize,
+    hot_pixels: Vec<HotPixel>,
+}
+
+/// The expected charge of every pixel at the end of an exposure: photo-electrons, dark current and hot pixels. Made
+/// by [`Sensor::collect`] alone.
+#[derive(Debug)]
+pub struct Charge<'a> {
+    expected: &'a ExpectedImage,
+}
+
+impl Charge<'_> {
+    /// Expected electrons, before saturation and noise.
+    pub fn expected(&self) -> &ExpectedImage {
+        self.expected
+    }
+}
+
+/// Digital numbers as they leave the converter. Reused from frame to frame.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RawImage {
+    columns: usize,
+    rows: usize,
+    bit_depth: u8,
+    dn: Vec<u16>,
+}
+
+impl RawImage {
+    /// An image made by hand.
+    #[cfg(test)]
+    pub(crate) fn from_dn(columns: usize, rows: usize, bit_depth: u8, dn: Vec<u16>) -> Self {
+        assert_eq!(dn.len(), columns * rows);
+        Self { columns, rows, bit_depth, dn }
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> (usize, usize) {
+        (self.columns, self.rows)
+    }
+
+    /// Bits of the converter.
+    pub fn bit_depth(&self) -> u8 {
+        self.bit_depth
+    }
+
+    /// All digital numbers, row by row.
+    pub fn dn(&self) -> &[u16] {
+        &self.dn
+    }
+}
+
+impl Sensor {
+    /// A sensor of `columns` × `rows` pixels.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for a number out of range.
+    pub fn new(config: &SensorConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
+        config.check()?;
+        Ok(Self {
+            law: PixelLaw::new(config),
+            hot_pixels: hot_pixels(&config.hot_pixels, columns, rows)?,
+            config: config.clone(),
+            columns,
+            rows,
+        })
+    }
+
+    /// The configuration it was made of.
+    pub fn config(&self) -> &SensorConfig {
+        &self.config
+    }
+
+    /// Its hot pixels, in the order of the image.
+    pub fn hot_pixels(&self) -> &[HotPixel] {
+        &self.hot_pixels
+    }
+
+    /// Photo-electrons of the flat sky in every pixel: the level to clear an image to.
+    pub fn sky_electrons(&self, exposure_s: f64) -> f64 {
+        self.config.background_e_per_s * exposure_s
+    }
+
+    /// Expected electrons of a pixel without signal: sky and dark current.
+    pub fn flat_electrons(&self, exposure_s: f64) -> f64 {
+        self.sky_electrons(exposure_s)
+            + self.config.noise.dark.of(self.config.dark_current_e_per_s) * exposure_s
+    }
+
+    /// Standard deviation of the read noise that is simulated, electrons; 0 when it is off.
+    pub fn read_noise_e(&self) -> f64 {
+        self.config.noise.read.of(self.config.read_noise_e)
+    }
+
+    /// An image that [`Sensor::collect`] and [`Sensor::read_out`] take.
+    pub fn new_expected(&self) -> ExpectedImage {
+        ExpectedImage::new(self.columns, self.rows)
+    }
+
+    /// A raw image for [`Sensor::read_out`].
+    pub fn new_raw(&self) -> RawImage {
+        RawImage {
+            columns: self.columns,
+            rows: self.rows,
+            bit_depth: self.config.bit_depth,
+            dn: vec![0; self.columns * self.rows],
+        }
+    }
+
+    /// Adds to the photo-electrons what the detector collects by itself in an exposure: dark current and hot pixels.
+    pub fn collect<'a>(&self, photo_electrons: &'a mut ExpectedImage, exposure_s: f64) -> Charge<'a> {
+        photo_electrons.add_flat(self.config.noise.dark.of(self.config.dark_current_e_per_s) * exposure_s);
+        for pixel in &self.hot_pixels {
+            photo_electrons.add_pixel(pixel.x, pixel.y, pixel.rate_e_per_s * exposure_s);
+        }
+        Charge { expected: photo_electrons }
+    }
+
+    /// Draws the digital number of every pixel.
+    ///
+    /// A row has one stream, at place = row, of which every pixel takes 32 bits: from them comes the number of a
+    /// pixel without signal. A pixel with signal is drawn anew from an address of its own, place = rows + index, so
+    /// that what is in one pixel never changes the draw of another.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] when the image is not of the sensor's size.
+    pub fn read_out(
+        &self,
+        charge: &Charge<'_>,
+        seed: &Seed,
+        frame: u64,
+        laws: &mut FlatLaws,
+        raw: &mut RawImage,
+    ) -> Result<(), SimError> {
+        let expected = charge.expected;
+        if expected.size() != (self.columns, self.rows) {
+            return Err(SimError::Parameter {
+                field: "size of the expected image",
+                value: format!("{:?}", expected.size()),
+                expected: "the columns and rows of the sensor",
+            });
+        }
+        (raw.columns, raw.rows, raw.bit_depth) = (self.columns, self.rows, self.config.bit_depth);
+        raw.dn.resize(self.columns * self.rows, 0);
+        let streams = seed.streams(frame, Effect::PixelNoise);
+        let flat = laws.of(&self.law, expected.flat_e());
+        let table = flat.flat();
+        for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            let mut stream = streams.at(y as u64);
+            let mut pairs = row.chunks_exact_mut(2);
+            for pair in &mut pairs {
+                let word = stream.next_u64();
+                pair[0] = table.draw(word as u32);
+                pair[1] = table.draw((word >> 32) as u32);
+            }
+            if let [last] = pairs.into_remainder() {
+                *last = table.draw(stream.next_u64() as u32);
+            }
+        }
+        for (index, signal_e) in expected.drawn() {
+            let place = (self.rows + index) as u64;
+            // Without shot noise electrons are not counted, and there is nothing to superpose.
+            raw.dn[index] = if signal_e <= FlatLaw::FAINT_E && self.law.shot == Switch::On {
+                flat.draw_faint(signal_e, streams.word(place))
+            } else {
+                self.law.sample(expected.flat_e() + signal_e, &mut streams.at(place))
+            };
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::config::tests::twelve_bit;
+    use super::*;
+    use crate::optics::{Psf, PsfConfig, Stamp};
+    use contract::PixelPoint;
+    use sha2::{Digest, Sha256};
+
+    const SEED: Seed = Seed { seed: 42, case: 0 };
+
+    /// A frame of 65 × 48 pixels with stars of the electrons given, all on one diagonal.
+    fn frame(config: &SensorConfig, number: u64, stars_e: &[f64]) -> RawImage {
+        let sensor = Sensor::new(config, 65, 48).unwrap();
+        let mut psf = Psf::new(&PsfConfig::Gaussian { sigma_px: 0.8 }).unwrap();
+        let mut image = sensor.new_expected();
+        image.clear(sensor.sky_electrons(0.5));
+        let mut stamp = Stamp::new();
+        for (i, electrons) in stars_e.iter().enumerate() {
+            let centre = PixelPoint::new(8.3 + 12.0 * i as f64, 6.8 + 10.0 * i as f64);
+            psf.stamp(centre, *electrons, Psf::FLOOR_E, image.size(), &mut stamp);
+            image.add(&stamp);
+        }
+        let mut raw = sensor.new_raw();
+        let charge = sensor.collect(&mut image, 0.5);
+        sensor.read_out(&charge, &SEED, number, &mut FlatLaws::new(), &mut raw).unwrap();
+        raw
+    }
+
+    fn hash(raw: &RawImage) -> String {
+        let bytes: Vec<u8> = raw.dn.iter().flat_map(|dn| dn.to_le_bytes()).collect();
+        Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
+    /// The pixels themselves are frozen: this must hold on every machine, and a change here changes every result
+    /// and belongs in CHANGELOG.md.
+    #[test]
+    fn the_pixels_of_a_small_frame_are_frozen() {
+        let raw = frame(&twelve_bit(), 7, &[500.0, 5e3, 5e4, 5e5]);
+        assert_eq!(hash(&raw), GOLDEN);
+    }
+
+    const GOLDEN: &str = "c81496c2984ebb6c9c98e71fcedc565ba0fdc41c750664209edcedfd8b3cc254";
+
+    #[test]
+    fn a_star_changes_no_pixel_but_its_own() {
+        let (without, with) = (frame(&twelve_bit(), 1, &[]), frame(&twelve_bit(), 1, &[5e3]));
+        for (index, (a, b)) in without.dn.iter().zip(&with.dn).enumerate() {
+            let distance =
+                PixelPoint::new((index % 65) as f64, (index / 65) as f64).distance(PixelPoint::new(8.3, 6.8));
+            // exp(−d²/2σ²) of 5,000 e⁻ is below the floor of 0.01 e⁻ from 4.2 px on; a corner of a pixel more.
+            assert!(a == b || distance < 5.0, "{index}");
+        }
+        assert_ne!(without, with);
+    }
+
+    #[test]
+    fn hot_pixels_stay_and_their_noise_does_not() {
+        let mut config = twelve_bit();
+        config.hot_pixels.median_e_per_s = 20_000.0;
+        let sensor = Sensor::new(&config, 65, 48).unwrap();
+        let hot: Vec<usize> = sensor.hot_pixels().iter().map(|pixel| pixel.y * 65 + pixel.x).collect();
+        let frames: Vec<RawImage> = (0..20).map(|number| frame(&config, number, &[])).collect();
+        for (pixel, index) in sensor.hot_pixels().iter().zip(&hot) {
+            let expected_e = 20.0 + 0.5 * pixel.rate_e_per_s;
+            let mean_dn = frames.iter().map(|raw| f64::from(raw.dn[*index])).sum::<f64>() / 20.0;
+            let error_e = ((expected_e + 225.0) / 20.0).sqrt();
+            // Of twenty frames, five standard errors, and 3 e⁻ for the rounding of the converter.
+            assert!(
+                ((mean_dn - 50.3) * 10.0 - expected_e.min(40_000.0)).abs() < 5.0 * error_e + 3.0,
+                "{pixel:?}"
+            );
+        }
+        assert_ne!(frames[0], frames[1]);
+        config.hot_pixels.seed += 1;
+        assert_ne!(Sensor::new(&config, 65, 48).unwrap().hot_pixels(), sensor.hot_pixels());
+    }
+
+    /// Flat frames at growing exposures: the variance grows with the mean by 1/gain (Janesick's photon transfer).
+    #[test]
+    fn the_slope_of_variance_over_mean_is_one_over_the_gain() {
+        let config = SensorConfig {
+            gain_e_per_dn: 4.0,
+            background_e_per_s: 2000.0,
+            dark_current_e_per_s: 0.0,
+            hot_pixels: Default::default(),
+            ..twelve_bit()
+        };
+        let sensor = Sensor::new(&config, 512, 512).unwrap();
+        let (mut image, mut raw, mut laws) = (sensor.new_expected(), sensor.new_raw(), FlatLaws::new());
+        let mut moments = |exposure_s: f64| {
+            let (mut sum, mut squares, mut n) = (0.0, 0.0, 0.0);
+            for number in 0..4 {
+                image.clear(sensor.sky_electrons(exposure_s));
+                let charge = sensor.collect(&mut image, exposure_s);
+                sensor.read_out(&charge, &SEED, number + 1000, &mut laws, &mut raw).unwrap();
+                for dn in &raw.dn {
+                    let dn = f64::from(*dn) - 50.0;
+                    (sum, squares, n) = (sum + dn, squares + dn * dn, n + 1.0);
+                }
+            }
+            let mean = sum / n;
+            (mean, squares / n - mean * mean)
+        };
+        let ((low_mean, low_variance), (high_mean, high_variance)) = (moments(0.05), moments(4.0));
+        let slope = (high_variance - low_variance) / (high_mean - low_mean);
+        // A variance from a million pixels is known to sqrt(2/n) = 0.14 %; half a percent is three and a half of that.
+        assert!((slope * 4.0 - 1.0).abs() < 0.005, "slope {slope}");
+        // At the lower end: 100 e⁻ and 15² e⁻² over 4², and 1/12 of rounding.
+        assert!((low_variance / (325.0 / 16.0 + 1.0 / 12.0) - 1.0).abs() < 0.007, "{low_variance}");
+    }
+
+    #[test]
+    fn every_bit_depth_reaches_its_full_scale_and_no_more() {
+        for bit_depth in 8..=16 {
+            let config = SensorConfig { bit_depth, full_well_e: 1e8, ..twelve_bit() };
+            let raw = frame(&config, 3, &[1e9]);
+            assert_eq!(raw.dn.iter().max(), Some(&config.full_scale_dn()));
+        }
+    }
+
+    #[test]
+    fn without_shot_and_read_noise_the_frame_is_the_expectation() {
+        let mut config = twelve_bit();
+        (config.noise.shot, config.noise.read) = (Switch::Off, Switch::Off);
+        config.hot_pixels.count = 0;
+        let raw = frame(&config, 3, &[]);
+        // 20 e⁻ (sky 15, dark 5) at 10 e⁻/DN over a bias of 50.3, rounded.
+        assert!(raw.dn.iter().all(|dn| *dn == 52));
+    }
+
+    #[test]
+    fn an_image_of_another_size_is_refused() {
+        let sensor = Sensor::new(&twelve_bit(), 65, 48).unwrap();
+        let mut image = ExpectedImage::new(64, 48);
+        let charge = sensor.collect(&mut image, 1.0);
+        let mut raw = sensor.new_raw();
+        assert!(sensor.read_out(&charge, &SEED, 0, &mut FlatLaws::new(), &mut raw).is_err());
+    }
+}
