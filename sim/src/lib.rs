@@ -1,12 +1,20 @@
 //! The simulator: truth → scene → optics → sensor → on-board preprocessing → frame.
+//!
+//! [`SimulatedCamera::expose`] makes one frame with its telemetry and its truth. Every random draw has an address
+//! (seed, case, frame, effect, place), so frame 7000 alone is the frame 7000 of the whole run.
 
 pub mod catalog;
 pub mod draw;
 mod error;
+mod expose;
 pub mod onboard;
 pub mod optics;
 pub mod randomness;
+pub mod scene;
 pub mod sensor;
+mod simulator;
 pub mod truth;
 
 pub use error::SimError;
+pub use expose::{Exposure, SimulatedCamera};
+pub use simulator::{Simulation, Simulator};

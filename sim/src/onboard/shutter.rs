@@ -15,13 +15,14 @@ pub enum ShutterConfig {
         /// Exposure, s, 1e-6 to 1000.
         exposure_s: f64,
     },
-    /// Shortened as the brightest object grows, so that it is not over-exposed.
+    /// Shortened as the brightest object grows, so that it is not over-exposed by more than a level.
     Automatic {
         /// Shortest exposure, s, 1e-6 to `max_s`.
         min_s: f64,
         /// Longest exposure, s, up to 1000.
         max_s: f64,
-        /// Level that the brightest object's peak pixel may reach, as a fraction of saturation, in (0, 1].
+        /// Level that the brightest object's peak pixel may reach, as a fraction of saturation, above 0, at most 1000. Above 1
+        /// the control lets the object be over-exposed by that factor before it shortens the exposure.
         target_level: f64,
         /// Ratio of neighbouring exposures of the ladder that the camera can command, 1.001 to 100.
         step_factor: f64,
@@ -42,7 +43,7 @@ impl ShutterConfig {
             Self::Automatic { min_s, max_s, target_level, step_factor, lag_s } => {
                 require("shutter.max_s", max_s, "1e-6 to 1000", exposure)?;
                 require("shutter.min_s", min_s, "1e-6 to shutter.max_s", |v| exposure(v) && v <= max_s)?;
-                require("shutter.target_level", target_level, "in (0, 1]", |v| v > 0.0 && v <= 1.0)?;
+                require("shutter.target_level", target_level, "greater than 0, at most 1000", |v| v > 0.0 && v <= 1e3)?;
                 require("shutter.step_factor", step_factor, "1.001 to 100", |v| {
                     (1.001..=100.0).contains(&v)
                 })?;

@@ -138,6 +138,12 @@ impl Psf {
         }
     }
 
+    /// How far off the detector an object may be and still be drawn, px: five standard deviations of the widest
+    /// component, beyond which less than 1e-6 of the light falls.
+    pub fn margin_px(&self) -> f64 {
+        self.components.iter().map(|component| 5.0 * component.sigma_px).fold(0.0, f64::max)
+    }
+
     /// The share of the light that falls in the pixel under the centre of the image, at best: when the image is
     /// centred on the pixel. The shutter control takes it for the brightest pixel.
     pub fn peak_share(&self) -> f64 {

@@ -121,10 +121,10 @@ impl Schedule {
         self.groups.last().map_or(0, |group| group.frames.end)
     }
 
-    /// Index of the group and middle of the exposure of frame `n`; `None` past the last frame.
-    pub fn frame(&self, n: u64) -> Option<(usize, Epoch)> {
-        let index = self.group_of(n)?;
-        Some((index, self.groups[index].time(n)))
+    /// Name of the group and middle of the exposure of frame `n`; `None` past the last frame.
+    pub fn frame(&self, n: u64) -> Option<(&str, Epoch)> {
+        let group = &self.groups[self.group_of(n)?];
+        Some((&group.name, group.time(n)))
     }
 
     /// Index of the group of frame `n`; `None` past the last frame.
@@ -163,9 +163,9 @@ mod tests {
         let schedule = Schedule::new(&days()).unwrap();
         assert_eq!(schedule.frame_count(), 4612);
         assert_eq!(schedule.group_of(1633), Some(0));
-        let (index, time) = schedule.frame(1634).unwrap();
-        assert_eq!((index, time), (1, parse_utc_of("t", "2012-04-24T06:00:00Z").unwrap()));
-        assert_eq!(schedule.frame(4611).map(|(index, _)| index), Some(1));
+        let (name, time) = schedule.frame(1634).unwrap();
+        assert_eq!((name, time), ("day 2", parse_utc_of("t", "2012-04-24T06:00:00Z").unwrap()));
+        assert_eq!(schedule.frame(4611).map(|(name, _)| name), Some("day 2"));
         assert_eq!(schedule.frame(4612), None);
         assert_eq!(schedule.group_of(u64::MAX), None);
     }

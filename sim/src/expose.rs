@@ -1,0 +1,253 @@
+//! Truth → scene → optics → sensor → on board: one frame, in one function.
+
+use contract::{Body, CameraFrame, Direction, Frame, Icrs, PixelPoint, Rotation, Telemetry};
+use hifitime::{Epoch, Unit};
+
+use crate::draw::ExpectedImage;
+use crate::onboard::{RoiExtractor, downlink};
+use crate::optics::{Psf, Stamp};
+use crate::scene::Source;
+use crate::sensor::{FlatLaws, RawImage};
+use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, shadow};
+use crate::{SimError, Simulator};
+
+/// Electrons below which a pixel of a star's image is not drawn: a hundredth of the least noise of any sensor.
+const STAMP_FLOOR_E: f64 = 0.01;
+
+/// One frame with all that belongs to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exposure {
+    /// The image as it arrives on the ground.
+    pub frame: Frame,
+    /// What the spacecraft tells about it.
+    pub telemetry: Telemetry,
+    /// The truth about the frame.
+    pub truth: FrameTruth,
+    /// The truth about every object in it: the target, then stars, then hot pixels, each by number.
+    pub objects: Vec<ObjectTruth>,
+}
+
+/// A camera of a [`Simulator`], with the buffers that frames reuse. One a thread.
+#[derive(Debug)]
+pub struct SimulatedCamera<'a> {
+    simulator: &'a Simulator,
+    psf: Psf,
+    image: ExpectedImage,
+    laws: FlatLaws,
+    raw: RawImage,
+    regions: Option<RoiExtractor>,
+    sources: Vec<Source>,
+    stamps: Vec<Stamp>,
+}
+
+/// Where everything is at one moment.
+struct Moment {
+    states: States,
+    observer: Observer,
+    body_from_icrs: Rotation<Body, Icrs>,
+    camera_from_icrs: Rotation<CameraFrame, Icrs>,
+    line_of_sight: Direction<Icrs>,
+    sunlit_fraction: f64,
+    phase_rad: f64,
+    /// The target, and where its image is; `None` behind the camera.
+    target: Source,
+    target_position: Option<PixelPoint>,
+}
+
+impl<'a> SimulatedCamera<'a> {
+    pub(crate) fn new(simulator: &'a Simulator) -> Result<Self, SimError> {
+        let (columns, rows) = simulator.projection.detector();
+        let regions = simulator.roi.as_ref().map(|roi| RoiExtractor::new(roi, columns, rows)).transpose()?;
+        Ok(Self {
+            simulator,
+            psf: simulator.psf.clone(),
+            image: simulator.sensor.new_expected(),
+            laws: FlatLaws::new(),
+            raw: simulator.sensor.new_raw(),
+            regions,
+            sources: Vec::new(),
+            stamps: Vec::new(),
+        })
+    }
+
+    /// Makes frame number `number`: the same bits whatever was made before.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] when the schedule has no such frame.
+    pub fn expose(&mut self, number: u64) -> Result<Exposure, SimError> {
+        let simulator = self.simulator;
+        let (group, time) = simulator.schedule.frame(number).ok_or_else(|| SimError::Parameter {
+            field: "frame",
+            value: number.to_string(),
+            expected: "a frame of the schedule",
+        })?;
+        let exposure_s = self.exposure_s(time, number)?;
+        let moment = self.moment(time, number)?;
+
+        self.sources.clear();
+        if moment.target_position.is_some() {
+            self.sources.push(moment.target);
+        }
+        simulator.stars.look(
+            &moment.observer,
+            moment.camera_from_icrs,
+            &simulator.projection,
+            self.psf.margin_px(),
+            &mut self.sources,
+        );
+        let mut objects = self.draw(number, exposure_s);
+        let charge = simulator.sensor.collect(&mut self.image, exposure_s);
+        simulator.sensor.read_out(&charge, &simulator.seed, number, &mut self.laws, &mut self.raw)?;
+        let windows = self.regions.as_mut().map(|regions| regions.extract(&self.raw));
+        if let Some(windows) = &windows {
+            for (object, stamp) in objects.iter_mut().zip(&self.stamps) {
+                object.cut = stamp.cut(windows);
+            }
+        }
+
+        let truth = FrameTruth {
+            frame: number,
+            group: group.to_owned(),
+            time,
+            exposure_s,
+            body_from_icrs: moment.body_from_icrs,
+            camera_from_icrs: moment.camera_from_icrs,
+            position_km: moment.states.chaser.position_km,
+            velocity_km_s: moment.states.chaser.velocity_km_s,
+            line_of_sight: moment.line_of_sight,
+            range_km: moment.states.range_km(),
+            sun: moment.observer.sun(),
+            phase_deg: moment.phase_rad.to_degrees(),
+            shadow: shadow::classify(moment.sunlit_fraction),
+            sunlit_fraction: moment.sunlit_fraction,
+            target_position: moment.target_position,
+            target_visibility: Visibility::of_snr(
+                objects.first().filter(|object| object.kind == ObjectKind::Target).map_or(0.0, |target| target.snr),
+            ),
+        };
+        let telemetry = simulator.knowledge.telemetry(
+            &simulator.attitude,
+            &simulator.trajectory,
+            time,
+            number,
+            exposure_s,
+        );
+        let frame = downlink(&self.raw, number, windows)?;
+        Ok(Exposure { frame, telemetry, truth, objects })
+    }
+
+    /// The noise-free expectation of the last frame made, electrons a pixel (dark current and hot pixels included), before
+    /// saturation.
+    pub fn expected(&self) -> &ExpectedImage {
+        &self.image
+    }
+
+    /// Where everything is at `time`, with the attitude of frame `number`.
+    fn moment(&self, time: Epoch, number: u64) -> Result<Moment, SimError> {
+        let simulator = self.simulator;
+        let states = simulator.trajectory.at(time);
+        let body_from_icrs = simulator.attitude.truth(&states, number);
+        let camera_from_icrs = simulator.camera_from_body * body_from_icrs;
+        let observer = Observer::new(time, states.chaser.position_km, states.chaser.velocity_km_s)?;
+
+        let line_of_sight_km = states.line_of_sight_km();
+        let line_of_sight = Direction::from_vector(line_of_sight_km)?;
+        let earth_to_sun_km = observer.sun_geocentric_km();
+        let target_to_sun_km = earth_to_sun_km - states.target.position_km;
+        let sunlit_fraction = shadow::sunlit_fraction(&states.target.position_km, &earth_to_sun_km);
+        let target_to_chaser_km = -line_of_sight_km;
+        let phase_rad = libm::atan2(
+            target_to_sun_km.cross(&target_to_chaser_km).norm(),
+            target_to_sun_km.dot(&target_to_chaser_km),
+        );
+        let magnitude =
+            simulator.target.magnitude(states.range_km(), target_to_sun_km.norm(), phase_rad, sunlit_fraction);
+        // The target moves with the chaser: light time cancels aberration, so it is seen where it is.
+        let target_position = simulator.projection.project(&(camera_from_icrs * line_of_sight));
+        let target = Source {
+            kind: ObjectKind::Target,
+            id: 0,
+            position: target_position.unwrap_or_default(),
+            astrometric: Some(line_of_sight),
+            magnitude: Some(magnitude),
+            electrons_per_s: simulator.radiometry.electrons_per_s(magnitude),
+        };
+        Ok(Moment {
+            states,
+            observer,
+            body_from_icrs,
+            camera_from_icrs,
+            line_of_sight,
+            sunlit_fraction,
+            phase_rad,
+            target,
+            target_position,
+        })
+    }
+
+    /// The exposure time that the shutter control chooses: it follows the brightest object on the detector, as it
+    /// was a lag before the exposure.
+    fn exposure_s(&self, time: Epoch, number: u64) -> Result<f64, SimError> {
+        let simulator = self.simulator;
+        let moment = self.moment(time - simulator.shutter.lag_s() * Unit::Second, number)?;
+        let (columns, rows) = simulator.projection.detector();
+        let target = moment.target_position.filter(|position| position.is_on_detector(columns, rows));
+        let brightest = simulator.stars.brightest(
+            &moment.observer,
+            moment.camera_from_icrs,
+            &simulator.projection,
+            target.map_or(0.0, |_| moment.target.electrons_per_s),
+        );
+        let peak = (brightest > 0.0).then(|| brightest * self.psf.peak_share());
+        Ok(simulator.shutter.exposure_s(peak))
+    }
+
+    /// Draws the expected image, keeps a stamp of every object that has light on the detector, and tells its truth.
+    fn draw(&mut self, number: u64, exposure_s: f64) -> Vec<ObjectTruth> {
+        let simulator = self.simulator;
+        let sensor = &simulator.sensor;
+        let flat_e = sensor.flat_electrons(exposure_s);
+        let detector = self.image.size();
+        self.image.clear(sensor.sky_electrons(exposure_s));
+        let hot_pixels = sensor.hot_pixels().iter().map(|hot| Source {
+            kind: ObjectKind::HotPixel,
+            id: (hot.y * detector.0 + hot.x) as u32,
+            position: PixelPoint::new(hot.x as f64, hot.y as f64),
+            astrometric: None,
+            magnitude: None,
+            electrons_per_s: hot.rate_e_per_s,
+        });
+        let mut objects = Vec::with_capacity(self.sources.len() + hot_pixels.len());
+        for source in self.sources.iter().copied().chain(hot_pixels) {
+            if objects.len() == self.stamps.len() {
+                self.stamps.push(Stamp::new());
+            }
+            let stamp = &mut self.stamps[objects.len()];
+            let electrons = source.electrons_per_s * exposure_s;
+            if source.kind == ObjectKind::HotPixel {
+                // The sensor itself collects it; here it is only described.
+                stamp.set_pixel(source.position.x as usize, source.position.y as usize, electrons);
+            } else {
+                self.psf.stamp(source.position, electrons, STAMP_FLOOR_E, detector, stamp);
+                self.image.add(stamp);
+            }
+            let truth = stamp.truth(flat_e, sensor.read_noise_e());
+            if truth.electrons > 0.0 {
+                objects.push(ObjectTruth {
+                    frame: number,
+                    kind: source.kind,
+                    id: source.id,
+                    position: source.position,
+                    astrometric: source.astrometric,
+                    magnitude: source.magnitude,
+                    electrons: truth.electrons,
+                    peak_electrons: truth.peak_electrons,
+                    snr: truth.snr,
+                    radius_px: truth.radius_px,
+                    cut: 0.0,
+                });
+            }
+        }
+        objects
+    }
+}

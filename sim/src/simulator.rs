@@ -1,0 +1,138 @@
+//! A simulation, checked and prepared.
+
+use std::path::Path;
+
+use contract::{Body, Camera, CameraFrame, Rotation};
+
+use crate::catalog::{Catalog, CatalogConfig};
+use crate::onboard::{RoiConfig, RoiExtractor, Shutter, ShutterConfig};
+use crate::optics::{Projection, Psf, PsfConfig, RadiometryConfig};
+use crate::randomness::Seed;
+use crate::scene::{StarField, TargetConfig};
+use crate::sensor::{Sensor, SensorConfig};
+use crate::truth::{
+    Attitude, AttitudeConfig, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig, Observer, OrbitConfig,
+    Schedule, Trajectory,
+};
+use crate::{SimError, SimulatedCamera};
+
+/// All that the simulator is told.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulation {
+    /// Seed of every random draw but the detector's fixed pattern.
+    pub seed: u64,
+    /// Which stars are drawn.
+    pub catalog: CatalogConfig,
+    /// Orbits of target and chaser.
+    pub orbit: OrbitConfig,
+    /// When images are taken.
+    pub schedule: Vec<GroupConfig>,
+    /// Where the chaser points, and how well.
+    pub attitude: AttitudeConfig,
+    /// What telemetry knows of the attitude.
+    pub knowledge: KnowledgeConfig,
+    /// How the camera sits on the chaser.
+    pub mounting: MountingConfig,
+    /// Geometry of the camera.
+    pub camera: Camera,
+    /// Point spread function.
+    pub psf: PsfConfig,
+    /// From magnitudes to photoelectrons.
+    pub radiometry: RadiometryConfig,
+    /// The detector.
+    pub sensor: SensorConfig,
+    /// The law of the exposure time.
+    pub shutter: ShutterConfig,
+    /// Regions kept on board; `None`: whole images.
+    pub roi: Option<RoiConfig>,
+    /// The target as a source of light.
+    pub target: TargetConfig,
+}
+
+/// A simulation that was checked and prepared; shared by all threads.
+#[derive(Debug)]
+pub struct Simulator {
+    catalog: Catalog,
+    pub(crate) stars: StarField,
+    pub(crate) trajectory: Trajectory,
+    pub(crate) schedule: Schedule,
+    pub(crate) attitude: Attitude,
+    pub(crate) knowledge: Knowledge,
+    pub(crate) camera_from_body: Rotation<CameraFrame, Body>,
+    pub(crate) projection: Projection,
+    pub(crate) psf: Psf,
+    pub(crate) sensor: Sensor,
+    pub(crate) shutter: Shutter,
+    pub(crate) roi: Option<RoiConfig>,
+    pub(crate) seed: Seed,
+    pub(crate) target: TargetConfig,
+    pub(crate) radiometry: RadiometryConfig,
+}
+
+impl Simulator {
+    /// Checks and prepares a simulation; paths in it start from `folder`.
+    ///
+    /// # Errors
+    /// [`SimError`] for the first value that is not allowed, or a catalogue that cannot be read.
+    pub fn new(simulation: &Simulation, folder: &Path) -> Result<Self, SimError> {
+        let seed = Seed { seed: simulation.seed, case: 0 };
+        simulation.radiometry.check()?;
+        simulation.target.check()?;
+        let trajectory = Trajectory::new(&simulation.orbit)?;
+        let schedule = Schedule::new(&simulation.schedule)?;
+        // Every time of the schedule lies between the first and the last frame: if these can be seen, all can.
+        for number in [0, schedule.frame_count().saturating_sub(1)] {
+            if let Some((_, time)) = schedule.frame(number) {
+                let chaser = trajectory.at(time).chaser;
+                Observer::new(time, chaser.position_km, chaser.velocity_km_s)?;
+            }
+        }
+        let projection = Projection::new(&simulation.camera)?;
+        let (columns, rows) = projection.detector();
+        if let Some(roi) = &simulation.roi {
+            roi.check(columns, rows)?;
+        }
+        simulation.catalog.check()?;
+        let catalog = Catalog::load(&simulation.catalog, folder)?;
+        Ok(Self {
+            stars: StarField::new(&catalog, &simulation.radiometry),
+            catalog,
+            trajectory,
+            schedule,
+            attitude: Attitude::new(&simulation.attitude, &simulation.mounting, seed)?,
+            knowledge: Knowledge::new(&simulation.knowledge, seed)?,
+            camera_from_body: simulation.mounting.actual.camera_from_body(),
+            projection,
+            psf: Psf::new(&simulation.psf)?,
+            sensor: Sensor::new(&simulation.sensor, columns, rows)?,
+            shutter: Shutter::new(&simulation.shutter, simulation.sensor.saturation_e())?,
+            roi: simulation.roi.clone(),
+            seed,
+            target: simulation.target.clone(),
+            radiometry: simulation.radiometry.clone(),
+        })
+    }
+
+    /// The stars that are drawn.
+    pub fn catalog(&self) -> &Catalog {
+        &self.catalog
+    }
+
+    /// When images are taken.
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
+    /// The true camera model.
+    pub fn projection(&self) -> &Projection {
+        &self.projection
+    }
+
+    /// A camera of this simulation: one a thread, reused from frame to frame.
+    ///
+    /// # Errors
+    /// None after [`Simulator::new`], which made the same checks.
+    pub fn camera(&self) -> Result<SimulatedCamera<'_>, SimError> {
+        SimulatedCamera::new(self)
+    }
+}
