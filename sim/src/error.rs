@@ -18,6 +18,9 @@ pub enum SimError {
     /// A value that the contract refuses.
     #[error(transparent)]
     Contract(#[from] contract::ContractError),
+    /// A star catalogue that cannot be used.
+    #[error(transparent)]
+    Catalog(#[from] crate::catalog::CatalogError),
 }
 
 /// Checks that `value` is finite and satisfies `holds`.

@@ -2,6 +2,8 @@
 
 use contract::{Angle, Direction, Icrs};
 
+use super::photometry;
+
 /// A star as catalogued: ICRS, epoch J1991.25 (TT).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CatalogStar {
@@ -23,7 +25,7 @@ pub struct CatalogStar {
     pub hp_mag: f64,
     /// Colour index B−V, mag; NaN never: `None` where unknown.
     pub b_v: Option<f64>,
-    /// Colour index V−I, mag.
+    /// Colour index V−I, mag; `None` where unknown.
     pub v_i: Option<f64>,
 }
 
@@ -31,5 +33,10 @@ impl CatalogStar {
     /// Direction at the catalogue's epoch.
     pub fn direction(&self) -> Direction<Icrs> {
         Direction::from_ra_dec(Angle::from_radians(self.ra_rad), Angle::from_radians(self.dec_rad))
+    }
+
+    /// Johnson V, mag, by [`photometry::v_mag`], whose limits apply.
+    pub fn v_mag(&self) -> f64 {
+        photometry::v_mag(self.hp_mag, self.b_v)
     }
 }

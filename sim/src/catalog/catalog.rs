@@ -1,0 +1,192 @@
+//! A catalogue: stars in ascending order of their numbers, and the hash of where they came from.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use contract::{Angle, Direction};
+use sha2::{Digest, Sha256};
+
+use super::cone::within_cone;
+use super::config::{CatalogConfig, CatalogSource};
+use super::{CatalogError, CatalogStar, hipparcos, read};
+
+/// Stars in ascending order of id, each id once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Catalog {
+    stars: Vec<CatalogStar>,
+    sha256: String,
+    exclusions: Vec<Exclusion>,
+}
+
+/// A star that a file lists and that the catalogue does not hold.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Exclusion {
+    /// Line in the file, counted from 1.
+    pub line: usize,
+    /// Number of the star.
+    pub id: u32,
+    /// Why it is left out.
+    pub reason: &'static str,
+}
+
+impl Catalog {
+    /// The embedded Hipparcos-2: 117 955 stars (van Leeuwen 2007, A&A 474, 653; CDS I/311), with the radial
+    /// velocities of the near and fast ones (`radial_velocity.rs` tells which, and from where).
+    ///
+    /// ```
+    /// use boresight_sim::catalog::Catalog;
+    /// let catalog = Catalog::hipparcos2();
+    /// let pollux = catalog.star(37826).expect("Pollux is HIP 37826");
+    /// assert!((pollux.v_mag() - 1.14).abs() < 0.02);
+    /// ```
+    pub fn hipparcos2() -> Self {
+        Self { stars: hipparcos::stars(), sha256: hipparcos::sha256(), exclusions: Vec::new() }
+    }
+
+    /// Reads a user's catalogue. The format is told by name and content: a name ending in `.csv` is CSV with named
+    /// columns; otherwise a first line that begins with `H|` is hip_main.dat (I/239), and one of 276 characters
+    /// without a `|` is hip2.dat (I/311).
+    ///
+    /// Stars that the file lists without a position are left out and told by [`Catalog::exclusions`]; any other
+    /// flaw is an error. The two Hipparcos formats have no radial velocities and get those of the embedded catalogue.
+    ///
+    /// # Errors
+    /// [`CatalogError`] with the file, the line and the place in it.
+    pub fn read(path: &Path) -> Result<Self, CatalogError> {
+        let bytes =
+            std::fs::read(path).map_err(|source| CatalogError::Io { path: path.to_path_buf(), source })?;
+        let (rows, exclusions) = read::parse(path, &bytes)?;
+        Ok(Self { stars: unique(path, rows)?, sha256: hex(&Sha256::digest(&bytes)), exclusions })
+    }
+
+    /// The stars that a scenario asks for: the source, cut at the magnitude and to the cone. `base_dir` is where a
+    /// relative path starts.
+    ///
+    /// The cone is taken at the catalogue's epoch: give it a margin for proper motion (at most 10.4″ a year).
+    /// The hash is that of the whole source.
+    ///
+    /// # Errors
+    /// [`CatalogError`] when the source cannot be read. The configuration is taken as checked.
+    pub fn load(config: &CatalogConfig, base_dir: &Path) -> Result<Self, CatalogError> {
+        let mut catalog = match &config.source {
+            CatalogSource::Hipparcos2 => Self::hipparcos2(),
+            CatalogSource::File(path) => Self::read(&base_dir.join(path))?,
+        };
+        if let Some(limit) = config.magnitude_limit {
+            catalog.stars.retain(|star| star.v_mag() <= limit);
+        }
+        if let Some(cone) = &config.cone {
+            let centre =
+                Direction::from_ra_dec(Angle::from_degrees(cone.ra_deg), Angle::from_degrees(cone.dec_deg));
+            let radius = Angle::from_degrees(cone.radius_deg);
+            catalog.stars.retain(|star| within_cone(&centre, &star.direction(), radius));
+        }
+        Ok(catalog)
+    }
+
+    /// The stars, in ascending order of id.
+    pub fn stars(&self) -> &[CatalogStar] {
+        &self.stars
+    }
+
+    /// The star of a number.
+    pub fn star(&self, id: u32) -> Option<&CatalogStar> {
+        self.stars.binary_search_by_key(&id, |star| star.id).ok().map(|index| &self.stars[index])
+    }
+
+    /// SHA-256 of the source's bytes (for the embedded catalogue: of hip2.dat), in hexadecimal.
+    pub fn sha256(&self) -> &str {
+        &self.sha256
+    }
+
+    /// The stars of the file that are not in the catalogue, in the order of the file.
+    pub fn exclusions(&self) -> &[Exclusion] {
+        &self.exclusions
+    }
+}
+
+/// The stars of the rows (line, star), in ascending order of id.
+fn unique(path: &Path, rows: Vec<(usize, CatalogStar)>) -> Result<Vec<CatalogStar>, CatalogError> {
+    let mut line_of_id = HashMap::with_capacity(rows.len());
+    for (line, star) in &rows {
+        if let Some(first_line) = line_of_id.insert(star.id, *line) {
+            let (path, line, id) = (path.to_path_buf(), *line, star.id);
+            return Err(CatalogError::DuplicateId { path, line, id, first_line });
+        }
+    }
+    let mut stars: Vec<CatalogStar> = rows.into_iter().map(|(_, star)| star).collect();
+    stars.sort_by_key(|star| star.id);
+    Ok(stars)
+}
+
+/// Bytes in lower-case hexadecimal.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::config::ConeConfig;
+    use super::*;
+
+    fn load(config: &CatalogConfig) -> Catalog {
+        config.check().unwrap();
+        Catalog::load(config, Path::new("")).unwrap()
+    }
+
+    #[test]
+    fn the_default_is_all_of_hipparcos2() {
+        assert_eq!(load(&CatalogConfig::default()), Catalog::hipparcos2());
+    }
+
+    #[test]
+    fn the_magnitude_limit_keeps_exactly_the_bright_stars() {
+        let all = Catalog::hipparcos2();
+        let bright = load(&CatalogConfig { magnitude_limit: Some(6.0), ..CatalogConfig::default() });
+        let expected: Vec<u32> =
+            all.stars().iter().filter(|star| star.v_mag() <= 6.0).map(|star| star.id).collect();
+        assert_eq!(bright.stars().iter().map(|star| star.id).collect::<Vec<_>>(), expected);
+        // About 5000 stars are brighter than 6.0 in the Bright Star Catalogue (Hoffleit & Warren 1991).
+        assert!((4500..5500).contains(&expected.len()), "{}", expected.len());
+        assert_eq!(bright.sha256(), all.sha256());
+    }
+
+    #[test]
+    fn the_cone_about_orion_holds_its_belt() {
+        let cone = Some(ConeConfig { ra_deg: 84.05, dec_deg: -1.2, radius_deg: 2.0 });
+        let belt = load(&CatalogConfig { cone, magnitude_limit: Some(2.5), ..CatalogConfig::default() });
+        // Mintaka, Alnilam, Alnitak.
+        assert_eq!(belt.stars().iter().map(|star| star.id).collect::<Vec<_>>(), [25930, 26311, 26727]);
+    }
+
+    #[test]
+    fn a_path_starts_at_the_base_directory() {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join("three.csv"), "id,ra_deg,dec_deg,hp_mag\n7,1,2,3\n5,1,2,3\n").unwrap();
+        let config =
+            CatalogConfig { source: CatalogSource::File("three.csv".into()), ..CatalogConfig::default() };
+        let catalog = Catalog::load(&config, dir.path()).unwrap();
+        assert_eq!(catalog.stars().iter().map(|star| star.id).collect::<Vec<_>>(), [5, 7]);
+        assert!(matches!(Catalog::load(&config, Path::new("/nowhere")), Err(CatalogError::Io { .. })));
+    }
+
+    #[test]
+    fn two_stars_of_one_number_are_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("twice.csv");
+        std::fs::write(&path, "id,ra_deg,dec_deg,hp_mag\n5,1,2,3\n7,1,2,3\n5,1,2,3\n").unwrap();
+        let error = Catalog::read(&path).unwrap_err();
+        assert!(matches!(error, CatalogError::DuplicateId { id: 5, line: 4, first_line: 2, .. }), "{error}");
+    }
+
+    #[test]
+    fn the_hash_is_that_of_the_file() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("empty.csv");
+        std::fs::write(&path, "id,ra_deg,dec_deg,hp_mag\n").unwrap();
+        // From coreutils: printf 'id,ra_deg,dec_deg,hp_mag\n' | sha256sum
+        assert_eq!(Catalog::read(&path).unwrap().sha256(), SHA256_OF_HEADER);
+    }
+
+    const SHA256_OF_HEADER: &str = "74f29f3b8f6b597672caa99c45caebcb251923521560be92b8e3f5691bb3e69f";
+}

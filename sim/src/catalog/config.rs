@@ -1,0 +1,135 @@
+//! What a scenario says about its catalogue.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+
+/// Which stars a scenario draws.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CatalogConfig {
+    /// `hipparcos2` for the embedded Hipparcos-2 (the default), or the path of a file: hip2.dat (CDS I/311),
+    /// hip_main.dat (CDS I/239) or a CSV file with named columns. A relative path starts at the scenario.
+    #[serde(default)]
+    pub source: CatalogSource,
+    /// Faintest star drawn, Johnson V, mag, −2 to 30; without it all stars are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub magnitude_limit: Option<f64>,
+    /// Only the stars in this cone; without it those of the whole sky.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cone: Option<ConeConfig>,
+}
+
+/// A circle on the sky at the catalogue's epoch, J1991.25; its boundary belongs to it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConeConfig {
+    /// Right ascension of the centre, ICRS, degrees, 0 to 360.
+    pub ra_deg: f64,
+    /// Declination of the centre, ICRS, degrees, −90 to 90.
+    pub dec_deg: f64,
+    /// Angular radius, degrees, 0 to 180.
+    pub radius_deg: f64,
+}
+
+/// Where the stars come from. In a file it is one string.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub enum CatalogSource {
+    /// The embedded Hipparcos-2.
+    #[default]
+    Hipparcos2,
+    /// A file of the user's.
+    File(String),
+}
+
+const HIPPARCOS2: &str = "hipparcos2";
+
+impl From<String> for CatalogSource {
+    fn from(text: String) -> Self {
+        if text == HIPPARCOS2 { Self::Hipparcos2 } else { Self::File(text) }
+    }
+}
+
+impl From<CatalogSource> for String {
+    fn from(source: CatalogSource) -> Self {
+        match source {
+            CatalogSource::Hipparcos2 => HIPPARCOS2.to_owned(),
+            CatalogSource::File(path) => path,
+        }
+    }
+}
+
+// Written out: the derive does not know that the enum is one string in a file.
+impl JsonSchema for CatalogSource {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "CatalogSource".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({ "type": "string", "minLength": 1 })
+    }
+}
+
+impl CatalogConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        if self.source == CatalogSource::File(String::new()) {
+            return Err(SimError::Parameter {
+                field: "catalog.source",
+                value: "empty".to_owned(),
+                expected: "`hipparcos2` or the path of a file",
+            });
+        }
+        if let Some(limit) = self.magnitude_limit {
+            require("catalog.magnitude_limit", limit, "-2 to 30", |v| (-2.0..=30.0).contains(&v))?;
+        }
+        if let Some(cone) = &self.cone {
+            require("catalog.cone.ra_deg", cone.ra_deg, "0 to 360", |v| (0.0..=360.0).contains(&v))?;
+            require("catalog.cone.dec_deg", cone.dec_deg, "-90 to 90", |v| (-90.0..=90.0).contains(&v))?;
+            require("catalog.cone.radius_deg", cone.radius_deg, "0 to 180", |v| (0.0..=180.0).contains(&v))?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cone(ra_deg: f64, dec_deg: f64, radius_deg: f64) -> CatalogConfig {
+        CatalogConfig { cone: Some(ConeConfig { ra_deg, dec_deg, radius_deg }), ..CatalogConfig::default() }
+    }
+
+    #[test]
+    fn a_number_outside_its_range_is_named() {
+        let message = |config: CatalogConfig| config.check().unwrap_err().to_string();
+        assert!(message(cone(361.0, 0.0, 1.0)).contains("catalog.cone.ra_deg is 361"));
+        assert!(message(cone(0.0, f64::NAN, 1.0)).contains("catalog.cone.dec_deg is NaN"));
+        assert!(message(cone(0.0, 0.0, -1.0)).contains("catalog.cone.radius_deg is -1"));
+        let limit = CatalogConfig { magnitude_limit: Some(99.0), ..CatalogConfig::default() };
+        assert!(message(limit).contains("catalog.magnitude_limit is 99"));
+        let source = CatalogConfig { source: CatalogSource::File(String::new()), ..CatalogConfig::default() };
+        assert!(message(source).contains("catalog.source"));
+    }
+
+    #[test]
+    fn the_source_is_one_string() {
+        for (text, source) in [
+            ("hipparcos2", CatalogSource::Hipparcos2),
+            ("stars/mine.csv", CatalogSource::File("stars/mine.csv".to_owned())),
+        ] {
+            assert_eq!(CatalogSource::from(text.to_owned()), source);
+            assert_eq!(String::from(source), text);
+        }
+    }
+}
