@@ -152,7 +152,7 @@ impl<'a> SimulatedCamera<'a> {
 
         let line_of_sight_km = states.line_of_sight_km();
         let line_of_sight = Direction::from_vector(line_of_sight_km)?;
-        let earth_to_sun_km = observer.sun_geocentric_km();
+        let earth_to_sun_km = states.chaser.position_km + observer.sun_km();
         let target_to_sun_km = earth_to_sun_km - states.target.position_km;
         let sunlit_fraction = shadow::sunlit_fraction(&states.target.position_km, &earth_to_sun_km);
         let target_to_chaser_km = -line_of_sight_km;

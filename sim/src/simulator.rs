@@ -5,7 +5,7 @@ use std::path::Path;
 use contract::{Body, Camera, CameraFrame, Rotation};
 
 use crate::catalog::{Catalog, CatalogConfig};
-use crate::onboard::{RoiConfig, RoiExtractor, Shutter, ShutterConfig};
+use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
 use crate::optics::{Projection, Psf, PsfConfig, RadiometryConfig};
 use crate::randomness::Seed;
 use crate::scene::{StarField, TargetConfig};

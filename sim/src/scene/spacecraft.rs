@@ -7,7 +7,7 @@ use crate::SimError;
 use crate::error::require;
 
 /// V magnitude of the Sun at 1 au (Willmer 2018, ApJS 236, 47: −26.76, Vega system, Johnson V).
-pub const SUN_V_MAG_AT_1_AU: f64 = -26.76;
+const SUN_V_MAG_AT_1_AU: f64 = -26.76;
 
 /// Kilometres in an astronomical unit (IAU 2012 Resolution B2, exact).
 const AU_KM: f64 = 149_597_870.7;

@@ -145,6 +145,11 @@ impl Observer {
         Direction::from_unit(-self.from_sun)
     }
 
+    /// The Sun from the observer, km: geometric, as [`Observer::sun`].
+    pub fn sun_km(&self) -> Vector3<f64> {
+        -self.from_sun * (self.sun_distance_au * AU_KM)
+    }
+
     /// Distance to the centre of the Sun, au.
     pub fn sun_distance_au(&self) -> f64 {
         self.sun_distance_au
