@@ -1,1 +1,3 @@
 //! The oracle
+
+pub mod files;
