@@ -30,7 +30,7 @@ pub fn parse_utc(text: &str) -> Result<Epoch, &'static str> {
     if second == 60 {
         return Err("a second from 0 to 59; leap seconds are not supported");
     }
-    if decimals.len() > 9 {
+    if !(1..=9).contains(&decimals.len()) {
         return Err(EXPECTED);
     }
     let nanosecond = number(&format!("{decimals:0<9}"), 9)?;
