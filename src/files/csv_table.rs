@@ -1,0 +1,195 @@
+//! A CSV table whose columns are known by name, and whose errors name line and column.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use super::FileError;
+use super::error::{Place, create_new};
+
+/// Whether a file may lack a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Presence {
+    Required,
+    Optional,
+}
+
+/// The columns of a kind of table, in the order in which they are written.
+pub(super) type Layout = &'static [(&'static str, Presence)];
+
+/// A table being read, row by row.
+pub(super) struct CsvReader {
+    path: PathBuf,
+    layout: Layout,
+    /// For each column of the layout, where the file has it.
+    positions: Vec<Option<usize>>,
+    reader: csv::Reader<File>,
+    record: csv::StringRecord,
+}
+
+impl CsvReader {
+    /// Opens a table and checks its header: every required column, no unknown one, none twice.
+    pub(super) fn open(path: &Path, layout: Layout) -> Result<Self, FileError> {
+        let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(file);
+        let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
+        let mut positions = vec![None; layout.len()];
+        for (position, name) in header.iter().enumerate() {
+            let Some(index) = layout.iter().position(|(known, _)| *known == name) else {
+                return Err(unknown_column(path, name, layout));
+            };
+            if positions[index].replace(position).is_some() {
+                return Err(FileError::value(path, Place::Line(1), "header", name, "each column once"));
+            }
+        }
+        for ((name, presence), position) in layout.iter().zip(&positions) {
+            if *presence == Presence::Required && position.is_none() {
+                return Err(FileError::MissingColumn {
+                    path: path.to_owned(),
+                    column: (*name).to_owned(),
+                    found: header.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
+                });
+            }
+        }
+        Ok(Self { path: path.to_owned(), layout, positions, reader, record: csv::StringRecord::new() })
+    }
+
+    /// The next row; `None` at the end.
+    pub(super) fn next_row(&mut self) -> Result<Option<CsvRow<'_>>, FileError> {
+        let more =
+            self.reader.read_record(&mut self.record).map_err(|error| csv_error(&self.path, &error))?;
+        let line = self.record.position().map_or(0, csv::Position::line);
+        Ok(more.then_some(CsvRow { table: self, line }))
+    }
+}
+
+/// One row of a table.
+pub(super) struct CsvRow<'a> {
+    table: &'a CsvReader,
+    pub(super) line: u64,
+}
+
+impl CsvRow<'_> {
+    /// The cell of a column as it stands; empty when the file has no such column.
+    pub(super) fn text(&self, column: &'static str) -> &str {
+        let index = self.table.layout.iter().position(|(name, _)| *name == column);
+        debug_assert!(index.is_some(), "`{column}` is not in the layout");
+        index.and_then(|i| self.table.positions[i]).and_then(|i| self.table.record.get(i)).unwrap_or("")
+    }
+
+    /// The error of a cell that is not what was `expected`.
+    pub(super) fn error(&self, column: &'static str, expected: impl Into<String>) -> FileError {
+        FileError::value(&self.table.path, Place::Line(self.line), column, self.text(column), expected)
+    }
+
+    /// A number, neither NaN nor infinite.
+    pub(super) fn number(&self, column: &'static str) -> Result<f64, FileError> {
+        match self.text(column).trim().parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(self.error(column, "a finite number")),
+        }
+    }
+
+    /// A whole number from 0.
+    pub(super) fn count<T: std::str::FromStr>(&self, column: &'static str) -> Result<T, FileError> {
+        self.text(column).trim().parse().map_err(|_| self.error(column, "a whole number, 0 or greater"))
+    }
+
+    /// Numbers that stand together: all of them, or `None` when every cell is empty.
+    pub(super) fn optional_numbers<const N: usize>(
+        &self,
+        columns: [&'static str; N],
+    ) -> Result<Option<[f64; N]>, FileError> {
+        if columns.iter().all(|column| self.text(column).trim().is_empty()) {
+            Ok(None)
+        } else {
+            self.numbers(columns).map(Some)
+        }
+    }
+
+    /// Numbers that stand together.
+    pub(super) fn numbers<const N: usize>(&self, columns: [&'static str; N]) -> Result<[f64; N], FileError> {
+        let mut numbers = [0.0; N];
+        for (number, column) in numbers.iter_mut().zip(columns) {
+            *number = self.number(column)?;
+        }
+        Ok(numbers)
+    }
+
+    /// The number of the row's frame, which must be larger than that of the row before.
+    pub(super) fn frame_after(&self, previous: Option<u64>) -> Result<u64, FileError> {
+        let frame = self.count("frame")?;
+        match previous {
+            Some(previous) if frame <= previous => Err(self.error(
+                "frame",
+                format!("more than {previous}, that of the row before (each frame once, ascending)"),
+            )),
+            _ => Ok(frame),
+        }
+    }
+}
+
+/// A table being written.
+pub(super) struct CsvWriter {
+    path: PathBuf,
+    writer: csv::Writer<File>,
+}
+
+impl CsvWriter {
+    /// Creates the table and writes its header.
+    pub(super) fn create(path: &Path, layout: Layout) -> Result<Self, FileError> {
+        let mut writer = Self { path: path.to_owned(), writer: csv::Writer::from_writer(create_new(path)?) };
+        writer.write(layout.iter().map(|(name, _)| (*name).to_owned()))?;
+        Ok(writer)
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a row of cells.
+    pub(super) fn write(&mut self, cells: impl IntoIterator<Item = String>) -> Result<(), FileError> {
+        self.writer.write_record(cells).map_err(|error| csv_error(&self.path, &error))
+    }
+
+    /// Writes what is buffered. Dropping the writer does so too, but cannot tell of an error.
+    pub(super) fn finish(mut self) -> Result<(), FileError> {
+        self.writer.flush().map_err(|source| FileError::io(&self.path, "write", source))
+    }
+}
+
+/// The shortest text that reads back to the same bits.
+pub(super) fn cell(value: f64) -> String {
+    format!("{value:?}")
+}
+
+/// Cells of numbers that may be absent together.
+pub(super) fn cells<const N: usize>(values: Option<[f64; N]>) -> [String; N] {
+    values.map_or_else(|| std::array::from_fn(|_| String::new()), |values| values.map(cell))
+}
+
+fn unknown_column(path: &Path, column: &str, layout: Layout) -> FileError {
+    let distance = |known: &str| strsim::damerau_levenshtein(known, column);
+    let nearest = layout.iter().map(|(known, _)| *known).min_by_key(|known| distance(known)).unwrap_or("");
+    FileError::UnknownColumn { path: path.to_owned(), column: column.to_owned(), nearest: nearest.to_owned() }
+}
+
+fn csv_error(path: &Path, error: &csv::Error) -> FileError {
+    let line =
+        |position: &Option<csv::Position>| Place::Line(position.as_ref().map_or(0, csv::Position::line));
+    match error.kind() {
+        csv::ErrorKind::Io(source) => {
+            FileError::io(path, "read or write", std::io::Error::new(source.kind(), source.to_string()))
+        }
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => FileError::value(
+            path,
+            line(pos),
+            "number of cells",
+            len,
+            format!("{expected_len}, as many as the header has"),
+        ),
+        csv::ErrorKind::Utf8 { pos, err } => {
+            FileError::value(path, line(pos), format!("cell {}", err.field() + 1), "bytes", "text in UTF-8")
+        }
+        _ => FileError::format(path, "CSV", error),
+    }
+}

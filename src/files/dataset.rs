@@ -1,0 +1,188 @@
+//! A directory of images to be processed: ours or anybody's.
+
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use contract::{Camera, Frame, Mounting, Telemetry};
+use hifitime::Epoch;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::error::{Place, create_new};
+use super::telemetry::read_with_lines;
+use super::{FileError, TelemetryRow, parse_utc, read_frame};
+
+/// `camera.toml`: what a pipeline knows before the first frame, except the stars themselves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CameraFile {
+    /// Bits of the analogue-digital converter, 1 to 16.
+    pub bit_depth: u8,
+    /// Magnitude V down to which stars are listed for the pipeline, −2 to 15.
+    pub magnitude_limit: f64,
+    /// UTC time to which proper motion is applied in the star list, as 2012-04-25T00:00:00Z; without it, the time of
+    /// the first frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub star_epoch_utc: Option<String>,
+    /// Nominal camera.
+    pub camera: Camera,
+    /// Nominal mounting.
+    pub mounting: Mounting,
+}
+
+impl CameraFile {
+    /// Reads and checks the file.
+    ///
+    /// # Errors
+    /// [`FileError::Format`] with line and column for what is not TOML or has a wrong, unknown or missing field;
+    /// [`FileError::Contract`] or [`FileError::Value`] for a number outside its range.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        let text = fs::read_to_string(path).map_err(|source| FileError::io(path, "read", source))?;
+        let file: Self = toml::from_str(&text).map_err(|error| FileError::format(path, "TOML", error))?;
+        file.check(path)?;
+        Ok(file)
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when it exists or cannot be written; as [`CameraFile::read`] for what could not be read
+    /// back.
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
+        self.check(path)?;
+        let text = toml::to_string(self).map_err(|error| FileError::format(path, "TOML", error))?;
+        let mut file = create_new(path)?;
+        std::io::Write::write_all(&mut file, text.as_bytes())
+            .map_err(|source| FileError::io(path, "write", source))
+    }
+
+    fn check(&self, path: &Path) -> Result<(), FileError> {
+        self.camera.check().map_err(|source| FileError::contract(path, source))?;
+        self.mounting.check().map_err(|source| FileError::contract(path, source))?;
+        let error = |field: &str, value: String, expected: &str| {
+            Err(FileError::value(path, Place::Header, field, value, expected))
+        };
+        if !(1..=16).contains(&self.bit_depth) {
+            return error("bit_depth", self.bit_depth.to_string(), "1 to 16");
+        }
+        if !(-2.0..=15.0).contains(&self.magnitude_limit) {
+            return error("magnitude_limit", self.magnitude_limit.to_string(), "-2 to 15");
+        }
+        match self.star_epoch_utc.as_deref().map(parse_utc) {
+            Some(Err(expected)) => {
+                error("star_epoch_utc", self.star_epoch_utc.clone().unwrap_or_default(), expected)
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Images with their telemetry and their camera, checked to be all there.
+#[derive(Debug, Clone)]
+pub struct Dataset {
+    camera: CameraFile,
+    frames: Vec<DatasetFrame>,
+}
+
+/// One frame of a dataset, not read yet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DatasetFrame {
+    /// Where the image is.
+    path: PathBuf,
+    row: TelemetryRow,
+}
+
+impl Dataset {
+    /// Opens a directory: `camera.toml`, `telemetry.csv`, and the images that the latter names. No image is read yet,
+    /// but every one is looked for, so that a missing one is known before the first is processed.
+    ///
+    /// Images must lie inside the directory, symbolic links resolved: a table from elsewhere cannot make us read
+    /// other files.
+    ///
+    /// # Errors
+    /// [`FileError::MissingImage`] that names the frame whose image is not named, not there or not inside; the errors
+    /// of [`CameraFile::read`] and [`super::read_telemetry`].
+    pub fn open(directory: &Path) -> Result<Self, FileError> {
+        let camera = CameraFile::read(&directory.join("camera.toml"))?;
+        let table = directory.join("telemetry.csv");
+        let rows = read_with_lines(&table)?;
+        let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
+        let locate = |(line, row): (u64, TelemetryRow)| match image_path(directory, &root, &row) {
+            Ok(path) => Ok(DatasetFrame { path, row }),
+            Err(reason) => Err(FileError::MissingImage {
+                path: table.clone(),
+                line,
+                frame: row.frame,
+                file: row.file.unwrap_or_default(),
+                reason,
+            }),
+        };
+        let frames = rows.into_iter().map(locate).collect::<Result<_, _>>()?;
+        Ok(Self { camera, frames })
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &CameraFile {
+        &self.camera
+    }
+
+    /// The frames, ascending; never empty.
+    pub fn frames(&self) -> &[DatasetFrame] {
+        &self.frames
+    }
+
+    /// The time to which proper motion is applied in the star list.
+    pub fn star_epoch(&self) -> Option<Epoch> {
+        let given = self.camera.star_epoch_utc.as_deref().and_then(|text| parse_utc(text).ok());
+        given.or_else(|| self.frames.first().map(|frame| frame.row.telemetry.time))
+    }
+
+    /// Reads the image of a frame.
+    ///
+    /// # Errors
+    /// The errors of [`read_frame`]; [`FileError::Value`] for an image whose size is not the camera's.
+    pub fn read(&self, frame: &DatasetFrame) -> Result<Frame, FileError> {
+        let (path, row) = (&frame.path, &frame.row);
+        let image = read_frame(path, row.frame, self.camera.bit_depth, row.windows.clone())?;
+        let camera = &self.camera.camera;
+        if (image.columns(), image.rows()) == (camera.columns, camera.rows) {
+            Ok(image)
+        } else {
+            let size = format!("{} × {}", image.columns(), image.rows());
+            let expected = format!("{} × {}, that of camera.toml", camera.columns, camera.rows);
+            Err(FileError::value(path, Place::Header, "image size", size, expected))
+        }
+    }
+}
+
+impl DatasetFrame {
+    /// Number of the frame.
+    pub fn number(&self) -> u64 {
+        self.row.frame
+    }
+
+    /// What the spacecraft tells about it.
+    pub fn telemetry(&self) -> &Telemetry {
+        &self.row.telemetry
+    }
+
+    /// Where its image is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// The path of a row's image, or what is wrong with it.
+fn image_path(directory: &Path, root: &Path, row: &TelemetryRow) -> Result<PathBuf, &'static str> {
+    let file = Path::new(row.file.as_deref().ok_or("not named")?);
+    if !file.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
+        return Err("outside the dataset's directory");
+    }
+    let path = directory.join(file);
+    match path.canonicalize() {
+        Err(_) => Err("missing"),
+        Ok(real) if !real.starts_with(root) => Err("outside the dataset's directory"),
+        Ok(real) if !real.is_file() => Err("not a file"),
+        Ok(_) => Ok(path),
+    }
+}

@@ -1,0 +1,160 @@
+//! The one error type of reading and writing.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// Where in a file a value stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// A line of a text file, counted from 1.
+    Line(u64),
+    /// A row of a table without lines, counted from 0.
+    Row(u64),
+    /// A pixel; the first is (0, 0).
+    Pixel {
+        /// Column.
+        x: usize,
+        /// Row.
+        y: usize,
+    },
+    /// The file's header, or the file as a whole.
+    Header,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Row(row) => write!(f, "row {row}"),
+            Self::Pixel { x, y } => write!(f, "pixel ({x}, {y})"),
+            Self::Header => f.write_str("header"),
+        }
+    }
+}
+
+/// Why a file cannot be read or written.
+#[derive(Debug, Error)]
+pub enum FileError {
+    /// The operating system refused.
+    #[error("{path}: cannot {doing}: {source}", path = path.display())]
+    Io {
+        /// The file or directory.
+        path: PathBuf,
+        /// What was tried: `open`, `create`, `read`, `write`.
+        doing: &'static str,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A value that is not what it should be.
+    #[error("{path}, {place}: `{field}` is `{value}`, expected {expected}", path = path.display())]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Where in it.
+        place: Place,
+        /// Column, keyword or property.
+        field: String,
+        /// The value met.
+        value: String,
+        /// What is allowed.
+        expected: String,
+    },
+    /// A file that is not of its format, is cut short, or uses a part of the format that is not supported.
+    #[error("{path}: not a readable {format} file: {reason}", path = path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// The format that was tried.
+        format: &'static str,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A table without a column that it must have.
+    #[error("{path}: column `{column}` is missing; found {found}", path = path.display())]
+    MissingColumn {
+        /// The table.
+        path: PathBuf,
+        /// The missing column.
+        column: String,
+        /// The columns that are there.
+        found: String,
+    },
+    /// A table with a column that nobody knows.
+    #[error("{path}: unknown column `{column}`; did you mean `{nearest}`?", path = path.display())]
+    UnknownColumn {
+        /// The table.
+        path: PathBuf,
+        /// The column met.
+        column: String,
+        /// The known name nearest to it.
+        nearest: String,
+    },
+    /// A frame of a dataset whose image is not there.
+    #[error("{path}, line {line}: the image `{file}` of frame {frame} is {reason}", path = path.display())]
+    MissingImage {
+        /// The table that names the image.
+        path: PathBuf,
+        /// Line of the frame.
+        line: u64,
+        /// Number of the frame.
+        frame: u64,
+        /// The image, as named there.
+        file: String,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+    /// A place for output that is taken.
+    #[error("{path} {reason}; give another directory with --out", path = path.display())]
+    OutputTaken {
+        /// The directory.
+        path: PathBuf,
+        /// Why it cannot be used.
+        reason: &'static str,
+    },
+    /// A value that the contract refuses.
+    #[error("{path}: {source}", path = path.display())]
+    Contract {
+        /// The file.
+        path: PathBuf,
+        /// Which value, and why.
+        source: contract::ContractError,
+    },
+}
+
+impl FileError {
+    pub(super) fn io(path: &Path, doing: &'static str, source: io::Error) -> Self {
+        Self::Io { path: path.to_owned(), doing, source }
+    }
+
+    pub(super) fn format(path: &Path, format: &'static str, reason: impl ToString) -> Self {
+        Self::Format { path: path.to_owned(), format, reason: reason.to_string() }
+    }
+
+    pub(super) fn value(
+        path: &Path,
+        place: Place,
+        field: impl Into<String>,
+        value: impl ToString,
+        expected: impl Into<String>,
+    ) -> Self {
+        Self::Value {
+            path: path.to_owned(),
+            place,
+            field: field.into(),
+            value: value.to_string(),
+            expected: expected.into(),
+        }
+    }
+
+    pub(super) fn contract(path: &Path, source: contract::ContractError) -> Self {
+        Self::Contract { path: path.to_owned(), source }
+    }
+}
+
+/// Creates a file for writing; one that exists is refused, not overwritten.
+pub(super) fn create_new(path: &Path) -> Result<std::fs::File, FileError> {
+    std::fs::File::create_new(path).map_err(|source| FileError::io(path, "create", source))
+}

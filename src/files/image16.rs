@@ -1,0 +1,145 @@
+//! Grey PNG and TIFF, 8 or 16 bits a pixel.
+
+use std::fs::File;
+use std::io::{BufReader, BufWriter, Write};
+use std::path::Path;
+
+use contract::{Camera, Frame};
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageBuffer, ImageDecoder, ImageReader, Limits, Luma};
+
+use super::FileError;
+use super::error::{Place, create_new};
+use super::raw_image::{RawImage, check_claim, checked_size};
+
+/// Writes the digital numbers as 16-bit grey PNG, not stretched.
+pub(super) fn write_png(path: &Path, frame: &Frame) -> Result<(), FileError> {
+    let (columns, rows) = (frame.columns() as u32, frame.rows() as u32);
+    let Some(pixels) = ImageBuffer::<Luma<u16>, _>::from_raw(columns, rows, frame.dn()) else {
+        return Err(FileError::value(path, Place::Header, "pixels", frame.dn().len(), "columns × rows"));
+    };
+    let mut file = BufWriter::new(create_new(path)?);
+    pixels.write_with_encoder(PngEncoder::new(&mut file)).map_err(|error| image_error(path, error))?;
+    file.flush().map_err(|source| FileError::io(path, "write", source))
+}
+
+/// Reads a grey image of 8 or 16 bits. Colour, alpha, palettes and fewer bits are refused: the values that a
+/// decoder makes of them are not digital numbers.
+pub(super) fn read(path: &Path, format: image::ImageFormat) -> Result<RawImage, FileError> {
+    let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+    let mut reader = ImageReader::with_format(BufReader::new(file), format);
+    let mut limits = Limits::no_limits();
+    limits.max_image_width = Some(Camera::MAX_SIDE_PX as u32);
+    limits.max_image_height = Some(Camera::MAX_SIDE_PX as u32);
+    // Pixels, and as much again for the decoder's own strips.
+    limits.max_alloc = Some(4 * (Camera::MAX_SIDE_PX * Camera::MAX_SIDE_PX) as u64);
+    reader.limits(limits);
+    let decoder = reader.into_decoder().map_err(|error| image_error(path, error))?;
+    let (columns, rows) = decoder.dimensions();
+    let (columns, rows) = checked_size(path, u64::from(columns), u64::from(rows))?;
+    let color = decoder.original_color_type();
+    if !matches!(color, ExtendedColorType::L8 | ExtendedColorType::L16) {
+        let expected = "grey of 8 or 16 bits (L8, L16); convert the image";
+        return Err(FileError::value(path, Place::Header, "pixel type", format!("{color:?}"), expected));
+    }
+    check_claim(path, decoder.total_bytes())?;
+    let image = image::DynamicImage::from_decoder(decoder).map_err(|error| image_error(path, error))?;
+    let dn = match image {
+        image::DynamicImage::ImageLuma8(pixels) => pixels.into_raw().into_iter().map(u16::from).collect(),
+        image::DynamicImage::ImageLuma16(pixels) => pixels.into_raw(),
+        other => {
+            let kind = format!("{:?}", other.color());
+            return Err(FileError::value(path, Place::Header, "pixel type", kind, "L8 or L16"));
+        }
+    };
+    Ok(RawImage { columns, rows, dn, bit_depth: None, windows: None })
+}
+
+fn image_error(path: &Path, error: image::ImageError) -> FileError {
+    match error {
+        image::ImageError::IoError(source) if source.kind() != std::io::ErrorKind::UnexpectedEof => {
+            FileError::io(path, "read or write", source)
+        }
+        other => FileError::format(path, "image", other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use image::{GrayImage, RgbImage};
+    use proptest::prelude::*;
+    use tempfile::tempdir;
+
+    use super::super::frame_file::tests::ramp;
+    use super::super::read_frame;
+    use super::*;
+
+    #[test]
+    fn grey_of_8_and_16_bits_is_read_from_png_and_tiff() {
+        let directory = tempdir().unwrap();
+        for extension in ["png", "TIFF"] {
+            let path = directory.path().join("a").with_extension(extension);
+            GrayImage::from_raw(3, 1, vec![0, 7, 255]).unwrap().save(&path).unwrap();
+            assert_eq!(read_frame(&path, 1, 8, None).unwrap().dn(), [0, 7, 255]);
+            ImageBuffer::<Luma<u16>, _>::from_raw(2, 1, vec![500_u16, 4095]).unwrap().save(&path).unwrap();
+            let frame = read_frame(&path, 1, 12, None).unwrap();
+            assert_eq!((frame.dn(), frame.bit_depth()), ([500, 4095].as_slice(), 12));
+        }
+    }
+
+    #[test]
+    fn colour_is_refused_by_name() {
+        let directory = tempdir().unwrap();
+        for extension in ["png", "tif"] {
+            let path = directory.path().join("a").with_extension(extension);
+            RgbImage::new(4, 4).save(&path).unwrap();
+            let message = read_frame(&path, 1, 8, None).unwrap_err().to_string();
+            assert!(message.contains("Rgb8") && message.contains("grey"), "{message}");
+        }
+    }
+
+    #[test]
+    fn a_png_that_claims_more_than_it_can_hold_is_refused() {
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("a.png");
+        write_png(&path, &ramp(4, 4, None)).unwrap();
+        let mut bytes = fs::read(&path).unwrap();
+        // Width and height of IHDR, and its checksum made right again.
+        bytes[16..24].copy_from_slice(&[0, 0, 0x3f, 0, 0, 0, 0x3f, 0]);
+        let checksum = crc32(&bytes[12..29]);
+        bytes[29..33].copy_from_slice(&checksum.to_be_bytes());
+        fs::write(&path, bytes).unwrap();
+        let message = read_frame(&path, 1, 12, None).unwrap_err().to_string();
+        assert!(message.contains("bytes of pixels"), "{message}");
+    }
+
+    /// The checksum of a PNG chunk (PNG specification, annex D).
+    fn crc32(bytes: &[u8]) -> u32 {
+        let bit = |crc: u32| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 };
+        !bytes.iter().fold(u32::MAX, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| bit(crc)))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(256))]
+        #[test]
+        fn no_damage_makes_it_panic(
+            changes in prop::collection::vec((0_usize..4000, any::<u8>()), 0..10), cut in 1_usize..4000, tiff: bool,
+        ) {
+            let directory = tempdir().unwrap();
+            let path = directory.path().join(if tiff { "a.tiff" } else { "a.png" });
+            let frame = ramp(20, 9, None);
+            let pixels = ImageBuffer::<Luma<u16>, _>::from_raw(20, 9, frame.dn().to_vec()).unwrap();
+            pixels.save(&path).unwrap();
+            let mut bytes = fs::read(&path).unwrap();
+            for (place, value) in changes {
+                let place = place % bytes.len();
+                bytes[place] = value;
+            }
+            bytes.truncate(cut);
+            fs::write(&path, bytes).unwrap();
+            let _ = read_frame(&path, 1, 12, None);
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Reading and writing: frames, tables, directories.
+//!
+//! Every reader takes files of anybody's making. It answers with a [`FileError`] that names the file, the place,
+//! the value and what was expected; it does not panic, and it allocates no more than the length of the file and
+//! [`contract::Camera::MAX_SIDE_PX`] justify. No writer overwrites.
+
+mod clusters;
+mod csv_table;
+mod dataset;
+mod directory;
+mod error;
+mod exr;
+mod fits;
+mod fits_cards;
+mod frame_file;
+mod image16;
+mod measurements;
+mod parquet_table;
+mod raw_image;
+mod telemetry;
+mod time;
+mod truth;
+mod unit;
+mod wcs;
+mod windows;
+
+pub use self::exr::{Expected, read_expected, write_expected};
+pub use clusters::FrameCluster;
+pub use dataset::{CameraFile, Dataset, DatasetFrame};
+pub use directory::RunDirectory;
+pub use error::{FileError, Place};
+pub use frame_file::{FrameHeader, ImageFormat, read_frame, write_frame};
+pub use measurements::{MeasurementWriter, read_measurements};
+pub use parquet_table::{Column, Columns, Row, TableReader, TableWriter};
+pub use telemetry::{TelemetryRow, TelemetryWriter, read_telemetry};
+pub use time::{format_utc, parse_utc};
+pub use wcs::{SipTerm, TanSip, WcsError};

@@ -1,0 +1,205 @@
+//! `truth/frames.parquet` and `truth/objects.parquet`.
+//!
+//! Everything is a 64-bit float: a score from the files must be the score from memory to the bit, and each of
+//! position, electrons, SNR, radius and cut decides in it. Directions of frames stand as components, which come back
+//! to the bit; those of objects, which no score uses, as right ascension and declination, good to 1e-13 degrees.
+
+use arrow_array::types::TimestampNanosecondType;
+use arrow_array::{Float64Array, PrimitiveArray, StringArray, UInt32Array, UInt64Array};
+use contract::{Angle, Direction, Icrs, PixelPoint, Rotation};
+use hifitime::{Duration, Epoch};
+use nalgebra::Vector3;
+use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
+
+use super::parquet_table::{Column, Columns, Row};
+use super::{FileError, unit};
+
+type Timestamps = PrimitiveArray<TimestampNanosecondType>;
+
+const BODY: [&str; 4] = ["q_sc_j2000_w", "q_sc_j2000_x", "q_sc_j2000_y", "q_sc_j2000_z"];
+const CAMERA: [&str; 4] = ["q_cam_j2000_w", "q_cam_j2000_x", "q_cam_j2000_y", "q_cam_j2000_z"];
+const POSITION: [&str; 3] = ["position_x_km", "position_y_km", "position_z_km"];
+const VELOCITY: [&str; 3] = ["velocity_x_km_s", "velocity_y_km_s", "velocity_z_km_s"];
+const LINE_OF_SIGHT: [&str; 3] = ["los_j2000_x", "los_j2000_y", "los_j2000_z"];
+const SUN: [&str; 3] = ["sun_j2000_x", "sun_j2000_y", "sun_j2000_z"];
+
+fn numbers<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> f64) -> Column {
+    Column::new(name, Float64Array::from_iter_values(rows.iter().map(value)))
+}
+
+fn optional_numbers<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> Option<f64>) -> Column {
+    Column::nullable(name, Float64Array::from_iter(rows.iter().map(value)))
+}
+
+fn words<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> &str) -> Column {
+    Column::new(name, StringArray::from_iter_values(rows.iter().map(value)))
+}
+
+/// Numbers that stand together, one column each.
+fn components<R, const N: usize>(
+    rows: &[R],
+    names: [&'static str; N],
+    values: impl Fn(&R) -> [f64; N],
+) -> impl Iterator<Item = Column> {
+    let column = |i: usize| numbers(rows, names[i], |row| values(row)[i]);
+    (0..N).map(column).collect::<Vec<_>>().into_iter()
+}
+
+fn columns_f64<'a, const N: usize>(
+    columns: &'a Columns<'_>,
+    names: [&str; N],
+) -> Result<[&'a [f64]; N], FileError> {
+    let mut slices: [&[f64]; N] = [&[]; N];
+    for (slice, name) in slices.iter_mut().zip(names) {
+        *slice = columns.f64(name)?;
+    }
+    Ok(slices)
+}
+
+fn at<const N: usize>(slices: &[&[f64]; N], row: usize) -> [f64; N] {
+    slices.map(|slice| slice[row])
+}
+
+impl Row for FrameTruth {
+    fn columns(rows: &[Self]) -> Vec<Column> {
+        // Nanoseconds since 1970 without leap seconds, as every reader of Parquet expects of a UTC timestamp.
+        let nanoseconds = |row: &Self| row.time.to_unix_duration().total_nanoseconds() as i64;
+        let times = Timestamps::from_iter_values(rows.iter().map(nanoseconds)).with_timezone("UTC");
+        let mut columns = vec![
+            Column::new("frame", UInt64Array::from_iter_values(rows.iter().map(|row| row.frame))),
+            words(rows, "group", |row| &row.group),
+            Column::new("time_utc", times),
+            numbers(rows, "exposure_s", |row| row.exposure_s),
+        ];
+        columns.extend(components(rows, BODY, |row| row.body_from_icrs.wxyz()));
+        columns.extend(components(rows, CAMERA, |row| row.camera_from_icrs.wxyz()));
+        columns.extend(components(rows, POSITION, |row| row.position_km.into()));
+        columns.extend(components(rows, VELOCITY, |row| row.velocity_km_s.into()));
+        columns.extend(components(rows, LINE_OF_SIGHT, |row| (*row.line_of_sight.vector()).into()));
+        columns.push(numbers(rows, "range_km", |row| row.range_km));
+        columns.extend(components(rows, SUN, |row| (*row.sun.vector()).into()));
+        columns.extend([
+            numbers(rows, "phase_deg", |row| row.phase_deg),
+            words(rows, "shadow", |row| row.shadow.code()),
+            numbers(rows, "sunlit_fraction", |row| row.sunlit_fraction),
+            optional_numbers(rows, "target_x_px", |row| row.target_position.map(|p| p.x)),
+            optional_numbers(rows, "target_y_px", |row| row.target_position.map(|p| p.y)),
+            words(rows, "target_visibility", |row| row.target_visibility.code()),
+        ]);
+        columns
+    }
+
+    fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
+        let (frame, group) = (columns.u64("frame")?, columns.text("group")?);
+        let time: &Timestamps = columns.every("time_utc")?;
+        let [exposure_s, range_km, phase_deg, sunlit_fraction] =
+            columns_f64(columns, ["exposure_s", "range_km", "phase_deg", "sunlit_fraction"])?;
+        let (body, camera) = (columns_f64(columns, BODY)?, columns_f64(columns, CAMERA)?);
+        let (position, velocity) = (columns_f64(columns, POSITION)?, columns_f64(columns, VELOCITY)?);
+        let (line_of_sight, sun) = (columns_f64(columns, LINE_OF_SIGHT)?, columns_f64(columns, SUN)?);
+        let target_x = columns.optional_f64("target_x_px")?;
+        let target_y = columns.optional_f64("target_y_px")?;
+        let direction = |slices: &[&[f64]; 3], name: &str, row| {
+            let xyz = at(slices, row);
+            unit::direction(xyz).ok_or_else(|| columns.error(row, name, format!("{xyz:?}"), unit::EXPECTED))
+        };
+        let optional = |array: &Float64Array, row| array.iter().nth(row).flatten();
+        (0..columns.len())
+            .map(|row| {
+                let since_1970 = Duration::from_total_nanoseconds(i128::from(time.value(row)));
+                let x_and_y = optional(target_x, row).zip(optional(target_y, row));
+                Ok(Self {
+                    frame: frame[row],
+                    group: group.value(row).to_owned(),
+                    time: Epoch::from_unix_duration(since_1970),
+                    exposure_s: exposure_s[row],
+                    body_from_icrs: rotation(columns, &body, BODY[0], row)?,
+                    camera_from_icrs: rotation(columns, &camera, CAMERA[0], row)?,
+                    position_km: Vector3::from(at(&position, row)),
+                    velocity_km_s: Vector3::from(at(&velocity, row)),
+                    line_of_sight: direction(&line_of_sight, LINE_OF_SIGHT[0], row)?,
+                    range_km: range_km[row],
+                    sun: direction(&sun, SUN[0], row)?,
+                    phase_deg: phase_deg[row],
+                    shadow: columns.word("shadow", row, Shadow::parse)?,
+                    sunlit_fraction: sunlit_fraction[row],
+                    target_position: x_and_y.map(|(x, y)| PixelPoint::new(x, y)),
+                    target_visibility: columns.word("target_visibility", row, Visibility::parse)?,
+                })
+            })
+            .collect()
+    }
+
+    fn frame(&self) -> u64 {
+        self.frame
+    }
+}
+
+fn rotation<To, From>(
+    columns: &Columns<'_>,
+    slices: &[&[f64]; 4],
+    name: &str,
+    row: usize,
+) -> Result<Rotation<To, From>, FileError> {
+    let wxyz = at(slices, row);
+    Rotation::from_wxyz(wxyz)
+        .map_err(|error| columns.error(row, name, format!("{wxyz:?}"), format!("a unit quaternion: {error}")))
+}
+
+impl Row for ObjectTruth {
+    fn columns(rows: &[Self]) -> Vec<Column> {
+        vec![
+            Column::new("frame", UInt64Array::from_iter_values(rows.iter().map(|row| row.frame))),
+            words(rows, "kind", |row| row.kind.code()),
+            Column::new("id", UInt32Array::from_iter_values(rows.iter().map(|row| row.id))),
+            numbers(rows, "x_px", |row| row.position.x),
+            numbers(rows, "y_px", |row| row.position.y),
+            optional_numbers(rows, "ra_deg", |row| row.astrometric.map(|d| d.ra().degrees())),
+            optional_numbers(rows, "dec_deg", |row| row.astrometric.map(|d| d.dec().degrees())),
+            optional_numbers(rows, "magnitude", |row| row.magnitude),
+            numbers(rows, "electrons", |row| row.electrons),
+            numbers(rows, "peak_electrons", |row| row.peak_electrons),
+            numbers(rows, "snr", |row| row.snr),
+            numbers(rows, "radius_px", |row| row.radius_px),
+            numbers(rows, "cut", |row| row.cut),
+        ]
+    }
+
+    fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
+        let (frame, id) = (columns.u64("frame")?, columns.u32("id")?);
+        let [x, y, electrons, peak_electrons, snr, radius_px, cut] =
+            columns_f64(columns, ["x_px", "y_px", "electrons", "peak_electrons", "snr", "radius_px", "cut"])?;
+        let ra_deg = columns.optional_f64("ra_deg")?;
+        let dec_deg = columns.optional_f64("dec_deg")?;
+        let magnitude = columns.optional_f64("magnitude")?;
+        ra_deg
+            .iter()
+            .zip(dec_deg.iter())
+            .zip(magnitude.iter())
+            .enumerate()
+            .map(|(row, ((ra, dec), magnitude))| {
+                Ok(Self {
+                    frame: frame[row],
+                    kind: columns.word("kind", row, ObjectKind::parse)?,
+                    id: id[row],
+                    position: PixelPoint::new(x[row], y[row]),
+                    astrometric: ra.zip(dec).map(|(ra, dec)| direction(ra, dec)),
+                    magnitude,
+                    electrons: electrons[row],
+                    peak_electrons: peak_electrons[row],
+                    snr: snr[row],
+                    radius_px: radius_px[row],
+                    cut: cut[row],
+                })
+            })
+            .collect()
+    }
+
+    fn frame(&self) -> u64 {
+        self.frame
+    }
+}
+
+fn direction(ra_deg: f64, dec_deg: f64) -> Direction<Icrs> {
+    Direction::from_ra_dec(Angle::from_degrees(ra_deg), Angle::from_degrees(dec_deg))
+}
