@@ -1,5 +1,7 @@
 //! The truth tables: exact round trips, damage, and the schema.
 
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -85,7 +87,8 @@ fn message<R: Row>(path: &Path) -> String {
 fn frames_come_back_to_the_bit() {
     let frames: Vec<_> = (0..300).map(|i| frame(7 * i)).collect();
     let (_directory, path) = write(frames.iter().cloned().map(|frame| vec![frame]));
-    let back: Vec<_> = TableReader::<FrameTruth>::open(&path).unwrap().flat_map(|frame| frame.unwrap().1).collect();
+    let back: Vec<_> =
+        TableReader::<FrameTruth>::open(&path).unwrap().flat_map(|frame| frame.unwrap().1).collect();
     assert_eq!(back, frames);
 }
 
@@ -195,7 +198,7 @@ fn a_table_that_is_cut_short_is_an_error() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(512) })]
     #[test]
     fn no_damage_makes_it_panic(changes in prop::collection::vec((any::<usize>(), any::<u8>()), 1..8), tail: bool) {
         let (_directory, path) = write([(0..50).map(|i| object(1, i)).collect()]);
@@ -208,8 +211,7 @@ proptest! {
         }
         fs::write(&path, bytes).unwrap();
         if let Ok(reader) = TableReader::<ObjectTruth>::open(&path) {
-            // An iterator that has failed is not asked again.
-            let _ = reader.take_while(Result::is_ok).count();
+            let _ = reader.count();
         }
     }
 }
