@@ -36,7 +36,8 @@ fn frame(i: u64) -> FrameTruth {
         phase_deg: 180.0 * fraction(i + 1),
         shadow: [Shadow::Sunlit, Shadow::Penumbra, Shadow::Umbra][i as usize % 3],
         sunlit_fraction: fraction(i + 2),
-        target_position: (i % 4 > 0).then(|| PixelPoint::new(-fraction(i), 752.0 * fraction(i + 5))),
+        target_position: (!i.is_multiple_of(4))
+            .then(|| PixelPoint::new(-fraction(i), 752.0 * fraction(i + 5))),
         target_visibility: Visibility::of_snr(10.0 * fraction(i)),
     }
 }
@@ -95,8 +96,9 @@ fn frames_come_back_to_the_bit() {
 #[test]
 fn objects_come_back_to_the_bit_over_many_batches() {
     // More rows than two batches of the reader; every third frame has none.
-    let objects =
-        |frame: u64| if frame % 3 == 0 { vec![] } else { (0..200).map(|i| object(frame, i)).collect() };
+    let objects = |frame: u64| {
+        if frame.is_multiple_of(3) { vec![] } else { (0..200).map(|i| object(frame, i)).collect() }
+    };
     let (_directory, path) = write((0..150).map(objects));
     let mut reader = TableReader::<ObjectTruth>::open(&path).unwrap();
     for number in (0..150).filter(|number| number % 5 != 1) {
