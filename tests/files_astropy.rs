@@ -1,5 +1,7 @@
 //! The written files through readers that this project did not write: astropy, pyarrow, Pillow.
 
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
 use std::process::Command;
 
 use boresight::files::{

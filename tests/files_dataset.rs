@@ -1,5 +1,7 @@
 //! A dataset from writing to reading, and what is refused on the way.
 
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
 use std::fs;
 use std::path::Path;
 

@@ -1,5 +1,7 @@
 //! The truth tables: exact round trips, damage, and the schema.
 
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -34,7 +36,8 @@ fn frame(i: u64) -> FrameTruth {
         phase_deg: 180.0 * fraction(i + 1),
         shadow: [Shadow::Sunlit, Shadow::Penumbra, Shadow::Umbra][i as usize % 3],
         sunlit_fraction: fraction(i + 2),
-        target_position: (i % 4 > 0).then(|| PixelPoint::new(-fraction(i), 752.0 * fraction(i + 5))),
+        target_position: (!i.is_multiple_of(4))
+            .then(|| PixelPoint::new(-fraction(i), 752.0 * fraction(i + 5))),
         target_visibility: Visibility::of_snr(10.0 * fraction(i)),
     }
 }
@@ -85,15 +88,17 @@ fn message<R: Row>(path: &Path) -> String {
 fn frames_come_back_to_the_bit() {
     let frames: Vec<_> = (0..300).map(|i| frame(7 * i)).collect();
     let (_directory, path) = write(frames.iter().cloned().map(|frame| vec![frame]));
-    let back: Vec<_> = TableReader::<FrameTruth>::open(&path).unwrap().flat_map(|frame| frame.unwrap().1).collect();
+    let back: Vec<_> =
+        TableReader::<FrameTruth>::open(&path).unwrap().flat_map(|frame| frame.unwrap().1).collect();
     assert_eq!(back, frames);
 }
 
 #[test]
 fn objects_come_back_to_the_bit_over_many_batches() {
     // More rows than two batches of the reader; every third frame has none.
-    let objects =
-        |frame: u64| if frame % 3 == 0 { vec![] } else { (0..200).map(|i| object(frame, i)).collect() };
+    let objects = |frame: u64| {
+        if frame.is_multiple_of(3) { vec![] } else { (0..200).map(|i| object(frame, i)).collect() }
+    };
     let (_directory, path) = write((0..150).map(objects));
     let mut reader = TableReader::<ObjectTruth>::open(&path).unwrap();
     for number in (0..150).filter(|number| number % 5 != 1) {
@@ -195,7 +200,7 @@ fn a_table_that_is_cut_short_is_an_error() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(512) })]
     #[test]
     fn no_damage_makes_it_panic(changes in prop::collection::vec((any::<usize>(), any::<u8>()), 1..8), tail: bool) {
         let (_directory, path) = write([(0..50).map(|i| object(1, i)).collect()]);
@@ -208,8 +213,7 @@ proptest! {
         }
         fs::write(&path, bytes).unwrap();
         if let Ok(reader) = TableReader::<ObjectTruth>::open(&path) {
-            // An iterator that has failed is not asked again.
-            let _ = reader.take_while(Result::is_ok).count();
+            let _ = reader.count();
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::fs::File;
-use std::marker::PhantomData;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -11,6 +11,7 @@ use arrow_schema::{ArrowError, Field, Schema};
 use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
 use parquet::arrow::{ArrowWriter, ProjectionMask};
 use parquet::basic::Compression;
+use parquet::file::metadata::{ParquetMetaData, RowGroupMetaData};
 use parquet::file::properties::WriterProperties;
 
 use super::FileError;
@@ -124,7 +125,7 @@ pub struct TableReader<R> {
     rows_read: u64,
     waiting: VecDeque<R>,
     last_frame: Option<u64>,
-    row: PhantomData<R>,
+    failed: bool,
 }
 
 impl<R: Row> TableReader<R> {
@@ -135,24 +136,26 @@ impl<R: Row> TableReader<R> {
     /// [`FileError::MissingColumn`]; [`FileError::Value`] for a column of another type.
     pub fn open(path: &Path) -> Result<Self, FileError> {
         let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
-        let builder =
-            ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| parquet_error(path, error))?;
+        let length = file.metadata().map_err(|source| FileError::io(path, "read", source))?.len();
+        let builder = guarded(path, || {
+            ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| parquet_error(path, error))
+        })?;
+        check_extents(path, builder.metadata(), length)?;
         let expected = schema(&R::columns(&[]));
         check_schema(path, builder.schema(), &expected)?;
         let names = expected.fields().iter().map(|field| field.name().as_str());
         let mask = ProjectionMask::columns(builder.parquet_schema(), names);
-        let batches = builder
-            .with_projection(mask)
-            .with_batch_size(BATCH_ROWS)
-            .build()
-            .map_err(|error| parquet_error(path, error))?;
+        let batches = guarded(path, || {
+            let builder = builder.with_projection(mask).with_batch_size(BATCH_ROWS);
+            builder.build().map_err(|error| parquet_error(path, error))
+        })?;
         Ok(Self {
             path: path.to_owned(),
             batches,
             rows_read: 0,
             waiting: VecDeque::new(),
             last_frame: None,
-            row: PhantomData,
+            failed: false,
         })
     }
 
@@ -176,8 +179,8 @@ impl<R: Row> TableReader<R> {
     /// The frame of the next row.
     fn peek_frame(&mut self) -> Result<Option<u64>, FileError> {
         while self.waiting.is_empty() {
-            let Some(batch) = self.batches.next() else { return Ok(None) };
-            let batch = batch.map_err(|error| arrow_error(&self.path, error))?;
+            let next = || self.batches.next().transpose().map_err(|error| arrow_error(&self.path, error));
+            let Some(batch) = guarded(&self.path, next)? else { return Ok(None) };
             let columns = Columns { path: &self.path, batch: &batch, first_row: self.rows_read };
             let rows = R::rows(&columns)?;
             for (i, row) in rows.iter().enumerate() {
@@ -206,13 +209,41 @@ impl<R: Row> TableReader<R> {
 impl<R: Row> Iterator for TableReader<R> {
     type Item = Result<(u64, Vec<R>), FileError>;
 
+    /// After an error there is nothing more.
     fn next(&mut self) -> Option<Self::Item> {
-        match self.peek_frame() {
-            Ok(None) => None,
-            Ok(Some(frame)) => Some(self.take_frame(frame).map(|rows| (frame, rows))),
-            Err(error) => Some(Err(error)),
+        if self.failed {
+            return None;
+        }
+        let frame = match self.peek_frame() {
+            Ok(None) => return None,
+            Ok(Some(frame)) => self.take_frame(frame).map(|rows| (frame, rows)),
+            Err(error) => Err(error),
+        };
+        self.failed = frame.is_err();
+        Some(frame)
+    }
+}
+
+/// Runs a call into the crate `parquet`, which has assertions that a damaged file can break: such a panic is the
+/// file's fault and becomes its error.
+fn guarded<T>(path: &Path, call: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
+    catch_unwind(AssertUnwindSafe(call))
+        .unwrap_or_else(|_| Err(FileError::format(path, "Parquet", "it is damaged")))
+}
+
+/// Refuses columns that lie outside the file, before the crate asserts on them.
+fn check_extents(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(), FileError> {
+    for column in metadata.row_groups().iter().flat_map(RowGroupMetaData::columns) {
+        let start = column.dictionary_page_offset().unwrap_or(column.data_page_offset());
+        let end = u64::try_from(start)
+            .ok()
+            .zip(u64::try_from(column.compressed_size()).ok())
+            .and_then(|(start, size)| start.checked_add(size));
+        if end.is_none_or(|end| end > length) {
+            return Err(FileError::format(path, "Parquet", "a column lies outside the file"));
         }
     }
+    Ok(())
 }
 
 fn check_schema(path: &Path, found: &Schema, expected: &Schema) -> Result<(), FileError> {

@@ -5,7 +5,7 @@
 //! to the bit; those of objects, which no score uses, as right ascension and declination, good to 1e-13 degrees.
 
 use arrow_array::types::TimestampNanosecondType;
-use arrow_array::{Float64Array, PrimitiveArray, StringArray, UInt32Array, UInt64Array};
+use arrow_array::{Array, Float64Array, PrimitiveArray, StringArray, UInt32Array, UInt64Array};
 use contract::{Angle, Direction, Icrs, PixelPoint, Rotation};
 use hifitime::{Duration, Epoch};
 use nalgebra::Vector3;
@@ -103,7 +103,7 @@ impl Row for FrameTruth {
             let xyz = at(slices, row);
             unit::direction(xyz).ok_or_else(|| columns.error(row, name, format!("{xyz:?}"), unit::EXPECTED))
         };
-        let optional = |array: &Float64Array, row| array.iter().nth(row).flatten();
+        let optional = |array: &Float64Array, row| array.is_valid(row).then(|| array.value(row));
         (0..columns.len())
             .map(|row| {
                 let since_1970 = Duration::from_total_nanoseconds(i128::from(time.value(row)));
