@@ -5,7 +5,7 @@ use std::sync::mpsc;
 
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
-use sim::{Exposure, Simulator};
+use sim::{SimulatedCamera, Simulator};
 
 use crate::failure::Failure;
 
@@ -13,40 +13,44 @@ use crate::failure::Failure;
 /// stays flat (a frame of 752 × 580 takes about 1 MB).
 const FRAMES_PER_JOB: u64 = 8;
 
-/// Makes the exposures of `frames` on `jobs` threads and hands them to `take` in order. What is made does not
-/// depend on the number of threads.
+/// Makes something of each of `frames` on `jobs` threads, each with a camera of its own, and hands it to `take` in
+/// order. What is made does not depend on the number of threads.
 ///
 /// # Errors
-/// The first failure of `take`; no frame is made after it.
-pub fn fly(
+/// The first failure in the order of the frames; nothing after it is taken.
+pub fn fly<T: Send>(
     simulator: &Simulator,
     frames: Range<u64>,
     jobs: usize,
-    mut take: impl FnMut(Exposure) -> Result<(), Failure>,
+    make: impl Fn(&mut SimulatedCamera<'_>, u64) -> Result<T, Failure> + Sync,
+    mut take: impl FnMut(T) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     if jobs <= 1 {
-        let mut camera = simulator.camera();
-        return frames.into_iter().try_for_each(|frame| take(camera.expose(frame)));
+        let mut camera = simulator.camera()?;
+        return frames.into_iter().try_for_each(|frame| take(make(&mut camera, frame)?));
     }
     let pool = ThreadPoolBuilder::new()
         .num_threads(jobs)
         .build()
         .map_err(|error| Failure::Usage(format!("{jobs} threads cannot be started: {error}")))?;
     let batch = FRAMES_PER_JOB * jobs as u64;
-    // One batch is taken while the next one is made.
-    let (made, waiting) = mpsc::sync_channel::<Vec<Exposure>>(1);
+    let make_one = |camera: &mut Result<SimulatedCamera<'_>, _>, frame| match camera {
+        Ok(camera) => make(camera, frame),
+        Err(_) => Err(Failure::Usage("the camera could not be made on every thread".to_owned())),
+    };
     std::thread::scope(|scope| {
+        // One batch is taken while the next one is made.
+        let (made, waiting) = mpsc::sync_channel::<Vec<Result<T, Failure>>>(1);
         scope.spawn(move || {
             for start in frames.clone().step_by(batch as usize) {
                 let range = start..(start + batch).min(frames.end);
-                let exposures = pool.install(|| {
-                    range.into_par_iter().map_init(|| simulator.camera(), |camera, frame| camera.expose(frame)).collect()
-                });
-                if made.send(exposures).is_err() {
-                    return; // `take` failed and nobody listens any more.
+                let results =
+                    pool.install(|| range.into_par_iter().map_init(|| simulator.camera(), make_one).collect());
+                if made.send(results).is_err() {
+                    return; // Something failed, and nobody listens any more.
                 }
             }
         });
-        waiting.into_iter().flatten().try_for_each(take)
+        waiting.into_iter().flatten().try_for_each(|result| take(result?))
     })
 }

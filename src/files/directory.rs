@@ -81,6 +81,11 @@ impl RunDirectory {
         self.path.join("camera.toml")
     }
 
+    /// `stars.csv`: see [`super::StarRow`].
+    pub fn stars(&self) -> PathBuf {
+        self.path.join("stars.csv")
+    }
+
     /// `telemetry.csv`: see [`super::TelemetryRow`].
     pub fn telemetry(&self) -> PathBuf {
         self.path.join("telemetry.csv")

@@ -97,9 +97,7 @@ fn times(cards: &mut Cards<'_>, header: &FrameHeader) -> Result<(), FileError> {
         ("DATE-AVG", header.time, "middle of the exposure"),
         ("DATE-END", header.time + half, "end of the exposure"),
     ] {
-        let text = format_utc(time).ok_or_else(|| {
-            FileError::value(cards.path, Place::Header, keyword, time, "a time outside leap seconds")
-        })?;
+        let text = format_utc(time);
         // FITS takes the scale from TIMESYS and knows no Z.
         cards.text(keyword, text.trim_end_matches('Z'), comment)?;
     }

@@ -60,16 +60,7 @@ impl TelemetryWriter {
     /// [`FileError::Value`] for a time that UTC cannot name (inside a leap second), [`FileError::Io`].
     pub fn write(&mut self, row: &TelemetryRow) -> Result<(), FileError> {
         let telemetry = &row.telemetry;
-        let time = format_utc(telemetry.time).ok_or_else(|| {
-            let field = format!("time_utc of frame {}", row.frame);
-            FileError::value(
-                self.0.path(),
-                Place::Header,
-                field,
-                telemetry.time,
-                "a time outside leap seconds",
-            )
-        })?;
+        let time = format_utc(telemetry.time);
         let start =
             [row.frame.to_string(), row.file.clone().unwrap_or_default(), time, cell(telemetry.exposure_s)];
         let quaternion = telemetry.body_from_icrs.wxyz().map(cell);

@@ -1,0 +1,109 @@
+//! `stars.csv`: the star list that a pipeline is given.
+
+use std::path::Path;
+
+use contract::{Angle, Direction, ListedStar};
+
+use super::FileError;
+use super::csv_table::Presence::Required;
+use super::csv_table::{CsvReader, CsvWriter, Layout, cell};
+
+const LAYOUT: Layout =
+    &[("id", Required), ("ra_deg", Required), ("dec_deg", Required), ("magnitude", Required)];
+
+/// One row of the list: catalogued place, ICRS, proper motion applied, without aberration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StarRow {
+    /// Number in the catalogue.
+    pub id: u32,
+    /// Right ascension, degrees, 0 to 360.
+    pub ra_deg: f64,
+    /// Declination, degrees, −90 to 90.
+    pub dec_deg: f64,
+    /// Visual magnitude.
+    pub magnitude: f64,
+}
+
+impl StarRow {
+    /// The star as a pipeline gets it. The list is *defined* by its rows, so that one read back from a file is the
+    /// same to the bit.
+    pub fn listed(&self) -> ListedStar {
+        let direction = Direction::from_ra_dec(Angle::from_degrees(self.ra_deg), Angle::from_degrees(self.dec_deg));
+        ListedStar { id: self.id, direction, magnitude: self.magnitude }
+    }
+}
+
+/// Writes the list.
+///
+/// # Errors
+/// [`FileError::Io`] when the file exists or cannot be written.
+pub fn write_stars(path: &Path, stars: &[StarRow]) -> Result<(), FileError> {
+    let mut table = CsvWriter::create(path, LAYOUT)?;
+    for star in stars {
+        table.write([star.id.to_string(), cell(star.ra_deg), cell(star.dec_deg), cell(star.magnitude)])?;
+    }
+    table.finish()
+}
+
+/// Reads the list; numbers ascend, each once.
+///
+/// # Errors
+/// A [`FileError`] that names line and column of the first cell that is not as it should be.
+pub fn read_stars(path: &Path) -> Result<Vec<StarRow>, FileError> {
+    let mut table = CsvReader::open(path, LAYOUT)?;
+    let mut stars: Vec<StarRow> = Vec::new();
+    while let Some(row) = table.next_row()? {
+        let [ra_deg, dec_deg, magnitude] = row.numbers(["ra_deg", "dec_deg", "magnitude"])?;
+        let id = row.count("id")?;
+        if stars.last().is_some_and(|last| id <= last.id) {
+            return Err(row.error("id", "more than that of the row before (each star once, ascending)"));
+        }
+        if !(0.0..=360.0).contains(&ra_deg) {
+            return Err(row.error("ra_deg", "0 to 360"));
+        }
+        if !(-90.0..=90.0).contains(&dec_deg) {
+            return Err(row.error("dec_deg", "-90 to 90"));
+        }
+        stars.push(StarRow { id, ra_deg, dec_deg, magnitude });
+    }
+    Ok(stars)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIRIUS: StarRow = StarRow { id: 32349, ra_deg: 101.287_155_33, dec_deg: -16.716_115_86, magnitude: -1.44 };
+
+    #[test]
+    fn the_list_comes_back_to_the_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("stars.csv");
+        let stars = [StarRow { id: 1, ra_deg: 0.1 + 0.2, ..SIRIUS }, SIRIUS];
+        write_stars(&path, &stars).unwrap();
+        assert_eq!(read_stars(&path).unwrap(), stars);
+        assert!(write_stars(&path, &stars).is_err(), "a file that exists is not overwritten");
+    }
+
+    fn refused(text: &str) -> String {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("stars.csv");
+        std::fs::write(&path, text).unwrap();
+        read_stars(&path).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_mistake_is_named_with_line_and_column() {
+        for (row, column) in [
+            ("7,361,0,1", "ra_deg"),
+            ("7,0,-91,1", "dec_deg"),
+            ("7,NaN,0,1", "ra_deg"),
+            ("6,0,0,1", "id"),
+            ("7,0,0,", "magnitude"),
+        ] {
+            let message = refused(&format!("id,ra_deg,dec_deg,magnitude\n6,1,2,3\n{row}\n"));
+            assert!(message.contains("line 3") && message.contains(&format!("`{column}`")), "{message}");
+        }
+        assert!(refused("id,ra_deg,dec_deg\n").contains("magnitude"));
+    }
+}
