@@ -43,12 +43,13 @@ impl Catalog {
         Self { stars: hipparcos::stars(), sha256: hipparcos::sha256(), exclusions: Vec::new() }
     }
 
-    /// Reads a user's catalogue. The format is told by name and content: a name ending in `.csv` is CSV with named
-    /// columns; otherwise a first line that begins with `H|` is hip_main.dat (I/239), and one of 276 characters
-    /// without a `|` is hip2.dat (I/311).
+    /// Reads a user's catalogue. The format is told by name and content: a name ending in `.csv` is CSV with
+    /// named columns; otherwise a first line that begins with `H|` is hip_main.dat (I/239), and one of at least
+    /// 171 plain characters (of the 276 published) without a bar or a comma is hip2.dat (I/311).
     ///
-    /// Stars that the file lists without a position are left out and told by [`Catalog::exclusions`]; any other
-    /// flaw is an error. The two Hipparcos formats have no radial velocities and get those of the embedded catalogue.
+    /// Stars that hip_main.dat lists without a position or without Hp are left out and told by
+    /// [`Catalog::exclusions`]; any other flaw is an error. The two Hipparcos formats have no radial velocities and get those of the
+    /// embedded catalogue.
     ///
     /// # Errors
     /// [`CatalogError`] with the file, the line and the place in it.
@@ -59,8 +60,8 @@ impl Catalog {
         Ok(Self { stars: unique(path, rows)?, sha256: hex(&Sha256::digest(&bytes)), exclusions })
     }
 
-    /// The stars that a scenario asks for: the source, cut at the magnitude and to the cone. `base_dir` is where a
-    /// relative path starts.
+    /// The stars that a scenario asks for: the source, cut at the magnitude and to the cone. `base_dir` is
+    /// where a relative path starts.
     ///
     /// The cone is taken at the catalogue's epoch: give it a margin for proper motion (at most 10.4″ a year).
     /// The hash is that of the whole source.

@@ -11,13 +11,14 @@ use super::CatalogStar;
 const BANDS: usize = 64;
 /// Cells of a band, equal in right ascension: at 118 000 stars a cell holds 14 of them.
 const CELLS: usize = 128;
-/// How much wider than the cone the search for candidates is, rad. It covers every rounding error here, and costs
-/// nothing: whether a candidate is inside is decided by [`within_cone`] alone.
+/// How much wider than the cone the search for candidates is, rad. It covers every rounding error here, and
+/// costs nothing: whether a candidate is inside is decided by [`within_cone`] alone.
 const MARGIN_RAD: f64 = 1e-7;
 
 /// An index over directions on a grid of z and right ascension.
 ///
-/// The answers are those of a test of every star, in all cases: the poles, α = 0, radii from 0 to 180° and beyond.
+/// The answers are those of a test of every star, in all cases: the poles, α = 0, radii from 0 to 180° and
+/// beyond.
 #[derive(Debug, Clone)]
 pub struct ConeIndex {
     /// Direction and index of each star, sorted by cell.
@@ -32,7 +33,8 @@ impl ConeIndex {
         Self::from_directions(stars.iter().map(CatalogStar::direction))
     }
 
-    /// The index of any directions, at most 2³² − 1 of them: those of stars moved to another epoch, for example.
+    /// The index of any directions, at most 2³² − 1 of them: those of stars moved to another epoch, for
+    /// example.
     pub fn from_directions(directions: impl IntoIterator<Item = Direction<Icrs>>) -> Self {
         let mut celled: Vec<(usize, Direction<Icrs>, u32)> = directions
             .into_iter()
@@ -55,8 +57,8 @@ impl ConeIndex {
         Self { entries, starts }
     }
 
-    /// Indices of the stars within `radius` of `centre`, ascending; the boundary belongs to the cone. A negative
-    /// radius holds nothing, one of 180° or more everything.
+    /// Indices of the stars within `radius` of `centre`, ascending; the boundary belongs to the cone. A
+    /// negative radius holds nothing, one of 180° or more everything.
     pub fn within(&self, centre: &Direction<Icrs>, radius: Angle) -> Vec<usize> {
         let mut found = Vec::new();
         self.within_into(centre, radius, &mut found);
@@ -97,8 +99,8 @@ pub(super) fn within_cone(centre: &Direction<Icrs>, star: &Direction<Icrs>, radi
 
 /// A cone, ready to be compared with many stars.
 ///
-/// Up to 90° the chord to the centre is compared, beyond that the chord to the antipode: a dot product would lose half
-/// of the digits near 0 and 180°.
+/// Up to 90° the chord to the centre is compared, beyond that the chord to the antipode: a dot product would
+/// lose half of the digits near 0 and 180°.
 enum Cone {
     NearCentre { centre: [f64; 3], chord_squared: f64 },
     AwayFromAntipode { antipode: [f64; 3], chord_squared: f64 },
@@ -152,7 +154,8 @@ impl Candidates {
         let cells = if low <= -FRAC_PI_2 || high >= FRAC_PI_2 {
             (0, CELLS - 1)
         } else {
-            // The meridians that touch the circle: sin Δα = sin r / cos δ; no pole inside means r < 90° − |δ|.
+            // The meridians that touch the circle: sin Δα = sin r / cos δ; no pole inside means r < 90° −
+            // |δ|.
             let half_width = libm::asin((libm::sin(radius) / libm::cos(dec)).min(1.0)) + MARGIN_RAD;
             let ra = libm::atan2(centre.vector().y, centre.vector().x);
             (cell(ra - half_width), cell(ra + half_width))
@@ -222,7 +225,8 @@ mod tests {
         })
     }
 
-    /// Places where an index goes wrong: poles and their neighbourhood, the seam of right ascension, a cell's edge.
+    /// Places where an index goes wrong: poles and their neighbourhood, the seam of right ascension, a cell's
+    /// edge.
     fn places() -> impl Strategy<Value = Direction<Icrs>> {
         let ra =
             prop_oneof![Just(0.0), Just(180.0), 359.999..360.0_f64, 179.999..180.001_f64, 0.0..360.0_f64];

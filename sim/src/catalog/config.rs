@@ -123,6 +123,17 @@ mod tests {
     }
 
     #[test]
+    fn a_scenario_may_say_nothing_little_or_all() {
+        let read = |text: &str| serde_json::from_str::<CatalogConfig>(text);
+        assert_eq!(read("{}").unwrap(), CatalogConfig::default());
+        let text = r#"{"source":"mine.csv","magnitude_limit":6.5,"cone":{"ra_deg":1.0,"dec_deg":2.0,"radius_deg":3.0}}"#;
+        let config = read(text).unwrap();
+        assert_eq!(config.source, CatalogSource::File("mine.csv".to_owned()));
+        assert_eq!(serde_json::to_string(&config).unwrap(), text);
+        assert!(read(r#"{"magnitude":6.5}"#).is_err());
+    }
+
+    #[test]
     fn the_source_is_one_string() {
         for (text, source) in [
             ("hipparcos2", CatalogSource::Hipparcos2),

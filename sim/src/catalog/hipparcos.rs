@@ -1,6 +1,7 @@
 //! The embedded Hipparcos-2 (van Leeuwen 2007, A&A 474, 653; CDS I/311).
 //!
-//! `sim/data/make_hipparcos2.py` makes the bytes and describes their format; every printed digit of hip2.dat is kept.
+//! `sim/data/make_hipparcos2.py` makes the bytes and describes their format; every printed digit of hip2.dat
+//! is kept.
 
 use super::catalog::hex;
 use super::{CatalogStar, radial_velocity};
@@ -41,8 +42,8 @@ fn star(record: &[u8; RECORD]) -> CatalogStar {
     }
 }
 
-/// The number of which `integer` is the printed digits: a division by a power of ten is correctly rounded, so it is
-/// the float that a reader of the text would get.
+/// The number of which `integer` is the printed digits: a division by a power of ten is correctly rounded, so
+/// it is the float that a reader of the text would get.
 fn scaled(integer: i64, power_of_ten: f64) -> f64 {
     integer as f64 / power_of_ten
 }
@@ -92,7 +93,8 @@ mod tests {
         }
     }
 
-    /// Sums over the whole catalogue, made from hip2.dat with Python's exact integers: a single wrong digit shows.
+    /// Sums over the whole catalogue, made from hip2.dat with Python's exact integers: a single wrong digit
+    /// shows.
     #[test]
     fn the_sums_over_all_stars_are_those_of_the_text() {
         let stars = stars();

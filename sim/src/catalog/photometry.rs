@@ -3,21 +3,22 @@
 /// Range of B−V for which the transformation was made, mag.
 const COLOUR_RANGE: (f64, f64) = (-0.25, 2.0);
 
-/// V − Hp of a star without a colour, mag: the mean of the transformation over the stars of Hipparcos-2 that have
-/// one. It scatters by 0.06 mag.
+/// V − Hp of a star without a colour, mag: the mean of the transformation over the stars of Hipparcos-2 that
+/// have one. It scatters by 0.06 mag.
 const MEAN_V_MINUS_HP: f64 = -0.107;
 
 /// Johnson V from Hp and Johnson B−V, mag (Harmanec 1998, A&A 335, 173):
 /// V = Hp − 0.2964 (B−V) + 0.1110 (B−V)² + 0.0157 (B−V)³ + 0.0072.
 ///
-/// The paper's term 0.0050 (U−B) is left out, because Hipparcos has no U−B: at most 0.01 mag. The relation was made for
-/// B−V from −0.25 to 2.0, V brighter than 8 and reddening below 1; a bluer or redder star gets the offset of the
-/// nearest end, and a star without colour the mean offset, −0.107.
+/// The paper's term 0.0050 (U−B) is left out, because Hipparcos has no U−B: at most 0.01 mag. The relation
+/// was made for B−V from −0.25 to 2.0, V brighter than 8 and reddening below 1; a bluer or redder star gets
+/// the offset of the nearest end, and a star without colour the mean offset, −0.107.
 ///
-/// Accuracy, against the V of the 41 000 stars of I/239 brighter than about 8: median −0.003, half of the stars within
-/// 0.006, 95 % within 0.032, 99 % within 0.14 mag. B−V does not follow the molecular bands of M giants: at
-/// V−I of 2.5 the result is too bright by 0.1 mag, at 3.5 by 0.4 mag (some 400 stars are redder than 3). Two stars have
-/// a published Hp that does not fit their V: Sirius (the result is too faint by 0.38 mag) and Vega (by 0.06 mag).
+/// Accuracy, against the V of the 41 000 stars of I/239 brighter than about 8: median −0.003, half of the
+/// stars within 0.006, 95 % within 0.032, 99 % within 0.14 mag. B−V does not follow the molecular bands of M
+/// giants: at V−I of 2.5 the result is too bright by 0.1 mag, at 3.5 by 0.4 mag (some 600 stars are redder
+/// than 3). Two stars have a published Hp that does not fit their V: Sirius (the result is too faint by 0.38
+/// mag) and Vega (by 0.06 mag).
 pub fn v_mag(hp_mag: f64, b_v: Option<f64>) -> f64 {
     let offset = b_v.map_or(MEAN_V_MINUS_HP, |b_v| {
         let colour = b_v.clamp(COLOUR_RANGE.0, COLOUR_RANGE.1);
@@ -36,8 +37,8 @@ mod tests {
     use super::super::Catalog;
     use super::*;
 
-    /// V of well-known stars that vary little, from the UBV photoelectric means of Johnson et al. (1966, Comm. Lunar
-    /// Plan. Lab. 4, 99), as also in the Bright Star Catalogue (Hoffleit & Warren 1991, V/50).
+    /// V of well-known stars that vary little, from the Bright Star Catalogue (Hoffleit & Warren 1991, CDS
+    /// V/50), whose V are means of photoelectric UBV measurements.
     const PUBLISHED: [(u32, &str, f64); 14] = [
         (69673, "Arcturus", -0.04),
         (24608, "Capella", 0.08),
@@ -62,8 +63,9 @@ mod tests {
             .iter()
             .map(|(id, name, published)| {
                 let error = catalog.star(*id).unwrap().v_mag() - published;
-                // The V of stars this bright scatters by 0.02 from source to source, and some vary by as much;
-                // 0.05 is 2.5 σ. Without the transformation, Aldebaran and Arcturus would be off by 0.15.
+                // The V of stars this bright scatters by 0.02 from source to source, and some vary by as
+                // much; 0.05 is 2.5 σ. Without the transformation, Aldebaran and Arcturus would be off by
+                // 0.15.
                 assert!(error.abs() < 0.05, "{name}: {error:+.3}");
                 error
             })
@@ -82,7 +84,8 @@ mod tests {
         assert!((error(91_262, 0.03) - 0.06).abs() < 0.01);
     }
 
-    /// Bessell (2000, PASP 112, 961), Table 2: B−V (as BT−VT + Δ(B−V)) and V − Hp of dwarfs, an independent calibration.
+    /// Bessell (2000, PASP 112, 961), Table 2: B−V (as BT−VT + Δ(B−V)) and V − Hp of dwarfs, an independent
+    /// calibration.
     #[test]
     fn the_transformation_agrees_with_bessell() {
         for (b_v, v_minus_hp) in [
@@ -101,8 +104,8 @@ mod tests {
             (1.034, -0.162),
         ] {
             let difference = v_mag(0.0, Some(b_v)) - v_minus_hp;
-            // The two were made from different standards: they agree to 0.005 for cool stars and part by up to 0.02
-            // where B−V is near 0.
+            // The two were made from different standards: they agree to 0.005 for cool stars and part by up
+            // to 0.02 where B−V is near 0.
             assert!(difference.abs() < 0.025, "B−V {b_v}: {difference:+.4}");
         }
     }

@@ -1,7 +1,7 @@
 //! CSV with named columns.
 //!
-//! The first line names the columns, in any order, each name with its unit. Fields are plain numbers: there is no
-//! quoting, and a blank field is allowed only where its column is optional.
+//! The first line names the columns, in any order, each name with its unit. Fields are plain numbers: there
+//! is no quoting, and a blank field is allowed only where its column is optional.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! hip_main.dat, the Hipparcos Catalogue of 1997 (ESA SP-1200, CDS I/239): fields H0 to H77 between bars, degrees,
-//! J1991.25.
+//! hip_main.dat, the Hipparcos Catalogue of 1997 (ESA SP-1200, CDS I/239): fields H0 to H77 between bars,
+//! degrees, J1991.25.
 
 use std::path::Path;
 
