@@ -1,0 +1,271 @@
+//! Simulate, process, score: what the commands `run`, `render`, `process` and `score` do.
+
+use std::ops::Range;
+use std::path::Path;
+
+use contract::{Pipeline, PipelineFactory, Setup};
+use hifitime::Epoch;
+use sim::truth::{FrameTruth, ObjectTruth};
+use sim::Simulator;
+
+use crate::dataset_writer::{DatasetWriter, save_image};
+use crate::failure::Failure;
+use crate::files::{
+    Dataset, FileError, FrameCluster, ImageFormat, MeasurementWriter, RunDirectory, StarRow, TableReader,
+    TableWriter, read_measurements,
+};
+use crate::flight::fly;
+use crate::run_file::RunFile;
+use crate::scenario::{Scenario, ScenarioSource};
+use crate::score::{Score, ScoreContext, Scored, Scorer};
+use crate::star_list::star_list;
+
+/// Which frames are made, on how many threads, and whether their images are kept.
+#[derive(Debug, Clone)]
+pub struct Flight {
+    /// The frames.
+    pub frames: Range<u64>,
+    /// Threads that make frames; what is made does not depend on it.
+    pub jobs: usize,
+    /// Images to keep.
+    pub images: Option<ImageFormat>,
+}
+
+/// A scenario with its simulator and star list, ready to fly.
+pub struct Prepared {
+    simulator: Simulator,
+    run_file: RunFile,
+    stars: Vec<StarRow>,
+    star_epoch: Epoch,
+}
+
+impl Prepared {
+    /// Checks a scenario and prepares its simulator.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the first value that is not allowed.
+    pub fn new(source: &ScenarioSource) -> Result<Self, Failure> {
+        let simulator = source.simulator()?;
+        let scenario = &source.scenario;
+        let run_file = RunFile::new(&source.name, scenario, simulator.catalog().sha256())?;
+        let (_, star_epoch) = simulator.schedule().frame(0).ok_or_else(|| {
+            Failure::Usage(format!("scenario `{}` has no frame", source.name))
+        })?;
+        let stars = star_list(simulator.catalog(), scenario.star_list.magnitude_limit, star_epoch);
+        Ok(Self { simulator, run_file, stars, star_epoch })
+    }
+
+    /// Number of frames of the whole scenario.
+    pub fn frame_count(&self) -> u64 {
+        self.simulator.schedule().frame_count()
+    }
+
+    /// The scenario.
+    pub fn scenario(&self) -> &Scenario {
+        &self.run_file.scenario
+    }
+
+    /// What a pipeline is told before the first frame.
+    pub fn setup(&self) -> Setup {
+        let scenario = self.scenario();
+        Setup {
+            camera: scenario.camera.clone(),
+            camera_from_body: scenario.mounting.nominal.camera_from_body(),
+            bit_depth: scenario.sensor.bit_depth,
+            stars: self.stars.iter().map(StarRow::listed).collect(),
+        }
+    }
+
+    /// Makes frames and writes them as a dataset; `done` is told of each.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a file cannot be written.
+    pub fn render(&self, directory: &RunDirectory, flight: &Flight, done: impl Fn()) -> Result<(), Failure> {
+        let mut dataset = self.dataset(directory, flight)?;
+        self.fly(directory, flight, |exposure| {
+            dataset.add(exposure)?;
+            done();
+            Ok(())
+        })?;
+        Ok(dataset.finish()?)
+    }
+
+    /// Makes frames, has the pipeline process them and scores its answers; writes all of it; `done` is told of each
+    /// frame. A scenario is one sequence: the pipeline is built once.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a file cannot be written or the pipeline cannot be built.
+    pub fn run(
+        &self,
+        directory: &RunDirectory,
+        flight: &Flight,
+        factory: &dyn PipelineFactory,
+        done: impl Fn(),
+    ) -> Result<Scored, Failure> {
+        let mut dataset = self.dataset(directory, flight)?;
+        let mut answers = Answers::create(
+            &directory.measurements(),
+            &directory.clusters(),
+            factory.build(&self.setup())?,
+        )?;
+        let unproject = |point| self.simulator.projection().unproject(point);
+        let mut scorer = Scorer::new(context(&self.run_file, &unproject));
+        self.fly(directory, flight, |exposure| {
+            let outcome = answers.answer(&exposure.frame, &exposure.telemetry)?;
+            scorer.add(&exposure.truth, &exposure.objects, Some(&outcome)).map_err(unscorable)?;
+            dataset.add(exposure)?;
+            done();
+            Ok(())
+        })?;
+        dataset.finish()?;
+        answers.finish()?;
+        let scored = scorer.finish();
+        write_score(&directory.score(), &scored.score)?;
+        Ok(scored)
+    }
+
+    fn dataset(&self, directory: &RunDirectory, flight: &Flight) -> Result<DatasetWriter, Failure> {
+        DatasetWriter::create(directory, &self.run_file, &self.stars, self.star_epoch, flight.images)
+    }
+
+    fn fly(
+        &self,
+        directory: &RunDirectory,
+        flight: &Flight,
+        take: impl FnMut(sim::Exposure) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let make = |camera: &mut sim::SimulatedCamera<'_>, frame| {
+            let exposure = camera.expose(frame)?;
+            if let Some(format) = flight.images {
+                save_image(directory, format, &self.simulator, &self.run_file, &exposure)?;
+            }
+            Ok(exposure)
+        };
+        fly(&self.simulator, flight.frames.clone(), flight.jobs, make, take)
+    }
+}
+
+/// Has a pipeline process a dataset, real images included, and writes its answers to `measurements`, with its
+/// clusters beside them.
+///
+/// # Errors
+/// A [`Failure`] when an image cannot be read or a file not be written.
+pub fn process(
+    dataset: &Dataset,
+    setup: &Setup,
+    factory: &dyn PipelineFactory,
+    measurements: &Path,
+    clusters: &Path,
+    done: impl Fn(),
+) -> Result<u64, Failure> {
+    let mut answers = Answers::create(measurements, clusters, factory.build(setup)?)?;
+    for frame in dataset.frames() {
+        answers.answer(&dataset.read(frame)?, frame.telemetry())?;
+        done();
+    }
+    answers.finish()?;
+    Ok(dataset.frames().len() as u64)
+}
+
+/// Scores measurements, somebody's or our own, against the truth in `directory`. Clusters are evidence for the causes
+/// of misses, where there are any.
+///
+/// # Errors
+/// A [`Failure`] for a file that cannot be read, or a measurement of a frame that the truth does not have.
+pub fn score(directory: &Path, measurements: &Path, clusters: Option<&Path>) -> Result<Scored, Failure> {
+    let run_file = RunFile::read(&directory.join("run.toml"))?;
+    let projection = sim::optics::Projection::new(&run_file.scenario.camera)?;
+    let unproject = |point| projection.unproject(point);
+    let mut scorer = Scorer::new(context(&run_file, &unproject));
+
+    let mut objects = TableReader::<ObjectTruth>::open(&directory.join("truth/objects.parquet"))?;
+    let frames = TableReader::<FrameTruth>::open(&directory.join("truth/frames.parquet"))?;
+    let mut clusters = clusters.map(TableReader::<FrameCluster>::open).transpose()?;
+    let mut answers = read_measurements(measurements)?.into_iter().peekable();
+    for frame in frames {
+        let (number, truths) = frame?;
+        let objects = objects.rows_of(number)?;
+        let answer = answers.next_if(|(answered, _)| *answered == number);
+        let outcome = match (answer, &mut clusters) {
+            (Some((_, mut outcome)), Some(table)) => {
+                outcome.clusters = table.rows_of(number)?.into_iter().map(|row| row.cluster).collect();
+                Some(outcome)
+            }
+            (answer, _) => answer.map(|(_, outcome)| outcome),
+        };
+        for truth in &truths {
+            scorer.add(truth, &objects, outcome.as_ref()).map_err(unscorable)?;
+        }
+        if let Some((earlier, _)) = answers.peek()
+            && *earlier <= number
+        {
+            return Err(foreign_frame(measurements, *earlier, directory));
+        }
+    }
+    match answers.next() {
+        Some((frame, _)) => Err(foreign_frame(measurements, frame, directory)),
+        None => Ok(scorer.finish()),
+    }
+}
+
+fn foreign_frame(measurements: &Path, frame: u64, directory: &Path) -> Failure {
+    Failure::Usage(format!(
+        "{}: `frame` is `{frame}`, expected a frame of {}",
+        measurements.display(),
+        directory.join("truth/frames.parquet").display()
+    ))
+}
+
+fn unscorable(error: crate::score::ScoreError) -> Failure {
+    Failure::Usage(format!("the truth cannot be scored: {error}"))
+}
+
+/// A pipeline and the files of its answers.
+struct Answers {
+    pipeline: Box<dyn Pipeline>,
+    measurements: MeasurementWriter,
+    clusters: TableWriter<FrameCluster>,
+}
+
+impl Answers {
+    fn create(measurements: &Path, clusters: &Path, pipeline: Box<dyn Pipeline>) -> Result<Self, FileError> {
+        Ok(Self {
+            pipeline,
+            measurements: MeasurementWriter::create(measurements)?,
+            clusters: TableWriter::create(clusters)?,
+        })
+    }
+
+    fn answer(&mut self, frame: &contract::Frame, telemetry: &contract::Telemetry) -> Result<contract::Outcome, FileError> {
+        let outcome = self.pipeline.process(frame, telemetry);
+        self.measurements.write(frame.number(), &outcome)?;
+        let rows = outcome.clusters.iter().map(|&cluster| FrameCluster { frame: frame.number(), cluster });
+        self.clusters.write(rows)?;
+        Ok(outcome)
+    }
+
+    fn finish(self) -> Result<(), FileError> {
+        self.measurements.finish()?;
+        self.clusters.finish()
+    }
+}
+
+fn context<'a>(run_file: &RunFile, unproject: crate::score::Unproject<'a>) -> ScoreContext<'a> {
+    ScoreContext {
+        scenario: run_file.name.clone(),
+        seed: run_file.scenario.seed,
+        version: run_file.version.clone(),
+        columns: run_file.scenario.camera.columns,
+        rows: run_file.scenario.camera.rows,
+        unproject,
+    }
+}
+
+fn write_score(path: &Path, score: &Score) -> Result<(), Failure> {
+    let json = serde_json::to_string_pretty(score)
+        .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?;
+    let io = |source| FileError::Io { path: path.to_owned(), doing: "create", source };
+    let mut file = std::fs::File::create_new(path).map_err(io)?;
+    std::io::Write::write_all(&mut file, json.as_bytes()).map_err(io)?;
+    Ok(())
+}

@@ -1,0 +1,69 @@
+//! `run.toml`: enough to repeat a run.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::dataset_writer::sha256_hex;
+use crate::failure::Failure;
+use crate::files::FileError;
+use crate::scenario::Scenario;
+use crate::toml_file;
+
+/// What was run: the resolved scenario with all defaults, and what else the frames depend on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunFile {
+    /// Name of the scenario.
+    pub name: String,
+    /// Version of Boresight that made the frames.
+    pub version: String,
+    /// SHA-256 of the star catalogue's source, hexadecimal.
+    pub catalog_sha256: String,
+    /// SHA-256 of the resolved scenario as it stands below, hexadecimal.
+    pub hash: String,
+    /// The scenario.
+    pub scenario: Scenario,
+}
+
+impl RunFile {
+    /// The file of a run that is about to start.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when the scenario cannot be written as TOML.
+    pub fn new(name: &str, scenario: &Scenario, catalog_sha256: &str) -> Result<Self, Failure> {
+        Ok(Self {
+            name: name.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            catalog_sha256: catalog_sha256.to_owned(),
+            hash: sha256_hex(&to_toml(scenario)?),
+            scenario: scenario.clone(),
+        })
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// [`Failure`] when it cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), Failure> {
+        let text = to_toml(self)?;
+        let io = |source| FileError::Io { path: path.to_owned(), doing: "create", source };
+        let mut file = std::fs::File::create_new(path).map_err(io)?;
+        std::io::Write::write_all(&mut file, text.as_bytes()).map_err(io)?;
+        Ok(())
+    }
+
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// [`Failure`] with the place of the first mistake.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| FileError::Io { path: path.to_owned(), doing: "read", source })?;
+        Ok(toml_file::parse(path, &text)?)
+    }
+}
+
+fn to_toml(value: &impl Serialize) -> Result<String, Failure> {
+    toml::to_string(value).map_err(|error| Failure::Usage(format!("the scenario cannot be written: {error}")))
+}
