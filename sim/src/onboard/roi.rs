@@ -107,16 +107,16 @@ impl RoiExtractor {
         const PIECE: usize = 64;
         let (columns, rows) = image.size();
         let threshold = self.config.threshold_dn;
-        let dn = image.dn();
         self.taken.resize(columns * rows, false);
         let mut blobs = Vec::new();
         let mut all_taken = Vec::new();
-        for (p, piece) in dn.chunks(PIECE).enumerate() {
+        for (p, piece) in image.dn().chunks(PIECE).enumerate() {
             if piece.iter().fold(0, |peak, &dn| peak.max(dn)) <= threshold {
                 continue;
             }
-            for index in p * PIECE..p * PIECE + piece.len() {
-                if dn[index] > threshold && !self.taken[index] {
+            for (i, &value) in piece.iter().enumerate() {
+                let index = p * PIECE + i;
+                if value > threshold && !self.taken[index] {
                     blobs.push(self.take_blob(image, (index % columns, index / columns)));
                     all_taken.append(&mut self.pixels);
                 }

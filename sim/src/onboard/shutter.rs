@@ -89,8 +89,9 @@ impl Shutter {
             ShutterConfig::Fixed { exposure_s } => exposure_s,
             ShutterConfig::Automatic { min_s, max_s, target_level, step_factor, .. } => {
                 let rate = peak_rate_e_per_s.unwrap_or(0.0);
-                // Negated, so that no light and a NaN both leave the shutter open.
-                if !(rate * max_s > target_level * self.saturation_e) {
+                // No light, and a NaN, leave the shutter open.
+                let over_exposed = rate * max_s > target_level * self.saturation_e;
+                if !over_exposed {
                     return max_s;
                 }
                 let ideal_s = target_level * self.saturation_e / rate;

@@ -91,8 +91,7 @@ impl Projection {
         }
         let offset =
             Offset { u: self.focal_x_px * (vector.x / vector.z), v: self.focal_y_px * (vector.y / vector.z) };
-        // Negated, so that an overflow to NaN is refused as well.
-        if !(offset.length() <= self.domain_px) {
+        if !self.is_one_to_one_at(offset) {
             return None;
         }
         let distorted = self.distortion.apply(offset);
@@ -104,7 +103,7 @@ impl Projection {
     pub fn unproject(&self, point: PixelPoint) -> Option<Direction<CameraFrame>> {
         let distorted = Offset { u: point.x - self.principal.x, v: point.y - self.principal.y };
         let offset = self.distortion.remove(distorted)?;
-        if !(offset.length() <= self.domain_px) {
+        if !self.is_one_to_one_at(offset) {
             return None;
         }
         let vector = Vector3::new(offset.u / self.focal_x_px, offset.v / self.focal_y_px, 1.0);
@@ -125,6 +124,11 @@ impl Projection {
     /// Columns and rows of the detector.
     pub fn detector(&self) -> (usize, usize) {
         (self.columns, self.rows)
+    }
+
+    /// Whether the distortion is one-to-one at an undistorted offset; not where it has overflowed to NaN.
+    fn is_one_to_one_at(&self, offset: Offset) -> bool {
+        offset.length() <= self.domain_px
     }
 
     /// The largest angle to the boresight on the detector's border; `None` when a point of it has no direction.
