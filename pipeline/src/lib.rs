@@ -1,1 +1,16 @@
-//! TODO
+//! The image-processing pipelines under test.
+//!
+//! A pipeline sees a [`contract::Frame`], its [`contract::Telemetry`] and the [`contract::Setup`], never the truth,
+//! and computes with mathematics of its own: its camera model and its aberration share nothing with the simulator.
+//!
+//! - [`far_range`]: the far-range method of the ARGON experiment (star identification, tracking, motion
+//!   segmentation);
+//! - [`external`]: somebody else's pipeline, run as a process.
+
+mod camera_model;
+mod error;
+
+pub mod far_range;
+
+pub use camera_model::CameraModel;
+pub use error::PipelineError;

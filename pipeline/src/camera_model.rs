@@ -1,0 +1,251 @@
+//! The pipelines' own camera model: h and its inverse.
+
+use contract::{Camera, CameraFrame, ContractError, Direction, PixelPoint};
+use nalgebra::Vector3;
+
+/// The map h from directions in the camera frame to pixels, and its inverse (far-range paper, section 2.1 and
+/// Table 1; formula at [`Camera`]).
+///
+/// A strong distortion folds the image back on itself far outside the field. The model knows the radius where it
+/// does, and refuses what lies beyond: such a direction would otherwise appear at a place where it is not seen.
+#[derive(Debug, Clone)]
+pub struct CameraModel {
+    columns: usize,
+    rows: usize,
+    focal_x_px: f64,
+    focal_y_px: f64,
+    principal: PixelPoint,
+    radial: [f64; 3],
+    tangential: [f64; 2],
+    /// Largest undistorted radius at which the radial distortion still grows, px; infinite without a fold.
+    fold_radius_px: f64,
+}
+
+/// Newton's method doubles its digits at each step; a start that needs more than this does not converge.
+const MAX_NEWTON_STEPS: usize = 30;
+
+/// Residual at which an inverse counts as found, px: a millionth of the best centroid.
+const RESIDUAL_PX: f64 = 1e-8;
+
+impl CameraModel {
+    /// The model of a camera.
+    ///
+    /// # Errors
+    /// Those of [`Camera::check`].
+    pub fn new(camera: &Camera) -> Result<Self, ContractError> {
+        camera.check()?;
+        let (focal_x_px, focal_y_px) = camera.focal_length_px();
+        Ok(Self {
+            columns: camera.columns,
+            rows: camera.rows,
+            focal_x_px,
+            focal_y_px,
+            principal: PixelPoint::new(camera.principal_x_px, camera.principal_y_px),
+            radial: camera.radial,
+            tangential: camera.tangential,
+            fold_radius_px: fold_radius_px(camera),
+        })
+    }
+
+    /// Where a direction is seen, on the detector or beside it; `None` behind the camera and beyond the fold of
+    /// the distortion.
+    pub fn project(&self, direction: &Direction<CameraFrame>) -> Option<PixelPoint> {
+        self.project_vector(direction.vector())
+    }
+
+    /// [`CameraModel::project`] for a vector of any length.
+    pub(crate) fn project_vector(&self, r: &Vector3<f64>) -> Option<PixelPoint> {
+        // Negated, so that a NaN is refused as well.
+        if !(r.z > 0.0) {
+            return None;
+        }
+        let (u, v) = (self.focal_x_px * (r.x / r.z), self.focal_y_px * (r.y / r.z));
+        if !(u * u + v * v <= self.fold_radius_px * self.fold_radius_px) {
+            return None;
+        }
+        let (du, dv) = self.distort(u, v);
+        let point = PixelPoint::new(self.principal.x + du, self.principal.y + dv);
+        (point.x.is_finite() && point.y.is_finite()).then_some(point)
+    }
+
+    /// The direction seen at a pixel, h⁻¹; `None` when the distortion has no inverse there.
+    pub fn back_project(&self, point: PixelPoint) -> Option<Direction<CameraFrame>> {
+        let (x, y) = (point.x - self.principal.x, point.y - self.principal.y);
+        let (u, v) = self.undistort(x, y)?;
+        Direction::from_vector(Vector3::new(u / self.focal_x_px, v / self.focal_y_px, 1.0)).ok()
+    }
+
+    /// Whether a point lies in the image domain Ω, borders of the outer pixels included.
+    pub fn is_on_detector(&self, point: PixelPoint) -> bool {
+        point.is_on_detector(self.columns, self.rows)
+    }
+
+    /// Columns and rows of the detector.
+    pub fn size_px(&self) -> (usize, usize) {
+        (self.columns, self.rows)
+    }
+
+    /// Cosine of the half-angle of a cone about the boresight that holds the whole detector; 0 when a corner of
+    /// the detector sees no direction.
+    pub(crate) fn cos_half_field(&self) -> f64 {
+        let (right, bottom) = (self.columns as f64 - 0.5, self.rows as f64 - 0.5);
+        [(-0.5, -0.5), (right, -0.5), (-0.5, bottom), (right, bottom)]
+            .into_iter()
+            .map(|(x, y)| self.back_project(PixelPoint::new(x, y)).map_or(0.0, |corner| corner.vector().z))
+            .fold(1.0, f64::min)
+    }
+
+    /// Distorted offset of an undistorted one, px.
+    fn distort(&self, u: f64, v: f64) -> (f64, f64) {
+        let [k1, k2, k3] = self.radial;
+        let [p1, p2] = self.tangential;
+        let r2 = u * u + v * v;
+        let scale = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        (
+            u * scale + 2.0 * p1 * u * v + p2 * (r2 + 2.0 * u * u),
+            v * scale + p1 * (r2 + 2.0 * v * v) + 2.0 * p2 * u * v,
+        )
+    }
+
+    /// Newton's method on [`CameraModel::distort`], started at the distorted offset.
+    fn undistort(&self, x: f64, y: f64) -> Option<(f64, f64)> {
+        let [k1, k2, k3] = self.radial;
+        let [p1, p2] = self.tangential;
+        let (mut u, mut v) = (x, y);
+        for _ in 0..MAX_NEWTON_STEPS {
+            let (du, dv) = self.distort(u, v);
+            let (rx, ry) = (x - du, y - dv);
+            if rx.abs() + ry.abs() <= 1e-13 * (1.0 + x.abs() + y.abs()) {
+                break;
+            }
+            let r2 = u * u + v * v;
+            let scale = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+            // d(scale)/d(r²), so that d(scale)/du = 2 u slope.
+            let slope = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3);
+            let a = scale + 2.0 * u * u * slope + 2.0 * p1 * v + 6.0 * p2 * u;
+            let b = 2.0 * u * v * slope + 2.0 * p1 * u + 2.0 * p2 * v;
+            let d = scale + 2.0 * v * v * slope + 6.0 * p1 * v + 2.0 * p2 * u;
+            let determinant = a * d - b * b;
+            u += (d * rx - b * ry) / determinant;
+            v += (a * ry - b * rx) / determinant;
+        }
+        let (du, dv) = self.distort(u, v);
+        let found = (x - du).abs() + (y - dv).abs() <= RESIDUAL_PX
+            && u * u + v * v <= self.fold_radius_px * self.fold_radius_px;
+        found.then_some((u, v))
+    }
+}
+
+/// The first radius where d/dr (r + k1 r³ + k2 r⁵ + k3 r⁷) is not positive, looked for up to four times the
+/// detector's farthest corner: a fold beyond that brings nothing back onto the detector but what is not seen.
+fn fold_radius_px(camera: &Camera) -> f64 {
+    let [k1, k2, k3] = camera.radial;
+    let farthest = |n: usize, c: f64| (c + 0.5).abs().max((n as f64 - 0.5 - c).abs());
+    let corner = libm::hypot(
+        farthest(camera.columns, camera.principal_x_px),
+        farthest(camera.rows, camera.principal_y_px),
+    );
+    const STEPS: u32 = 4000;
+    (1..=STEPS)
+        .map(|step| 4.0 * corner * f64::from(step) / f64::from(STEPS))
+        .find(|r| {
+            let r2 = r * r;
+            1.0 + r2 * (3.0 * k1 + r2 * (5.0 * k2 + r2 * 7.0 * k3)) <= 0.0
+        })
+        .unwrap_or(f64::INFINITY)
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Table 1 of the far-range paper.
+    pub(crate) fn argon_camera() -> Camera {
+        Camera {
+            columns: 752,
+            rows: 580,
+            focal_length_mm: 20.187,
+            pixel_width_um: 8.6,
+            pixel_height_um: 8.3,
+            principal_x_px: 395.0,
+            principal_y_px: 288.0,
+            radial: [2.6e-8, 0.0, 0.0],
+            tangential: [0.0, 0.0],
+        }
+    }
+
+    pub(crate) fn argon() -> CameraModel {
+        CameraModel::new(&argon_camera()).unwrap()
+    }
+
+    #[test]
+    fn the_boresight_is_seen_at_the_principal_point() {
+        assert_eq!(argon().project(&Direction::z()), Some(PixelPoint::new(395.0, 288.0)));
+    }
+
+    #[test]
+    fn the_field_of_view_is_the_papers() {
+        // 18.2° × 13.6°, both rounded in the paper, without distortion.
+        let half = |pixels: f64, focal_px: f64| 2.0 * libm::atan(pixels / 2.0 / focal_px).to_degrees();
+        let (fx, fy) = argon_camera().focal_length_px();
+        assert!((half(752.0, fx) - 18.2).abs() < 0.05);
+        assert!((half(580.0, fy) - 13.6).abs() < 0.05);
+    }
+
+    #[test]
+    fn the_far_corner_is_moved_by_three_pixels() {
+        let model = argon();
+        let seen = model.back_project(PixelPoint::new(0.0, 579.0)).unwrap();
+        let without = CameraModel::new(&Camera { radial: [0.0; 3], ..argon_camera() }).unwrap();
+        let moved = without.project(&seen).unwrap().distance(PixelPoint::new(0.0, 579.0));
+        // k1 r³ with r = 490 px.
+        assert!((moved - 3.0).abs() < 0.2, "{moved} px");
+    }
+
+    #[test]
+    fn nothing_behind_the_camera_is_seen() {
+        let model = argon();
+        for z in [-1.0, 0.0, f64::NAN] {
+            assert_eq!(model.project_vector(&Vector3::new(0.0, 0.0, z)), None);
+        }
+    }
+
+    #[test]
+    fn a_direction_beyond_the_fold_is_not_seen() {
+        let camera = Camera { radial: [-1e-6, 0.0, 0.0], ..argon_camera() };
+        let model = CameraModel::new(&camera).unwrap();
+        // The radial map r − 1e-6 r³ folds at r = 577 px; a direction at 1000 px would come back to 0.
+        let beyond = Vector3::new(1000.0 / camera.focal_length_px().0, 0.0, 1.0);
+        assert_eq!(model.project_vector(&beyond), None);
+        // And 385 px is the largest radius that anything is seen at.
+        assert!(model.back_project(PixelPoint::new(395.0 - 384.0, 288.0)).is_some());
+        assert!(model.back_project(PixelPoint::new(395.0 - 386.0, 288.0)).is_none());
+    }
+
+    #[test]
+    fn the_cone_holds_every_pixel() {
+        let model = argon();
+        let cos = model.cos_half_field();
+        for (x, y) in [(0.0, 0.0), (751.0, 0.0), (0.0, 579.0), (751.0, 579.0), (300.0, 100.0)] {
+            assert!(model.back_project(PixelPoint::new(x, y)).unwrap().vector().z >= cos);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_inverse_undoes_the_projection(
+            x in -0.5..751.5f64, y in -0.5..579.5f64,
+            k1 in -5e-8..5e-8f64, k2 in -1e-14..1e-14f64,
+            p1 in -1e-6..1e-6f64, p2 in -1e-6..1e-6f64,
+        ) {
+            let camera = Camera { radial: [k1, k2, 0.0], tangential: [p1, p2], ..argon_camera() };
+            let model = CameraModel::new(&camera).unwrap();
+            let point = PixelPoint::new(x, y);
+            let direction = model.back_project(point).unwrap();
+            let again = model.project(&direction).unwrap();
+            // Rounding of coordinates of a few hundred pixels.
+            prop_assert!(again.distance(point) < 1e-9, "{:?} and {:?}", again, point);
+        }
+    }
+}

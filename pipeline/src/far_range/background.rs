@@ -1,0 +1,144 @@
+//! The brightness of the background and its noise, from a histogram.
+
+use contract::{Frame, Window};
+
+/// Level and noise of the background, DN.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Background {
+    /// Median, interpolated inside its bin.
+    pub(super) median_dn: f64,
+    /// Standard deviation, from the distance between the median and the 16th percentile: stars brighten pixels,
+    /// nothing darkens them, so the lower side is the noise alone.
+    pub(super) sigma_dn: f64,
+}
+
+/// Estimates [`Background`]; owns the histogram, so that a frame allocates nothing.
+#[derive(Debug, Default)]
+pub(super) struct BackgroundEstimator {
+    counts: Vec<u32>,
+}
+
+/// Rows are left out until about this many pixels remain: the median of 65536 pixels is known to 0.5 % of the
+/// noise, and the histogram of a whole frame would cost more than its detection.
+const SAMPLE_PIXELS: usize = 65_536;
+
+/// Fraction of a normal distribution below its mean minus one standard deviation.
+const BELOW_ONE_SIGMA: f64 = 0.158_655_253_931_457;
+
+/// Noise of rounding to whole DN, 1/√12: no frame has less.
+const QUANTISATION_DN: f64 = 0.288_675_134_594_812_9;
+
+impl BackgroundEstimator {
+    /// The background of the transmitted pixels (pixels outside the windows mean nothing); `None` when none was
+    /// transmitted. Windows that overlap count their common pixels more than once.
+    pub(super) fn estimate(&mut self, frame: &Frame) -> Option<Background> {
+        let full_scale = frame.full_scale_dn();
+        self.counts.clear();
+        self.counts.resize(usize::from(full_scale) + 1, 0);
+        let whole = [Window { x: 0, y: 0, columns: frame.columns(), rows: frame.rows() }];
+        let windows = frame.windows().unwrap_or(&whole);
+        let transmitted: usize = windows.iter().map(|window| window.columns * window.rows).sum();
+        let step = (transmitted / SAMPLE_PIXELS).max(1);
+        let rows = windows.iter().flat_map(|window| {
+            (window.y..window.y + window.rows).map(|y| &frame.row(y)[window.x..window.x + window.columns])
+        });
+        for row in rows.step_by(step) {
+            for &dn in row {
+                self.counts[usize::from(dn.min(full_scale))] += 1;
+            }
+        }
+        let (_, median_dn) = self.quantile(0.5)?;
+        let (lower_bin, lower) = self.quantile(BELOW_ONE_SIGMA)?;
+        // A lower percentile in the first bin is cut by the converter, not by the noise.
+        let sigma_dn = if lower_bin > 0 {
+            median_dn - lower
+        } else {
+            self.quantile(1.0 - BELOW_ONE_SIGMA)?.1 - median_dn
+        };
+        Some(Background { median_dn, sigma_dn: sigma_dn.max(QUANTISATION_DN) })
+    }
+
+    /// The bin that holds a quantile, and the quantile interpolated inside it (bin n covers n ± 0.5).
+    fn quantile(&self, fraction: f64) -> Option<(usize, f64)> {
+        let total: u64 = self.counts.iter().map(|&count| u64::from(count)).sum();
+        let rank = fraction * total as f64;
+        let mut below = 0.0;
+        for (bin, &count) in self.counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
+            let count = f64::from(count);
+            if below + count >= rank {
+                return Some((bin, bin as f64 - 0.5 + (rank - below) / count));
+            }
+            below += count;
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounded normal deviates by the inverse of the normal distribution on an even grid, with no generator.
+    fn normal_dn(n: usize, mean: f64, sigma: f64) -> Vec<u16> {
+        let mut values: Vec<u16> = (0..n)
+            .map(|i| {
+                let p = (i as f64 + 0.5) / n as f64;
+                // Bisection on the error function of libm.
+                let (mut low, mut high) = (-8.0, 8.0);
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    let below = 0.5 * libm::erfc(-middle / std::f64::consts::SQRT_2);
+                    if below < p { low = middle } else { high = middle }
+                }
+                (mean + sigma * low).round().max(0.0) as u16
+            })
+            .collect();
+        // Spread over the frame: rows are sampled.
+        let len = values.len();
+        for i in 0..len {
+            values.swap(i, (i * 7919) % len);
+        }
+        values
+    }
+
+    fn estimate(dn: Vec<u16>, windows: Option<Vec<Window>>) -> Option<Background> {
+        let frame = Frame::new(0, 100, dn.len() / 100, 12, dn, windows).unwrap();
+        BackgroundEstimator::default().estimate(&frame)
+    }
+
+    #[test]
+    fn level_and_noise_of_a_normal_background_come_back() {
+        for sigma in [0.8, 1.5, 10.0] {
+            let got = estimate(normal_dn(10_000, 100.3, sigma), None).unwrap();
+            // Interpolation inside a bin of 1 DN.
+            assert!((got.median_dn - 100.3).abs() < 0.06, "{got:?}");
+            assert!((got.sigma_dn / (sigma * sigma + 1.0 / 12.0).sqrt() - 1.0).abs() < 0.05, "{got:?}");
+        }
+    }
+
+    #[test]
+    fn stars_do_not_raise_it() {
+        let mut dn = normal_dn(10_000, 100.0, 3.0);
+        dn.iter_mut().step_by(50).for_each(|v| *v = 3000);
+        let got = estimate(dn, None).unwrap();
+        // 2 % of stars move the median and the 16th percentile by about 0.03 σ each.
+        assert!((got.median_dn - 100.0).abs() < 0.2 && (got.sigma_dn - 3.0).abs() < 0.2, "{got:?}");
+    }
+
+    #[test]
+    fn a_background_cut_at_zero_is_measured_above() {
+        let got = estimate(normal_dn(10_000, 1.0, 3.0), None).unwrap();
+        assert!((got.sigma_dn - 3.0).abs() < 0.3, "{got:?}");
+    }
+
+    #[test]
+    fn pixels_outside_the_windows_mean_nothing() {
+        let mut dn = vec![0; 10_000];
+        for y in 20..40 {
+            dn[y * 100 + 10..y * 100 + 30].fill(200);
+        }
+        let window = Window { x: 10, y: 20, columns: 20, rows: 20 };
+        assert!((estimate(dn.clone(), Some(vec![window])).unwrap().median_dn - 200.0).abs() < 0.5);
+        assert_eq!(estimate(dn, Some(Vec::new())), None);
+    }
+}

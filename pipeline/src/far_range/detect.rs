@@ -1,0 +1,313 @@
+//! Detection of clusters of bright pixels (section 2.1, Eqs. 1 and 2).
+
+use contract::{Frame, PixelPoint};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::threshold::Thresholds;
+
+/// What weights the pixels of a cluster in Eqs. 1 and 2.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Weights {
+    /// The intensity I in [0, 1], as printed. The background under the cluster weights it too and pulls the
+    /// centre towards the middle of the set of pixels: a bias wherever the set is not symmetric.
+    #[default]
+    Intensity,
+    /// The intensity above the frame's median, never below 0.
+    AboveBackground,
+}
+
+/// A cluster: connected pixels (8 neighbours), each above I1 and at least one above I2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Blob {
+    /// Brightness centre c (Eq. 1).
+    pub(super) centre: PixelPoint,
+    /// Weighted size s (Eq. 2), in units of full scale.
+    pub(super) size: f64,
+    /// Number of pixels.
+    pub(super) pixels: u32,
+}
+
+/// Finds clusters. Owns its buffers: a frame of the same size as the last one allocates nothing.
+#[derive(Debug, Default)]
+pub(super) struct Detector {
+    /// One bit a pixel: already in a cluster. All zero between frames.
+    marked: Vec<u64>,
+    /// Pixels of all clusters of the frame, one cluster after the other; the queue of the fill as well.
+    members: Vec<u32>,
+    blobs: Vec<Blob>,
+}
+
+/// Pixels compared at once while looking for one above I2; a multiple of any vector's length.
+const CHUNK: usize = 64;
+
+impl Detector {
+    /// The clusters of a frame, in the order of their first bright pixel row by row, and no more than
+    /// `max_clusters` of them: those of the largest weighted size are kept.
+    ///
+    /// Pixels outside the frame's windows are 0 and so never above a threshold.
+    /// `base_dn` is taken off every pixel before it weights (0 for [`Weights::Intensity`]); a cluster with no
+    /// weight left is dropped.
+    pub(super) fn detect(
+        &mut self,
+        frame: &Frame,
+        thresholds: Thresholds,
+        base_dn: f64,
+        max_clusters: usize,
+    ) -> &[Blob] {
+        self.blobs.clear();
+        self.members.clear();
+        self.marked.resize(frame.dn().len().div_ceil(64), 0);
+        for (block, chunk) in frame.dn().chunks(CHUNK).enumerate() {
+            // A maximum over the whole chunk, without an early exit, compiles to vector instructions.
+            if chunk.iter().fold(0, |most, &dn| most.max(dn)) <= thresholds.high_dn {
+                continue;
+            }
+            for (offset, &dn) in chunk.iter().enumerate() {
+                let index = block * CHUNK + offset;
+                if dn > thresholds.high_dn && !self.is_marked(index) {
+                    let first = self.members.len();
+                    self.fill(frame, index, thresholds.low_dn);
+                    self.blobs.extend(measure(frame, &self.members[first..], base_dn));
+                }
+            }
+        }
+        for &index in &self.members {
+            self.marked[index as usize / 64] = 0;
+        }
+        keep_largest(&mut self.blobs, max_clusters);
+        &self.blobs
+    }
+
+    /// Collects the pixels connected to `seed` through pixels above `low_dn`, without recursion: the list of
+    /// members is its own queue.
+    fn fill(&mut self, frame: &Frame, seed: usize, low_dn: u16) {
+        let (columns, rows) = (frame.columns(), frame.rows());
+        let dn = frame.dn();
+        let mut next = self.members.len();
+        self.mark(seed);
+        while let Some(&index) = self.members.get(next) {
+            next += 1;
+            let (x, y) = (index as usize % columns, index as usize / columns);
+            for ny in y.saturating_sub(1)..(y + 2).min(rows) {
+                for nx in x.saturating_sub(1)..(x + 2).min(columns) {
+                    let neighbour = ny * columns + nx;
+                    if dn[neighbour] > low_dn && !self.is_marked(neighbour) {
+                        self.mark(neighbour);
+                    }
+                }
+            }
+        }
+    }
+
+    fn is_marked(&self, index: usize) -> bool {
+        self.marked[index / 64] >> (index % 64) & 1 == 1
+    }
+
+    fn mark(&mut self, index: usize) {
+        self.marked[index / 64] |= 1 << (index % 64);
+        // Below 16384² pixels an index fits.
+        self.members.push(index as u32);
+    }
+}
+
+/// Eqs. 1 and 2 over one cluster; `None` when nothing of it is above `base_dn`.
+fn measure(frame: &Frame, members: &[u32], base_dn: f64) -> Option<Blob> {
+    let columns = frame.columns();
+    let full_scale = frame.full_scale_dn();
+    let (mut sum, mut sum_x, mut sum_y) = (0.0, 0.0, 0.0);
+    for &index in members {
+        let index = index as usize;
+        let weight = (f64::from(frame.dn()[index].min(full_scale)) - base_dn).max(0.0);
+        sum += weight;
+        sum_x += weight * (index % columns) as f64;
+        sum_y += weight * (index / columns) as f64;
+    }
+    (sum > 0.0).then(|| Blob {
+        centre: PixelPoint::new(sum_x / sum, sum_y / sum),
+        size: sum / f64::from(full_scale),
+        pixels: members.len() as u32,
+    })
+}
+
+/// Drops the smallest clusters beyond `max_clusters`, keeping the order of the rest.
+fn keep_largest(blobs: &mut Vec<Blob>, max_clusters: usize) {
+    if blobs.len() <= max_clusters {
+        return;
+    }
+    let mut by_size: Vec<usize> = (0..blobs.len()).collect();
+    // Equal sizes: the first one in the frame stays.
+    by_size.sort_by(|&a, &b| blobs[b].size.total_cmp(&blobs[a].size).then(a.cmp(&b)));
+    by_size.truncate(max_clusters);
+    by_size.sort_unstable();
+    *blobs = by_size.into_iter().map(|i| blobs[i]).collect();
+}
+
+/// Number of pixels at full scale.
+pub(super) fn saturated_pixels(frame: &Frame) -> usize {
+    let full_scale = frame.full_scale_dn();
+    // Small counts of a chunk each, so that the loop stays in vectors of u16.
+    frame
+        .dn()
+        .chunks(4096)
+        .map(|chunk| usize::from(chunk.iter().map(|&dn| u16::from(dn >= full_scale)).sum::<u16>()))
+        .sum()
+}
+
+/// Number of transmitted pixels; overlapping windows count no more than the image holds.
+pub(super) fn transmitted_pixels(frame: &Frame) -> usize {
+    let all = frame.columns() * frame.rows();
+    frame.windows().map_or(all, |windows| {
+        windows.iter().map(|window| window.columns * window.rows).sum::<usize>().min(all)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A 12-bit frame drawn in characters: '.' 0, digits hundreds of DN, '#' full scale.
+    fn drawn(rows: &[&str]) -> Frame {
+        let dn = rows
+            .iter()
+            .flat_map(|row| row.chars())
+            .map(|c| match c {
+                '.' => 0,
+                '#' => 4095,
+                digit => 100 * digit.to_digit(10).unwrap() as u16,
+            })
+            .collect();
+        Frame::new(0, rows[0].len(), rows.len(), 12, dn, None).unwrap()
+    }
+
+    const THRESHOLDS: Thresholds = Thresholds { low_dn: 100, high_dn: 400 };
+
+    fn detect(frame: &Frame) -> Vec<Blob> {
+        Detector::default().detect(frame, THRESHOLDS, 0.0, 100).to_vec()
+    }
+
+    #[test]
+    fn the_brightness_centre_is_eq_1() {
+        let blobs = detect(&drawn(&["......", ".36...", "......"]));
+        assert_eq!(blobs.len(), 1);
+        // (1 · 300 + 2 · 600) / 900.
+        assert!((blobs[0].centre.x - 5.0 / 3.0).abs() < 1e-15 && (blobs[0].centre.y - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_weighted_size_is_eq_2() {
+        let blobs = detect(&drawn(&["......", ".36...", "......"]));
+        assert!((blobs[0].size - 900.0 / 4095.0).abs() < 1e-15);
+        assert_eq!(blobs[0].pixels, 2);
+    }
+
+    #[test]
+    fn equal_intensities_give_the_geometric_centre() {
+        let blobs = detect(&drawn(&["55", "55"]));
+        assert_eq!(blobs[0].centre, PixelPoint::new(0.5, 0.5));
+    }
+
+    #[test]
+    fn a_cluster_needs_one_pixel_above_the_second_threshold() {
+        assert_eq!(detect(&drawn(&["333", "343", "333"])), []);
+    }
+
+    #[test]
+    fn pixels_at_the_first_threshold_are_left_out() {
+        assert_eq!(detect(&drawn(&["111", "151", "111"]))[0].pixels, 1);
+    }
+
+    #[test]
+    fn corners_connect_and_gaps_do_not() {
+        assert_eq!(detect(&drawn(&["5..", ".5.", "..5"])).len(), 1);
+        assert_eq!(detect(&drawn(&["5.5", "...", "5.5"])).len(), 4);
+    }
+
+    #[test]
+    fn the_ends_of_rows_do_not_touch() {
+        assert_eq!(detect(&drawn(&["...5", "5...", "...."])).len(), 2);
+    }
+
+    #[test]
+    fn the_background_pulls_an_asymmetric_cluster_and_can_be_taken_off() {
+        let frame = drawn(&["22222", "29222", "22222"]);
+        let mut detector = Detector::default();
+        let printed = detector.detect(&frame, THRESHOLDS, 0.0, 100)[0];
+        let above = detector.detect(&frame, THRESHOLDS, 200.0, 100)[0];
+        assert!(printed.centre.x > 1.5);
+        assert_eq!(above.centre, PixelPoint::new(1.0, 1.0));
+    }
+
+    #[test]
+    fn a_cluster_below_its_background_is_dropped() {
+        assert_eq!(Detector::default().detect(&drawn(&["5"]), THRESHOLDS, 600.0, 100), []);
+    }
+
+    #[test]
+    fn a_detector_forgets_the_last_frame() {
+        let mut detector = Detector::default();
+        let frame = drawn(&["5..", "...", "..#"]);
+        let first = detector.detect(&frame, THRESHOLDS, 0.0, 100).to_vec();
+        assert_eq!(detector.detect(&frame, THRESHOLDS, 0.0, 100), first);
+        assert_eq!(detector.detect(&drawn(&["5"]), THRESHOLDS, 0.0, 100).len(), 1);
+    }
+
+    #[test]
+    fn too_many_clusters_leave_the_largest_in_their_order() {
+        let frame = drawn(&["5.9.7.8"]);
+        let mut detector = Detector::default();
+        let kept: Vec<f64> =
+            detector.detect(&frame, THRESHOLDS, 0.0, 2).iter().map(|blob| blob.centre.x).collect();
+        assert_eq!(kept, [2.0, 6.0]);
+    }
+
+    #[test]
+    fn a_frame_that_is_one_cluster_is_filled_without_recursion() {
+        let frame = Frame::new(0, 1000, 1000, 12, vec![4000; 1_000_000], None).unwrap();
+        let blobs = detect(&frame);
+        assert_eq!(blobs.len(), 1);
+        assert!(blobs[0].centre.distance(PixelPoint::new(499.5, 499.5)) < 1e-6);
+    }
+
+    #[test]
+    fn saturated_pixels_are_counted() {
+        assert_eq!(saturated_pixels(&drawn(&["##.", "9.#"])), 3);
+    }
+
+    proptest! {
+        /// The witness: labels spread from pixel to neighbour until nothing changes.
+        #[test]
+        fn clusters_are_the_connected_components(
+            columns in 1usize..12,
+            dn in proptest::collection::vec(prop_oneof![Just(0u16), Just(200), Just(500)], 1..140),
+        ) {
+            let rows = dn.len() / columns;
+            prop_assume!(rows > 0);
+            let dn = dn[..rows * columns].to_vec();
+            let mut label: Vec<usize> = (0..dn.len()).collect();
+            let touches = |a: usize, b: usize| {
+                (a % columns).abs_diff(b % columns) <= 1 && (a / columns).abs_diff(b / columns) <= 1
+            };
+            for _ in 0..dn.len() {
+                for a in 0..dn.len() {
+                    for b in 0..dn.len() {
+                        if dn[a] > 100 && dn[b] > 100 && touches(a, b) {
+                            label[a] = label[a].min(label[b]);
+                        }
+                    }
+                }
+            }
+            let mut expected: Vec<u32> = (0..dn.len())
+                .filter(|&l| (0..dn.len()).any(|i| label[i] == l && dn[i] > 400))
+                .map(|l| (0..dn.len()).filter(|&i| label[i] == l && dn[i] > 100).count() as u32)
+                .collect();
+            let frame = Frame::new(0, columns, rows, 12, dn, None).unwrap();
+            let mut got: Vec<u32> = detect(&frame).iter().map(|blob| blob.pixels).collect();
+            expected.sort_unstable();
+            got.sort_unstable();
+            prop_assert_eq!(got, expected);
+        }
+    }
+}

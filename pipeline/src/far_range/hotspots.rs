@@ -1,0 +1,222 @@
+//! Hotspots of the detector (section 2.2, after Eq. 10).
+
+use std::collections::BTreeSet;
+
+use contract::PixelPoint;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::detect::Blob;
+use super::track::Track;
+use crate::PipelineError;
+use crate::error::require;
+
+/// How hotspots are told from a target that hardly moves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "mode", rename_all = "snake_case", deny_unknown_fields)]
+pub enum HotspotConfig {
+    /// A cluster tracked over more than `n_min` frames whose mean velocity is below `v_min_px_per_s`.
+    ///
+    /// With a camera that points at the target this can swallow the target. With Eq. 10 as printed (no `n_max`)
+    /// it does so after one orbit: the target is back at its first pixel and its mean velocity is nearly 0.
+    Automatic {
+        /// N_min: frames that a cluster must be tracked back, 0 to 1000000.
+        #[serde(default = "default_n_min")]
+        n_min: u32,
+        /// v_min: mean velocity below which a cluster is a hotspot, px/s, 0 to 1000; the paper's typical value
+        /// is 0.001.
+        #[serde(default = "default_v_min")]
+        v_min_px_per_s: f64,
+        /// Largest N in Eq. 10, above `n_min`, so that the mean velocity becomes a moving mean over about that many
+        /// frames; `null`: the equation as printed, the mean over the whole track.
+        #[serde(default = "default_n_max")]
+        n_max: Option<u32>,
+        /// Whether the pixel of a hotspot stays marked for the rest of the sequence. If not, a hot pixel that
+        /// drops below the threshold once is a candidate again until it has been tracked for `n_min` frames.
+        #[serde(default = "default_keep_pixels")]
+        keep_pixels: bool,
+    },
+    /// No hotspot is looked for; recommended with target pointing when no list is known.
+    Off,
+    /// Known hotspots; nothing else is one.
+    List {
+        /// Pixels as (column, row), the first pixel is (0, 0).
+        pixels: Vec<(u32, u32)>,
+    },
+}
+
+fn default_n_min() -> u32 {
+    20
+}
+
+fn default_v_min() -> f64 {
+    0.001
+}
+
+fn default_n_max() -> Option<u32> {
+    Some(40)
+}
+
+fn default_keep_pixels() -> bool {
+    true
+}
+
+impl Default for HotspotConfig {
+    fn default() -> Self {
+        Self::Automatic {
+            n_min: default_n_min(),
+            v_min_px_per_s: default_v_min(),
+            n_max: default_n_max(),
+            keep_pixels: default_keep_pixels(),
+        }
+    }
+}
+
+impl HotspotConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`PipelineError::Parameter`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), PipelineError> {
+        if let Self::Automatic { n_min, v_min_px_per_s, n_max, .. } = *self {
+            require("hotspots.n_min", f64::from(n_min), "0 to 1000000", |v| v <= 1e6)?;
+            let speed = |v: f64| (0.0..=1000.0).contains(&v);
+            require("hotspots.v_min_px_per_s", v_min_px_per_s, "0 to 1000", speed)?;
+            if let Some(n_max) = n_max {
+                // N stays at n_max, so that N > n_min could never hold.
+                require("hotspots.n_max", f64::from(n_max), "greater than hotspots.n_min", |_| {
+                    n_max > n_min
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The bound of N in Eq. 10.
+    pub(super) fn n_max(&self) -> u32 {
+        match self {
+            Self::Automatic { n_max, .. } => n_max.unwrap_or(u32::MAX),
+            Self::Off | Self::List { .. } => u32::MAX,
+        }
+    }
+}
+
+/// What is known about hotspots at a frame: the configuration and the marked pixels.
+#[derive(Debug)]
+pub(super) struct Hotspots {
+    config: HotspotConfig,
+    /// (row, column), in order, so that a search looks at few rows.
+    marked: BTreeSet<(i64, i64)>,
+}
+
+/// The centre of a hotspot's cluster stays this near to its pixel even when neighbours rise above I1, px.
+const MARK_RADIUS_PX: f64 = 1.0;
+
+/// A hot pixel and its neighbours: a larger cluster on a marked pixel is something else that passes over it.
+const MARK_MAX_PIXELS: u32 = 9;
+
+impl Hotspots {
+    pub(super) fn new(config: HotspotConfig) -> Self {
+        let marked = match &config {
+            HotspotConfig::List { pixels } => {
+                pixels.iter().map(|&(x, y)| (i64::from(y), i64::from(x))).collect()
+            }
+            HotspotConfig::Automatic { .. } | HotspotConfig::Off => BTreeSet::new(),
+        };
+        Self { config, marked }
+    }
+
+    /// Whether a cluster sits on a marked pixel.
+    pub(super) fn is_marked(&self, blob: &Blob) -> bool {
+        if blob.pixels > MARK_MAX_PIXELS {
+            return false;
+        }
+        let (x, y) = nearest_pixel(blob.centre);
+        let near = |&(row, column): &(i64, i64)| {
+            blob.centre.distance(PixelPoint::new(column as f64, row as f64)) <= MARK_RADIUS_PX
+        };
+        (y - 1..=y + 1).any(|row| self.marked.range((row, x - 1)..=(row, x + 1)).any(near))
+    }
+
+    /// Whether a track is a hotspot by its history: N > N_min and ‖v‖ < v_min. Marks its pixel when pixels are
+    /// kept.
+    pub(super) fn judge(&mut self, track: &Track) -> bool {
+        let HotspotConfig::Automatic { n_min, v_min_px_per_s, keep_pixels, .. } = self.config else {
+            return false;
+        };
+        let is_hotspot = track.length > n_min && track.speed_px_per_s() < v_min_px_per_s;
+        if is_hotspot && keep_pixels {
+            let (x, y) = nearest_pixel(track.centre);
+            self.marked.insert((y, x));
+        }
+        is_hotspot
+    }
+}
+
+fn nearest_pixel(point: PixelPoint) -> (i64, i64) {
+    (point.x.round() as i64, point.y.round() as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn blob(x: f64, y: f64, pixels: u32) -> Blob {
+        Blob { centre: PixelPoint::new(x, y), size: 1.0, pixels }
+    }
+
+    fn track(length: u32, speed: f64) -> Track {
+        Track { length, velocity_px_per_s: [speed, 0.0], ..Track::new(&blob(10.2, 20.0, 1), false) }
+    }
+
+    fn automatic(keep_pixels: bool) -> Hotspots {
+        Hotspots::new(HotspotConfig::Automatic { n_min: 5, v_min_px_per_s: 0.001, n_max: None, keep_pixels })
+    }
+
+    #[test]
+    fn a_hotspot_is_old_and_still() {
+        let mut hotspots = automatic(false);
+        assert!(hotspots.judge(&track(6, 0.0009)));
+        assert!(!hotspots.judge(&track(5, 0.0009)), "N must be greater than N_min");
+        assert!(!hotspots.judge(&track(6, 0.001)), "the velocity must be smaller than v_min");
+    }
+
+    #[test]
+    fn the_pixel_of_a_hotspot_stays_marked_when_asked() {
+        for keep in [true, false] {
+            let mut hotspots = automatic(keep);
+            hotspots.judge(&track(6, 0.0));
+            assert_eq!(hotspots.is_marked(&blob(10.0, 20.0, 1)), keep);
+        }
+    }
+
+    #[test]
+    fn a_list_marks_its_pixels_and_their_neighbourhood() {
+        let hotspots = Hotspots::new(HotspotConfig::List { pixels: vec![(10, 20)] });
+        assert!(hotspots.is_marked(&blob(10.0, 20.0, 1)));
+        assert!(hotspots.is_marked(&blob(10.6, 20.6, 3)));
+        assert!(!hotspots.is_marked(&blob(10.8, 20.8, 3)));
+        assert!(!hotspots.is_marked(&blob(20.0, 10.0, 1)), "column and row must not be exchanged");
+    }
+
+    #[test]
+    fn a_large_cluster_over_a_hot_pixel_is_no_hotspot() {
+        let hotspots = Hotspots::new(HotspotConfig::List { pixels: vec![(10, 20)] });
+        assert!(!hotspots.is_marked(&blob(10.0, 20.0, 10)));
+    }
+
+    #[test]
+    fn off_and_a_list_judge_no_track() {
+        for config in [HotspotConfig::Off, HotspotConfig::List { pixels: Vec::new() }] {
+            assert!(!Hotspots::new(config).judge(&track(1000, 0.0)));
+        }
+    }
+
+    #[test]
+    fn a_memory_shorter_than_the_history_asked_for_is_refused() {
+        let config =
+            |n_max| HotspotConfig::Automatic { n_min: 20, v_min_px_per_s: 0.001, n_max, keep_pixels: true };
+        assert!(config(Some(20)).check().is_err());
+        assert!(config(Some(21)).check().is_ok() && config(None).check().is_ok());
+    }
+}

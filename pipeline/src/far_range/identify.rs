@@ -1,0 +1,205 @@
+//! Identification of stars with the uploaded list (section 2.1, Eqs. 3 and 4).
+
+use contract::{CameraFrame, Icrs, ListedStar, PixelPoint, Rotation};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::detect::Blob;
+use crate::error::require;
+use crate::{CameraModel, PipelineError};
+
+/// Which clusters count as which stars.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct IdentificationConfig {
+    /// Greatest distance between a predicted star and its cluster, px, 0 to 1000. Too small loses stars to the
+    /// errors of attitude, mounting and aberration (0.3 px); too large takes the target for a star near it.
+    pub radius_px: f64,
+    /// Faintest star of the list that is looked for, visual magnitude, −30 to 30.
+    pub max_magnitude: f64,
+}
+
+impl Default for IdentificationConfig {
+    fn default() -> Self {
+        Self { radius_px: 3.0, max_magnitude: 7.0 }
+    }
+}
+
+impl IdentificationConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`PipelineError::Parameter`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), PipelineError> {
+        let radius = |v: f64| (0.0..=1000.0).contains(&v);
+        require("identification.radius_px", self.radius_px, "0 to 1000", radius)?;
+        let magnitude = |v: f64| (-30.0..=30.0).contains(&v);
+        require("identification.max_magnitude", self.max_magnitude, "-30 to 30", magnitude)
+    }
+}
+
+/// A listed star and where it should be in the frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PredictedStar {
+    pub(super) star: ListedStar,
+    pub(super) position: PixelPoint,
+}
+
+/// The star list, cut to the magnitudes looked for, and the cone that holds the field of view.
+#[derive(Debug)]
+pub(super) struct StarList {
+    stars: Vec<ListedStar>,
+    cos_cone: f64,
+}
+
+/// Widening of the cone's cosine, so that rounding leaves no star of the corners out.
+const CONE_MARGIN: f64 = 1e-4;
+
+impl StarList {
+    pub(super) fn new(stars: &[ListedStar], max_magnitude: f64, model: &CameraModel) -> Self {
+        let bright_enough = |star: &&ListedStar| star.magnitude <= max_magnitude;
+        Self {
+            stars: stars.iter().filter(bright_enough).copied().collect(),
+            cos_cone: (model.cos_half_field() - CONE_MARGIN).max(0.0),
+        }
+    }
+
+    /// Eq. 4: the listed stars in front of the camera and inside Ω, with their pixels. Aberration is left out:
+    /// at 0.3 px it is a fraction of any sensible radius.
+    pub(super) fn predict(
+        &self,
+        camera_from_icrs: &Rotation<CameraFrame, Icrs>,
+        model: &CameraModel,
+    ) -> Vec<PredictedStar> {
+        let matrix = camera_from_icrs.matrix();
+        // The z component in the camera is the cosine of the angle to the boresight: one product rejects most stars.
+        let boresight = matrix.row(2).transpose();
+        self.stars
+            .iter()
+            .filter(|star| boresight.dot(star.direction.vector()) >= self.cos_cone)
+            .filter_map(|&star| {
+                let position = model.project_vector(&(matrix * star.direction.vector()))?;
+                model.is_on_detector(position).then_some(PredictedStar { star, position })
+            })
+            .collect()
+    }
+}
+
+/// For each cluster the predicted star it is marked as (an index into `predicted`).
+///
+/// Pairs within the radius are taken nearest first; at equal distance the brighter star wins, then the smaller
+/// number. A cluster is at most one star, and a star at most one cluster. Clusters for which `excluded` is true
+/// are no stars.
+pub(super) fn identify(
+    blobs: &[Blob],
+    excluded: &[bool],
+    predicted: &[PredictedStar],
+    radius_px: f64,
+) -> Vec<Option<usize>> {
+    let mut pairs = Vec::new();
+    for (i, (blob, _)) in blobs.iter().zip(excluded).enumerate().filter(|(_, (_, excluded))| !**excluded) {
+        for (k, candidate) in predicted.iter().enumerate() {
+            // A square before the distance: most pairs are far apart.
+            if (candidate.position.x - blob.centre.x).abs() <= radius_px {
+                let distance = candidate.position.distance(blob.centre);
+                if distance <= radius_px {
+                    pairs.push((distance, i, k));
+                }
+            }
+        }
+    }
+    pairs.sort_by(|a, b| {
+        let (star_a, star_b) = (&predicted[a.2].star, &predicted[b.2].star);
+        a.0.total_cmp(&b.0)
+            .then(star_a.magnitude.total_cmp(&star_b.magnitude))
+            .then(star_a.id.cmp(&star_b.id))
+            .then(a.1.cmp(&b.1))
+    });
+    let mut star_of_blob = vec![None; blobs.len()];
+    let mut taken = vec![false; predicted.len()];
+    for (_, i, k) in pairs {
+        if star_of_blob[i].is_none() && !taken[k] {
+            star_of_blob[i] = Some(k);
+            taken[k] = true;
+        }
+    }
+    star_of_blob
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera_model::tests::argon;
+    use contract::{Angle, Direction};
+
+    fn star(id: u32, ra_deg: f64, dec_deg: f64, magnitude: f64) -> ListedStar {
+        let direction = Direction::from_ra_dec(Angle::from_degrees(ra_deg), Angle::from_degrees(dec_deg));
+        ListedStar { id, direction, magnitude }
+    }
+
+    /// Boresight along +x of ICRS, columns towards growing right ascension, rows towards the south.
+    fn camera_from_icrs() -> Rotation<CameraFrame, Icrs> {
+        use nalgebra::Vector3;
+        Rotation::from_axes(&Vector3::y(), &-Vector3::z(), &Vector3::x())
+    }
+
+    fn predict(stars: &[ListedStar]) -> Vec<PredictedStar> {
+        StarList::new(stars, 7.0, &argon()).predict(&camera_from_icrs(), &argon())
+    }
+
+    fn blob(x: f64, y: f64) -> Blob {
+        Blob { centre: PixelPoint::new(x, y), size: 1.0, pixels: 1 }
+    }
+
+    fn predicted(id: u32, x: f64, y: f64, magnitude: f64) -> PredictedStar {
+        PredictedStar { star: star(id, 0.0, 0.0, magnitude), position: PixelPoint::new(x, y) }
+    }
+
+    #[test]
+    fn a_star_is_predicted_by_eq_4() {
+        let got = predict(&[star(1, 1.0, 0.0, 3.0)]);
+        // f tan 1° = 20.187 mm / 8.6 µm · 0.017455 = 40.97 px to the right, less than 0.01 px of distortion.
+        assert!((got[0].position.x - (395.0 + 40.97)).abs() < 0.01, "{got:?}");
+        assert!((got[0].position.y - 288.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn only_stars_that_can_be_seen_are_predicted() {
+        let stars = [
+            star(1, 0.0, 0.0, 7.0),
+            star(2, 0.0, 0.0, 7.1),   // too faint
+            star(3, 180.0, 0.0, 1.0), // behind
+            star(4, 12.0, 0.0, 1.0),  // beside the field
+            star(5, 0.0, 9.0, 1.0),   // above it, inside the cone of the corners
+            star(6, -9.0, 6.6, 1.0),  // just inside a corner
+        ];
+        let ids: Vec<u32> = predict(&stars).iter().map(|p| p.star.id).collect();
+        assert_eq!(ids, [1, 6]);
+    }
+
+    #[test]
+    fn the_nearest_pair_is_taken_first() {
+        // The right cluster is nearer to the star; the left one stays unmarked.
+        let got = identify(
+            &[blob(10.0, 10.0), blob(12.0, 10.0)],
+            &[false; 2],
+            &[predicted(7, 11.5, 10.0, 5.0)],
+            3.0,
+        );
+        assert_eq!(got, [None, Some(0)]);
+    }
+
+    #[test]
+    fn one_cluster_between_two_stars_is_the_nearer_then_the_brighter() {
+        let at = |x1: f64, x2: f64| [predicted(1, x1, 10.0, 5.0), predicted(2, x2, 10.0, 4.0)];
+        assert_eq!(identify(&[blob(10.0, 10.0)], &[false], &at(9.5, 11.0), 3.0), [Some(0)]);
+        assert_eq!(identify(&[blob(10.0, 10.0)], &[false], &at(9.0, 11.0), 3.0), [Some(1)]);
+    }
+
+    #[test]
+    fn nothing_is_marked_beyond_the_radius_or_when_excluded() {
+        let stars = [predicted(1, 10.0, 10.0, 5.0)];
+        assert_eq!(identify(&[blob(10.0, 13.1)], &[false], &stars, 3.0), [None]);
+        assert_eq!(identify(&[blob(10.0, 10.0)], &[true], &stars, 3.0), [None]);
+    }
+}

@@ -1,0 +1,30 @@
+//! The far-range method (Benninghoff, Tzschichholz, Boge, Gaias: image processing of the ARGON experiment).
+//!
+//! Clusters of bright pixels are detected, identified as stars with a list and the spacecraft's attitude, linked
+//! from frame to frame, and the one that moves unlike the others is the target; its line of sight comes from the
+//! camera's attitude, calibrated with the stars. One step of the paper is one file here; equation numbers are the
+//! paper's.
+
+mod aberration;
+mod assignment;
+mod attitude;
+mod background;
+mod config;
+mod detect;
+mod hotspots;
+mod identify;
+mod line_of_sight;
+mod motion;
+mod pipeline;
+mod threshold;
+mod track;
+
+pub use aberration::aberration_correction;
+pub use attitude::AttitudeConfig;
+pub use config::{AberrationConfig, FarRangeConfig};
+pub use detect::Weights;
+pub use hotspots::HotspotConfig;
+pub use identify::IdentificationConfig;
+pub use pipeline::{FarRange, FarRangeFactory};
+pub use threshold::ThresholdConfig;
+pub use track::TrackingConfig;

@@ -1,0 +1,282 @@
+//! The far-range pipeline: its steps in order, and what it remembers from frame to frame.
+
+use contract::{
+    AttitudeSource, Body, CameraFrame, Cluster, ContractError, Direction, Frame, Icrs, Label, Measurement,
+    NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution, Telemetry,
+};
+use hifitime::Epoch;
+
+use super::aberration::aberration_correction;
+use super::attitude::{MountingFilter, solve_q_method};
+use super::background::BackgroundEstimator;
+use super::config::{AberrationConfig, FarRangeConfig};
+use super::detect::{Blob, Detector, Weights, saturated_pixels, transmitted_pixels};
+use super::hotspots::Hotspots;
+use super::identify::{PredictedStar, StarList, identify};
+use super::line_of_sight::line_of_sight;
+use super::motion::{Mover, select_target};
+use super::track::{Track, expected_position, link};
+use crate::{CameraModel, PipelineError};
+
+/// The far-range method on one sequence of frames.
+///
+/// A frame whose image is empty or saturated leaves what is remembered as it was: the next frame is linked across
+/// it. A frame counts as saturated when more than half of its transmitted pixels are at full scale.
+#[derive(Debug)]
+pub struct FarRange {
+    config: FarRangeConfig,
+    model: CameraModel,
+    stars: StarList,
+    mounting: MountingFilter,
+    hotspots: Hotspots,
+    previous: Option<Previous>,
+    background: BackgroundEstimator,
+    detector: Detector,
+}
+
+/// What is remembered of the previous frame.
+#[derive(Debug)]
+struct Previous {
+    time: Epoch,
+    body_from_icrs: Rotation<Body, Icrs>,
+    tracks: Vec<Track>,
+}
+
+impl FarRange {
+    /// A pipeline that has seen no frame.
+    ///
+    /// # Errors
+    /// Those of [`FarRangeConfig::check`] and of the camera's check.
+    pub fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
+        config.check()?;
+        let model = CameraModel::new(&setup.camera)?;
+        Ok(Self {
+            stars: StarList::new(&setup.stars, config.identification.max_magnitude, &model),
+            mounting: MountingFilter::new(setup.camera_from_body, config.attitude.filter_lambda),
+            hotspots: Hotspots::new(config.hotspots.clone()),
+            previous: None,
+            background: BackgroundEstimator::default(),
+            detector: Detector::default(),
+            model,
+            config,
+        })
+    }
+
+    /// The clusters of a frame (section 2.1), or why there are none.
+    fn detect(&mut self, frame: &Frame) -> Result<Vec<Blob>, NoSolution> {
+        if 2 * saturated_pixels(frame) > transmitted_pixels(frame) {
+            return Err(NoSolution::SaturatedFrame);
+        }
+        let above_background = self.config.weights == Weights::AboveBackground;
+        let background = if above_background || self.config.thresholds.needs_background() {
+            Some(self.background.estimate(frame).ok_or(NoSolution::EmptyFrame)?)
+        } else {
+            None
+        };
+        let thresholds = self.config.thresholds.of(frame, background);
+        let base_dn = background.filter(|_| above_background).map_or(0.0, |b| b.median_dn);
+        let blobs = self.detector.detect(frame, thresholds, base_dn, self.config.max_clusters as usize);
+        if blobs.is_empty() { Err(NoSolution::EmptyFrame) } else { Ok(blobs.to_vec()) }
+    }
+
+    /// Takes the stars of a frame into the mounting (section 2.4) if there are enough of them.
+    fn calibrate(&mut self, seen: &[(Blob, PredictedStar)], telemetry: &Telemetry) -> AttitudeSource {
+        if seen.is_empty() {
+            return AttitudeSource::NoStars;
+        }
+        let pairs: Vec<(Direction<CameraFrame>, Direction<Icrs>)> = seen
+            .iter()
+            .filter_map(|(blob, predicted)| {
+                Some((self.model.back_project(blob.centre)?, predicted.star.direction))
+            })
+            .collect();
+        let enough = pairs.len() >= self.config.attitude.min_stars as usize;
+        let Some(apparent) = enough.then(|| solve_q_method(&pairs)).flatten() else {
+            return AttitudeSource::TooFewStars;
+        };
+        let solved = match self.config.aberration {
+            AberrationConfig::Ignore => apparent,
+            AberrationConfig::Correct => {
+                // A velocity that cannot be is one that is not known: the annual part is corrected.
+                aberration_correction(telemetry.time, telemetry.velocity_km_s, &apparent)
+                    .or_else(|| aberration_correction(telemetry.time, None, &apparent))
+                    .map_or(apparent, |correction| correction * apparent)
+            }
+        };
+        self.mounting.update(solved, telemetry.body_from_icrs);
+        AttitudeSource::Stars
+    }
+
+    /// Links clusters to the previous frame (section 2.2). `None` when there is none to link to: at the first
+    /// frame, after a gap, and when time does not advance.
+    fn link(&self, blobs: &[Blob], telemetry: &Telemetry) -> Option<Linked<'_>> {
+        let previous = self.previous.as_ref()?;
+        let dt_s = (telemetry.time - previous.time).to_seconds();
+        if !(dt_s > 0.0 && dt_s <= self.config.max_gap_s) {
+            return None;
+        }
+        let camera_from_body = self.mounting.camera_from_body();
+        let icrs_from_camera_before = (camera_from_body * previous.body_from_icrs).inverse();
+        let camera_from_icrs_now = camera_from_body * telemetry.body_from_icrs;
+        let expected: Vec<_> = previous
+            .tracks
+            .iter()
+            .map(|track| {
+                expected_position(track, &icrs_from_camera_before, &camera_from_icrs_now, &self.model)
+            })
+            .collect();
+        let links = link(blobs, &previous.tracks, &expected, &self.config.tracking);
+        let before = links.into_iter().map(|link| link.map(|i| &previous.tracks[i])).collect();
+        Some(Linked { dt_s, before })
+    }
+}
+
+/// The previous track of each cluster, `dt_s` seconds ago.
+struct Linked<'a> {
+    dt_s: f64,
+    before: Vec<Option<&'a Track>>,
+}
+
+impl Pipeline for FarRange {
+    fn process(&mut self, frame: &Frame, telemetry: &Telemetry) -> Outcome {
+        if let Some(reason) = unusable(frame, telemetry, &self.model) {
+            return Outcome::none(NoSolution::Failed(reason));
+        }
+        let blobs = match self.detect(frame) {
+            Ok(blobs) => blobs,
+            Err(reason) => {
+                return Outcome {
+                    camera_from_icrs: Some(self.mounting.camera_from_body() * telemetry.body_from_icrs),
+                    attitude_source: Some(AttitudeSource::NoStars),
+                    ..Outcome::none(reason)
+                };
+            }
+        };
+
+        // A marked hotspot near a star would be taken for it and spoil the attitude.
+        let is_marked: Vec<bool> = blobs.iter().map(|blob| self.hotspots.is_marked(blob)).collect();
+        let estimate = self.mounting.camera_from_body() * telemetry.body_from_icrs;
+        let predicted = self.stars.predict(&estimate, &self.model);
+        let star_of_blob = identify(&blobs, &is_marked, &predicted, self.config.identification.radius_px);
+        let seen: Vec<(Blob, PredictedStar)> = blobs
+            .iter()
+            .zip(&star_of_blob)
+            .filter_map(|(blob, star)| Some((*blob, predicted[(*star)?])))
+            .collect();
+        let attitude_source = self.calibrate(&seen, telemetry);
+        let camera_from_icrs = self.mounting.camera_from_body() * telemetry.body_from_icrs;
+
+        let linked = self.link(&blobs, telemetry);
+        let n_max = self.config.hotspots.n_max();
+        let before = |i: usize| linked.as_ref().and_then(|linked| Some((linked.before[i]?, linked.dt_s)));
+        let tracks: Vec<Track> = blobs
+            .iter()
+            .enumerate()
+            .map(|(i, blob)| {
+                let is_star = star_of_blob[i].is_some();
+                before(i).map_or(Track::new(blob, is_star), |(track, dt_s)| {
+                    track.extended(blob, is_star, dt_s, n_max)
+                })
+            })
+            .collect();
+        let centres_before: Vec<_> = (0..blobs.len()).map(|i| Some(before(i)?.0.centre)).collect();
+        let has_previous = linked.is_some();
+
+        let labels: Vec<Label> = (0..blobs.len())
+            .map(|i| match star_of_blob[i] {
+                Some(star) => Label::Star(predicted[star].star.id),
+                None if is_marked[i] || self.hotspots.judge(&tracks[i]) => Label::Hotspot,
+                None if centres_before[i].is_some() => Label::Candidate,
+                None => Label::Unlinked,
+            })
+            .collect();
+        let movers: Vec<Mover> = blobs
+            .iter()
+            .zip(&centres_before)
+            .zip(&labels)
+            .map(|((blob, &previous), label)| Mover {
+                centre: blob.centre,
+                previous,
+                is_candidate: *label == Label::Candidate,
+            })
+            .collect();
+        let target = select_target(&movers);
+
+        let solution = match target {
+            Some(i) => Solution::Detected(Measurement {
+                position: blobs[i].centre,
+                line_of_sight: line_of_sight(blobs[i].centre, &camera_from_icrs, &self.model),
+            }),
+            None if has_previous => Solution::NoSolution(NoSolution::NoTarget),
+            None => Solution::NoSolution(NoSolution::NoPreviousFrame),
+        };
+        let clusters = blobs
+            .iter()
+            .zip(labels)
+            .enumerate()
+            .map(|(i, (blob, label))| Cluster {
+                position: blob.centre,
+                size: blob.size,
+                pixels: blob.pixels,
+                label: if target == Some(i) { Label::Target } else { label },
+            })
+            .collect();
+        self.previous =
+            Some(Previous { time: telemetry.time, body_from_icrs: telemetry.body_from_icrs, tracks });
+        Outcome {
+            solution,
+            camera_from_icrs: Some(camera_from_icrs),
+            attitude_source: Some(attitude_source),
+            n_stars: seen.len() as u32,
+            clusters,
+        }
+    }
+}
+
+/// Why a frame and its telemetry cannot be processed at all, if so.
+fn unusable(frame: &Frame, telemetry: &Telemetry, model: &CameraModel) -> Option<String> {
+    let (columns, rows) = model.size_px();
+    if (frame.columns(), frame.rows()) != (columns, rows) {
+        return Some(format!(
+            "a frame of {} × {} pixels for a camera of {columns} × {rows}",
+            frame.columns(),
+            frame.rows()
+        ));
+    }
+    let norm = telemetry.body_from_icrs.quaternion().norm();
+    // Negated, so that a NaN is refused as well.
+    (!((norm - 1.0).abs() < 1e-4)).then(|| format!("the telemetry's attitude has norm {norm}, expected 1"))
+}
+
+/// Builds [`FarRange`] pipelines.
+#[derive(Debug, Clone, Default)]
+pub struct FarRangeFactory {
+    config: FarRangeConfig,
+}
+
+impl FarRangeFactory {
+    /// A factory of pipelines with this configuration.
+    ///
+    /// # Errors
+    /// Those of [`FarRangeConfig::check`].
+    pub fn new(config: FarRangeConfig) -> Result<Self, PipelineError> {
+        config.check()?;
+        Ok(Self { config })
+    }
+}
+
+impl PipelineFactory for FarRangeFactory {
+    fn name(&self) -> String {
+        "far-range".to_owned()
+    }
+
+    fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
+        match FarRange::new(self.config.clone(), setup) {
+            Ok(pipeline) => Ok(Box::new(pipeline)),
+            Err(PipelineError::Contract(error)) => Err(error),
+            Err(error) => {
+                Err(ContractError::CannotBuild { pipeline: self.name(), reason: error.to_string() })
+            }
+        }
+    }
+}

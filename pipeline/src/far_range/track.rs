@@ -1,0 +1,259 @@
+//! Tracking: linking the clusters of two frames (section 2.2, Eqs. 5 to 10).
+
+use contract::{CameraFrame, Icrs, PixelPoint, Rotation};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::assignment::{AllowedPair, assign};
+use super::detect::Blob;
+use crate::error::require;
+use crate::{CameraModel, PipelineError};
+
+/// How alike two clusters of successive frames must be to be linked.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TrackingConfig {
+    /// Δp_max: greatest distance between where a cluster is expected and where it is, px, above 0 to 20000.
+    /// Must cover the motion of the target between two frames; what is larger links unlisted stars as well.
+    pub max_displacement_px: f64,
+    /// Δs_max: greatest change of the weighted size, in units of full scale, above 0 to 1e9.
+    pub max_size_change: f64,
+    /// ω_p: weight of the displacement in the similarity, 0 to 1e6; not both weights are 0.
+    pub weight_displacement: f64,
+    /// ω_s: weight of the change of size in the similarity, 0 to 1e6.
+    pub weight_size: f64,
+}
+
+impl Default for TrackingConfig {
+    fn default() -> Self {
+        Self { max_displacement_px: 15.0, max_size_change: 20.0, weight_displacement: 1.0, weight_size: 1.0 }
+    }
+}
+
+impl TrackingConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`PipelineError::Parameter`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), PipelineError> {
+        require("tracking.max_displacement_px", self.max_displacement_px, "above 0 to 20000", |v| {
+            v > 0.0 && v <= 20_000.0
+        })?;
+        require("tracking.max_size_change", self.max_size_change, "above 0 to 1e9", |v| v > 0.0 && v <= 1e9)?;
+        let weight = |v: f64| (0.0..=1e6).contains(&v);
+        require("tracking.weight_displacement", self.weight_displacement, "0 to 1e6", weight)?;
+        require("tracking.weight_size", self.weight_size, "0 to 1e6, and not 0 with the other weight", |v| {
+            weight(v) && v + self.weight_displacement > 0.0
+        })
+    }
+}
+
+/// A cluster of the previous frame and its history.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Track {
+    /// c_prev.
+    pub(super) centre: PixelPoint,
+    /// s_prev.
+    pub(super) size: f64,
+    /// Whether it was marked as a star.
+    pub(super) is_star: bool,
+    /// N: images that it can be tracked back.
+    pub(super) length: u32,
+    /// Mean velocity, px/s along columns and rows (Eq. 10).
+    pub(super) velocity_px_per_s: [f64; 2],
+}
+
+impl Track {
+    /// A track that begins with this cluster.
+    pub(super) fn new(blob: &Blob, is_star: bool) -> Self {
+        Self { centre: blob.centre, size: blob.size, is_star, length: 0, velocity_px_per_s: [0.0; 2] }
+    }
+
+    /// The track with one frame more, `dt_s` seconds later (Eq. 10). `n_max` bounds N: below the bound the
+    /// velocity is the mean over the whole track, above it a moving mean whose memory is about `n_max` frames.
+    pub(super) fn extended(&self, blob: &Blob, is_star: bool, dt_s: f64, n_max: u32) -> Self {
+        let n = f64::from(self.length);
+        let mean = |v: f64, now: f64, before: f64| (n * v + (now - before) / dt_s) / (n + 1.0);
+        Self {
+            centre: blob.centre,
+            size: blob.size,
+            is_star,
+            length: self.length.saturating_add(1).min(n_max),
+            velocity_px_per_s: [
+                mean(self.velocity_px_per_s[0], blob.centre.x, self.centre.x),
+                mean(self.velocity_px_per_s[1], blob.centre.y, self.centre.y),
+            ],
+        }
+    }
+
+    /// Norm of the mean velocity, px/s.
+    pub(super) fn speed_px_per_s(&self) -> f64 {
+        libm::hypot(self.velocity_px_per_s[0], self.velocity_px_per_s[1])
+    }
+}
+
+/// Where the cluster of a track is expected in the current frame: a star where the change of attitude takes it
+/// (Eqs. 5a, 5b, 6), anything else where it was. `None` for a star that the camera cannot see any more.
+pub(super) fn expected_position(
+    track: &Track,
+    icrs_from_camera_before: &Rotation<Icrs, CameraFrame>,
+    camera_from_icrs_now: &Rotation<CameraFrame, Icrs>,
+    model: &CameraModel,
+) -> Option<PixelPoint> {
+    if !track.is_star {
+        return Some(track.centre);
+    }
+    let star = *icrs_from_camera_before * model.back_project(track.centre)?;
+    model.project(&(*camera_from_icrs_now * star))
+}
+
+/// The similarity μ of two clusters (Eqs. 7 to 9), smaller for more alike; `None` (∞) beyond the thresholds.
+pub(super) fn similarity(
+    expected: PixelPoint,
+    previous_size: f64,
+    blob: &Blob,
+    config: &TrackingConfig,
+) -> Option<f64> {
+    let displacement = blob.centre.distance(expected);
+    let size_change = (blob.size - previous_size).abs();
+    if displacement > config.max_displacement_px || size_change > config.max_size_change {
+        return None;
+    }
+    let (wp, ws) = (config.weight_displacement, config.weight_size);
+    Some((wp * displacement + ws * size_change) / (wp + ws))
+}
+
+/// For each cluster the previous track it is linked to (an index into `tracks`): the assignment of least total μ.
+/// `expected` holds one place a track.
+pub(super) fn link(
+    blobs: &[Blob],
+    tracks: &[Track],
+    expected: &[Option<PixelPoint>],
+    config: &TrackingConfig,
+) -> Vec<Option<usize>> {
+    let mut pairs = Vec::new();
+    for (row, blob) in blobs.iter().enumerate() {
+        for (column, (track, place)) in tracks.iter().zip(expected).enumerate() {
+            // A difference before the distance: most pairs are far apart.
+            let near = |place: &&PixelPoint| (place.x - blob.centre.x).abs() <= config.max_displacement_px;
+            if let Some(place) = place.as_ref().filter(near)
+                && let Some(cost) = similarity(*place, track.size, blob, config)
+            {
+                pairs.push(AllowedPair { row, column, cost });
+            }
+        }
+    }
+    assign(blobs.len(), tracks.len(), &pairs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera_model::tests::argon;
+    use contract::{Body, Direction};
+    use nalgebra::Vector3;
+
+    fn blob(x: f64, y: f64, size: f64) -> Blob {
+        Blob { centre: PixelPoint::new(x, y), size, pixels: 1 }
+    }
+
+    fn track(x: f64, y: f64, is_star: bool) -> Track {
+        Track::new(&blob(x, y, 1.0), is_star)
+    }
+
+    const CONFIG: TrackingConfig = TrackingConfig {
+        max_displacement_px: 10.0,
+        max_size_change: 5.0,
+        weight_displacement: 2.0,
+        weight_size: 1.0,
+    };
+
+    #[test]
+    fn a_star_is_propagated_through_the_change_of_attitude() {
+        let model = argon();
+        let camera_from_body: Rotation<CameraFrame, Body> =
+            Rotation::from_rotation_vector(Vector3::new(0.3, -0.2, 1.0));
+        let before: Rotation<Body, Icrs> = Rotation::from_rotation_vector(Vector3::new(1.0, 2.0, 0.5));
+        let now = Rotation::from_rotation_vector(Vector3::new(0.01, -0.02, 0.03)) * before;
+        let (camera_before, camera_now) = (camera_from_body * before, camera_from_body * now);
+        // Truth: one direction of the sky, seen twice.
+        let sky: Direction<Icrs> =
+            camera_before.inverse() * Direction::from_vector(Vector3::new(0.02, 0.03, 1.0)).unwrap();
+        let seen_before = model.project(&(camera_before * sky)).unwrap();
+        let seen_now = model.project(&(camera_now * sky)).unwrap();
+        let expect = |is_star| {
+            let track = track(seen_before.x, seen_before.y, is_star);
+            expected_position(&track, &camera_before.inverse(), &camera_now, &model).unwrap()
+        };
+        assert!(expect(true).distance(seen_now) < 1e-8);
+        assert!(
+            seen_now.distance(seen_before) > 20.0,
+            "the attitude must change for this test to say anything"
+        );
+        // Anything else is expected where it was.
+        assert_eq!(expect(false), seen_before);
+    }
+
+    #[test]
+    fn a_star_that_goes_behind_the_camera_is_expected_nowhere() {
+        let turned = Rotation::from_rotation_vector(Vector3::new(3.0, 0.0, 0.0));
+        assert_eq!(
+            expected_position(&track(300.0, 200.0, true), &Rotation::identity(), &turned, &argon()),
+            None
+        );
+    }
+
+    #[test]
+    fn similarity_is_eq_9() {
+        // Δp = 5, Δs = 2: (2 · 5 + 1 · 2) / 3.
+        let got = similarity(PixelPoint::new(0.0, 0.0), 1.0, &blob(3.0, 4.0, 3.0), &CONFIG).unwrap();
+        assert!((got - 4.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn similarity_is_infinite_beyond_either_threshold() {
+        let origin = PixelPoint::new(0.0, 0.0);
+        assert!(similarity(origin, 1.0, &blob(10.0, 0.0, 6.0), &CONFIG).is_some());
+        assert_eq!(similarity(origin, 1.0, &blob(10.1, 0.0, 1.0), &CONFIG), None);
+        assert_eq!(similarity(origin, 1.0, &blob(0.0, 0.0, 6.1), &CONFIG), None);
+    }
+
+    #[test]
+    fn links_follow_the_expected_places() {
+        let tracks = [track(0.0, 0.0, true), track(20.0, 0.0, false)];
+        let expected = [Some(PixelPoint::new(18.0, 0.0)), Some(tracks[1].centre)];
+        let blobs = [blob(21.0, 0.0, 1.0), blob(18.0, 0.0, 1.0), blob(100.0, 0.0, 1.0)];
+        assert_eq!(link(&blobs, &tracks, &expected, &CONFIG), [Some(1), Some(0), None]);
+    }
+
+    #[test]
+    fn a_track_expected_nowhere_is_not_linked() {
+        assert_eq!(link(&[blob(0.0, 0.0, 1.0)], &[track(0.0, 0.0, true)], &[None], &CONFIG), [None]);
+    }
+
+    #[test]
+    fn mean_velocity_is_eq_10() {
+        let mut track = track(0.0, 0.0, false);
+        for (i, x) in [1.0, 3.0, 9.0].into_iter().enumerate() {
+            track = track.extended(&blob(x, 0.0, 1.0), false, 2.0, u32::MAX);
+            assert_eq!(track.length, i as u32 + 1);
+        }
+        // The mean of 0.5, 1 and 3 px/s.
+        assert!((track.speed_px_per_s() - 1.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_bounded_memory_forgets_the_first_frames() {
+        let run = |n_max: u32| {
+            let mut track = track(0.0, 0.0, false);
+            // There and back: 100 frames at +1 px/s, 100 at −1 px/s.
+            for i in 1..=200 {
+                let x = if i <= 100 { f64::from(i) } else { f64::from(200 - i) };
+                track = track.extended(&blob(x, 0.0, 1.0), false, 1.0, n_max);
+            }
+            track.speed_px_per_s()
+        };
+        assert!(run(u32::MAX) < 1e-12, "Eq. 10 as printed: back at the first pixel, the mean velocity is 0");
+        assert!(run(10) > 0.99);
+    }
+}
