@@ -32,7 +32,7 @@ impl Failure {
 
     /// The message for a person, with the lines of the file around the mistake where there is one.
     pub fn explain(&self) -> String {
-        let Self::Toml(error) = self else {
+        let (Self::Toml(error) | Self::File(FileError::Toml(error))) = self else {
             return format!("error: {self}");
         };
         let mut text = String::new();

@@ -1,8 +1,17 @@
 //! The oracle: it knows the truth, hears what a pipeline says, and tells how good the pipeline is and why it
 //! failed where it failed. The command `boresight` stands on it.
 
+pub mod command;
+pub mod dataset_writer;
+pub mod failure;
 pub mod files;
+pub mod flight;
+pub mod pipeline_choice;
+pub mod run;
+pub mod run_file;
+pub mod scenario;
 pub mod score;
+pub mod star_list;
 pub mod statistics;
 pub mod table;
 pub mod toml_file;

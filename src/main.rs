@@ -1,2 +1,7 @@
-//! The command.
-fn main() {}
+//! The command `boresight`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    boresight::command::main()
+}

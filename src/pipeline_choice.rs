@@ -1,11 +1,9 @@
 //! Which pipeline runs: the built-in one, or somebody else's program.
 
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Duration;
 
 use contract::PipelineFactory;
-use pipeline::external::ExternalFactory;
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
 
 use crate::failure::Failure;
@@ -30,12 +28,8 @@ impl PipelineChoice {
     /// # Errors
     /// A [`Failure`] for a word that names no pipeline, or a program that cannot be started.
     pub fn factory(&self, far_range: &FarRangeConfig, scratch: &Path) -> Result<Box<dyn PipelineFactory>, Failure> {
-        if let Some(command) = self.word.strip_prefix(EXEC) {
-            let factory = ExternalFactory::new(command, self.timeout, scratch, Arc::new(write_image))?;
-            return Ok(Box::new(factory));
-        }
         if self.word == FAR_RANGE {
-            return Ok(Box::new(FarRangeFactory::new(far_range.clone())?));
+            return Ok(Box::new(FarRangeFactory::new(far_range.clone()).map_err(|e| Failure::Usage(e.to_string()))?));
         }
         let hint = toml_file::nearest(&self.word, [FAR_RANGE, EXEC]).map_or(String::new(), |name| format!("; did you mean `{name}`?"));
         Err(Failure::Usage(format!("there is no pipeline `{}`; expected `far_range` or `exec:COMMAND`{hint}", self.word)))

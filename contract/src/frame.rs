@@ -65,8 +65,8 @@ impl Frame {
             if !fits(window.x, window.columns, columns) || !fits(window.y, window.rows, rows) {
                 return Err(ContractError::OutOfRange {
                     field: "window of a frame",
-                    value: (window.y * columns + window.x) as f64,
-                    expected: "a rectangle inside the image (value: index of its first pixel)",
+                    value: if fits(window.x, window.columns, columns) { window.y } else { window.x } as f64,
+                    expected: "a rectangle inside the image (value: its first column or row)",
                 });
             }
         }

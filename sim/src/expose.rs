@@ -11,9 +11,6 @@ use crate::sensor::{FlatLaws, RawImage};
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, shadow};
 use crate::{SimError, Simulator};
 
-/// Electrons below which a pixel of a star's image is not drawn: a hundredth of the least noise of any sensor.
-const STAMP_FLOOR_E: f64 = 0.01;
-
 /// One frame with all that belongs to it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exposure {
@@ -169,7 +166,8 @@ impl<'a> SimulatedCamera<'a> {
             id: 0,
             position: target_position.unwrap_or_default(),
             astrometric: Some(line_of_sight),
-            magnitude: Some(magnitude),
+            // In the umbra there is no light, and no magnitude.
+            magnitude: magnitude.is_finite().then_some(magnitude),
             electrons_per_s: simulator.radiometry.electrons_per_s(magnitude),
         };
         Ok(Moment {
@@ -228,7 +226,7 @@ impl<'a> SimulatedCamera<'a> {
                 // The sensor itself collects it; here it is only described.
                 stamp.set_pixel(source.position.x as usize, source.position.y as usize, electrons);
             } else {
-                self.psf.stamp(source.position, electrons, STAMP_FLOOR_E, detector, stamp);
+                self.psf.stamp(source.position, electrons, Psf::FLOOR_E, detector, stamp);
                 self.image.add(stamp);
             }
             let truth = stamp.truth(flat_e, sensor.read_noise_e());

@@ -1,10 +1,14 @@
 //! Arguments that several commands share.
 
 use std::ops::Range;
-use std::path::PathBuf;
 use std::str::FromStr;
+use std::time::Duration;
 
 use clap::Args;
+
+use crate::failure::Failure;
+use crate::pipeline_choice::PipelineChoice;
+use crate::scenario::ScenarioSource;
 
 /// A range of frames, `A..B`: from A up to and without B.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -49,12 +53,54 @@ pub(super) struct PipelineOptions {
     pub(super) timeout_s: f64,
 }
 
-/// Where the results go.
-#[derive(Debug, Args)]
-pub(super) struct OutputDirectory {
-    /// A new or empty directory for the results
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: PathBuf,
+impl PipelineOptions {
+    /// The pipeline asked for.
+    pub(super) fn choice(&self) -> Result<PipelineChoice, Failure> {
+        if !(self.timeout_s > 0.0 && self.timeout_s <= 86_400.0) {
+            return Err(Failure::Usage(format!("--timeout-s is {}, expected above 0 to 86400", self.timeout_s)));
+        }
+        Ok(PipelineChoice { word: self.pipeline.clone(), timeout: Duration::from_secs_f64(self.timeout_s) })
+    }
+}
+
+impl Default for PipelineOptions {
+    fn default() -> Self {
+        Self { pipeline: "far_range".to_owned(), timeout_s: 10.0 }
+    }
+}
+
+impl Selection {
+    /// A whole scenario as it is.
+    pub(super) fn of(scenario: &str) -> Self {
+        Self { scenario: scenario.to_owned(), frames: None, seed: None, jobs: None }
+    }
+
+    /// The scenario, with the seed asked for.
+    pub(super) fn scenario(&self) -> Result<ScenarioSource, Failure> {
+        let mut source = ScenarioSource::read(&self.scenario)?;
+        if let Some(seed) = self.seed {
+            source.scenario.seed = seed;
+        }
+        Ok(source)
+    }
+
+    /// The frames asked for, of a scenario of `count`.
+    pub(super) fn frames(&self, count: u64) -> Result<Range<u64>, Failure> {
+        let frames = self.frames.as_ref().map_or(0..count, |range| range.0.clone());
+        if frames.end > count {
+            return Err(Failure::Usage(format!(
+                "--frames is {}..{}, expected frames of the scenario, which has {count} (0..{count})",
+                frames.start, frames.end
+            )));
+        }
+        Ok(frames)
+    }
+
+    /// The number of threads.
+    pub(super) fn jobs(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        self.jobs.map_or_else(cores, usize::from)
+    }
 }
 
 #[cfg(test)]

@@ -64,7 +64,7 @@ fn list(output: &Output) -> Result<(), Failure> {
 fn check(scenario: &str, output: &Output) -> Result<(), Failure> {
     let source = ScenarioSource::read(scenario)?;
     let simulator = source.simulator()?;
-    let (frames, stars) = (simulator.schedule().len(), simulator.stars().len());
+    let (frames, stars) = (simulator.schedule().frame_count(), simulator.catalog().stars().len());
     let document = json!({ "scenario": source.name, "frames": frames, "stars": stars, "ok": true });
     output.answer(&document, format!("{}: {frames} frames, {stars} stars, no mistake found", source.name))
 }

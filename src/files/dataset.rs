@@ -5,10 +5,12 @@ use std::path::{Component, Path, PathBuf};
 
 use contract::{Camera, Frame, Mounting, Telemetry};
 use hifitime::Epoch;
+use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::{Place, create_new};
+use crate::toml_file;
 use super::telemetry::read_with_lines;
 use super::{FileError, TelemetryRow, parse_utc, read_frame};
 
@@ -28,6 +30,9 @@ pub struct CameraFile {
     pub camera: Camera,
     /// Nominal mounting.
     pub mounting: Mounting,
+    /// Parameters of the built-in pipeline; without it, its defaults.
+    #[serde(default)]
+    pub far_range: FarRangeConfig,
 }
 
 impl CameraFile {
@@ -38,7 +43,7 @@ impl CameraFile {
     /// [`FileError::Contract`] or [`FileError::Value`] for a number outside its range.
     pub fn read(path: &Path) -> Result<Self, FileError> {
         let text = fs::read_to_string(path).map_err(|source| FileError::io(path, "read", source))?;
-        let file: Self = toml::from_str(&text).map_err(|error| FileError::format(path, "TOML", error))?;
+        let file: Self = toml_file::parse(path, &text).map_err(FileError::Toml)?;
         file.check(path)?;
         Ok(file)
     }

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::toml_file::TomlError;
+
 /// Where in a file a value stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
@@ -72,6 +74,9 @@ pub enum FileError {
         /// What is wrong.
         reason: String,
     },
+    /// A mistake in a TOML file, with its place.
+    #[error(transparent)]
+    Toml(Box<TomlError>),
     /// A table without a column that it must have.
     #[error("{path}: column `{column}` is missing; found {found}", path = path.display())]
     MissingColumn {

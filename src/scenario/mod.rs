@@ -13,12 +13,10 @@ use serde::{Deserialize, Serialize};
 use sim::Simulation;
 use sim::catalog::CatalogConfig;
 use sim::onboard::{RoiConfig, ShutterConfig};
-use sim::optics::PsfConfig;
+use sim::optics::{PsfConfig, RadiometryConfig};
 use sim::scene::TargetConfig;
-use sim::sensor::{RadiometryConfig, SensorConfig};
-use sim::truth::attitude::{AttitudeConfig, KnowledgeConfig, MountingConfig};
-use sim::truth::orbit::OrbitConfig;
-use sim::truth::schedule::GroupConfig;
+use sim::sensor::SensorConfig;
+use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
 
 /// A scenario, as a TOML file holds it. Units are in the names; unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -80,7 +78,7 @@ impl Scenario {
             schedule: self.schedule.clone(),
             attitude: self.attitude.clone(),
             knowledge: self.knowledge.clone(),
-            mounting: self.mounting,
+            mounting: self.mounting.clone(),
             camera: self.camera.clone(),
             psf: self.psf.clone(),
             radiometry: self.radiometry.clone(),

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use pipeline::PipelineError;
 use sim::{SimError, Simulator};
 
 use super::{BUILT_IN, Scenario};
@@ -66,8 +67,8 @@ impl ScenarioSource {
             let message = format!("is {limit}, expected -2 to 15");
             return Err(self.refuse("star_list.magnitude_limit", message));
         }
-        if let Err(error) = self.scenario.far_range.check() {
-            return Err(self.explain(error.into()));
+        if let Err(PipelineError::Parameter { field, value, expected }) = self.scenario.far_range.check() {
+            return Err(self.refuse(&format!("far_range.{field}"), format!("is {value}, expected {expected}")));
         }
         Simulator::new(&self.scenario.simulation(), &self.folder).map_err(|error| self.explain(error))
     }

@@ -169,7 +169,13 @@ impl Observer {
     /// The direction in which an ideal camera sees a star: [`Observer::astrometric`], bent by the Sun
     /// ([`deflect`]), aberrated ([`aberrate`], with the Sun's potential added: 0.4 µas, Klioner 2003, Eq. 7).
     pub fn apparent(&self, star: &StarMotion) -> Direction<Icrs> {
-        let natural = bend(&self.coordinate_direction(star), &self.from_sun, self.sun_distance_au);
+        self.apparent_of(self.astrometric(star))
+    }
+
+    /// The direction in which an ideal camera sees a distant source that stands at `astrometric`; see
+    /// [`Observer::apparent`].
+    pub fn apparent_of(&self, astrometric: Direction<Icrs>) -> Direction<Icrs> {
+        let natural = bend(astrometric.vector(), &self.from_sun, self.sun_distance_au);
         let potential = SUN_SCHWARZSCHILD_AU / self.sun_distance_au;
         Direction::from_unit(boost(&natural, &self.beta, self.inverse_gamma, potential))
     }

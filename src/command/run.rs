@@ -1,0 +1,69 @@
+//! `boresight run`: simulate, process, score.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::Answer;
+use super::options::{PipelineOptions, Selection};
+use super::output::Output;
+use crate::failure::Failure;
+use crate::files::{ImageFormat, RunDirectory};
+use crate::run::{Flight, Prepared};
+use crate::score::ARGON_TABLE_2;
+use crate::table::{TableStyle, far_range};
+
+/// Where numbered run directories go when `--out` is not given.
+const RUNS: &str = "runs";
+
+#[derive(Debug, Args)]
+pub(super) struct RunArguments {
+    #[command(flatten)]
+    selection: Selection,
+    /// A new or empty directory for the results; default: the next free `runs/SCENARIO-001`
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    pipeline: PipelineOptions,
+    /// Keep the images as well (about 1 MB a frame)
+    #[arg(long, value_name = "fits|png|exr")]
+    save_frames: Option<ImageFormat>,
+}
+
+impl RunArguments {
+    /// What the bare command means: `run argon`.
+    pub(super) fn argon() -> Self {
+        Self { selection: Selection::of("argon"), out: None, pipeline: PipelineOptions::default(), save_frames: None }
+    }
+}
+
+pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
+    let source = arguments.selection.scenario()?;
+    let prepared = Prepared::new(&source)?;
+    let flight = Flight {
+        frames: arguments.selection.frames(prepared.frame_count())?,
+        jobs: arguments.selection.jobs(),
+        images: arguments.save_frames,
+    };
+    let choice = arguments.pipeline.choice()?;
+    let scratch = super::scratch_directory()?;
+    let factory = choice.factory(&prepared.scenario().far_range, scratch.path())?;
+    let directory = match &arguments.out {
+        Some(path) => RunDirectory::create(path)?,
+        None => RunDirectory::create_numbered(Path::new(RUNS), &source.name)?,
+    };
+    let frames = flight.frames.end - flight.frames.start;
+    let progress = output.progress(frames, &format!("{}, {}", source.name, factory.name()));
+    let scored = prepared.run(&directory, &flight, factory.as_ref(), || progress.inc(1));
+    progress.finish_and_clear();
+    let score = scored?.score;
+
+    let style = TableStyle {
+        styled: output.is_terminal(),
+        reference: (source.name == "argon").then_some(&ARGON_TABLE_2),
+        ..TableStyle::default()
+    };
+    let table = far_range(&score, style);
+    output.answer(&score, format!("{table}\n\nresults in {}", directory.path().display()))?;
+    Ok(Answer::Yes)
+}
