@@ -1,5 +1,6 @@
 //! External pipelines: the example of the documentation, and processes that misbehave in every way known.
 #![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helper functions too")]
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
