@@ -153,7 +153,7 @@ fn the_example_finds_what_stays_among_what_streams() {
     let mut pipeline = bench.build();
     // A target that creeps by 1 px a frame, and a brighter star that moves by 12 px.
     let at = |i: u64| frame(i, &[(30 + i as usize, 20, 1000), (5 + 12 * i as usize, 40, 3000)]);
-    let outcomes: Vec<Outcome> = (0..4).map(|i| at(i)).map(|(f, t)| pipeline.process(&f, &t)).collect();
+    let outcomes: Vec<Outcome> = (0..4).map(at).map(|(f, t)| pipeline.process(&f, &t)).collect();
     assert_eq!(outcomes[0].solution, Solution::NoSolution(NoSolution::NoPreviousFrame));
     for (i, outcome) in outcomes.iter().enumerate().skip(1) {
         let position = outcome.measurement().unwrap_or_else(|| panic!("frame {i}: {outcome:?}")).position;

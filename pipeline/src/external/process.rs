@@ -57,25 +57,16 @@ impl Process {
         command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         group::isolate(&mut command);
         let mut child = command.spawn()?;
-        let (Some(input), Some(output), Some(error_output)) =
-            (child.stdin.take(), child.stdout.take(), child.stderr.take())
-        else {
-            group::kill(&mut child);
-            return Err(std::io::Error::other("its pipes are missing"));
-        };
-        let (event_sender, events) = sync_channel(UNREAD_LINES);
-        let (requests, request_receiver) = sync_channel(1);
-        let errors = Arc::new(Mutex::new(Tail::default()));
-        spawn("external-out", {
-            let events = event_sender.clone();
-            move || read_lines(BufReader::new(output), &events)
-        })?;
-        spawn("external-in", move || write_lines(input, &request_receiver, &event_sender))?;
-        let errors_reader = spawn("external-err", {
-            let errors = Arc::clone(&errors);
-            move || read_errors(error_output, &errors)
-        })?;
-        Ok(Self { child, requests: Some(requests), events, errors, errors_reader })
+        match Pipes::connect(&mut child) {
+            Ok(Pipes { requests, events, errors, errors_reader }) => {
+                Ok(Self { child, requests: Some(requests), events, errors, errors_reader })
+            }
+            Err(error) => {
+                group::kill(&mut child);
+                child.wait()?;
+                Err(error)
+            }
+        }
     }
 
     /// Sends a line and waits for the child's line, no longer than `limit`.
@@ -162,6 +153,38 @@ impl Drop for Process {
             self.ends_within(GRACE);
             self.kill();
         }
+    }
+}
+
+/// The caller's ends of a child's pipes.
+struct Pipes {
+    requests: SyncSender<Vec<u8>>,
+    events: Receiver<Event>,
+    errors: Arc<Mutex<Tail>>,
+    errors_reader: JoinHandle<()>,
+}
+
+impl Pipes {
+    /// Starts the threads that serve the pipes.
+    fn connect(child: &mut Child) -> std::io::Result<Self> {
+        let (Some(input), Some(output), Some(error_output)) =
+            (child.stdin.take(), child.stdout.take(), child.stderr.take())
+        else {
+            return Err(std::io::Error::other("its pipes are missing"));
+        };
+        let (event_sender, events) = sync_channel(UNREAD_LINES);
+        let (requests, request_receiver) = sync_channel(1);
+        let errors = Arc::new(Mutex::new(Tail::default()));
+        spawn("external-out", {
+            let events = event_sender.clone();
+            move || read_lines(BufReader::new(output), &events)
+        })?;
+        spawn("external-in", move || write_lines(input, &request_receiver, &event_sender))?;
+        let errors_reader = spawn("external-err", {
+            let errors = Arc::clone(&errors);
+            move || read_errors(error_output, &errors)
+        })?;
+        Ok(Self { requests, events, errors, errors_reader })
     }
 }
 
