@@ -85,9 +85,9 @@ mod tests {
 
     #[test]
     fn the_annual_velocity_is_that_of_an_ephemeris() {
-        // Heliocentric velocity at J2000 from the published orbit of the Earth: (−0.01720, −0.00290, −0.00126) au/day.
-        let expected = Vector3::new(-0.01720, -0.00290, -0.00126) * 1731.457;
-        // 1.66 % of 29.8 km/s, as the paper says, and the rounding of the numbers above.
+        // Heliocentric velocity at J2000 by ERFA's epv00, au/day.
+        let expected = Vector3::new(-0.017_207_62, -0.002_898_17, -0.001_256_39) * 1731.457;
+        // 1.66 % of 29.8 km/s, as the paper says, and its epoch 64 s off J2000.
         assert!((annual_velocity_km_s(day(2000, 1, 1)) - expected).norm() < 0.6);
     }
 
