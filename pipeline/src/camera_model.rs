@@ -55,12 +55,11 @@ impl CameraModel {
 
     /// [`CameraModel::project`] for a vector of any length.
     pub(crate) fn project_vector(&self, r: &Vector3<f64>) -> Option<PixelPoint> {
-        // Negated, so that a NaN is refused as well.
-        if !(r.z > 0.0) {
+        if r.z.is_nan() || r.z <= 0.0 {
             return None;
         }
         let (u, v) = (self.focal_x_px * (r.x / r.z), self.focal_y_px * (r.y / r.z));
-        if !(u * u + v * v <= self.fold_radius_px * self.fold_radius_px) {
+        if u * u + v * v > self.fold_radius_px * self.fold_radius_px {
             return None;
         }
         let (du, dv) = self.distort(u, v);

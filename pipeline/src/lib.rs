@@ -9,6 +9,7 @@
 
 mod camera_model;
 mod error;
+pub mod external;
 
 pub mod far_range;
 

@@ -28,9 +28,11 @@ pub(super) fn annual_velocity_km_s(time: Epoch) -> Vector3<f64> {
 /// The rotation q of the paper, by which vectors of the camera frame as they appear become vectors as they are:
 /// R_cam_j2000 = R(q) · A, with A solved from apparent stars.
 ///
-/// It turns every direction as aberration turns the boresight, exact to first order in v/c there and off by about
-/// 0.3″ at 9° from it. `orbital_km_s` is the velocity about the Earth along the axes of ICRS; without it
-/// the annual part alone is corrected (Eq. 18). `None` for a velocity that is not finite or beyond light.
+/// It turns every direction as aberration turns the boresight, exact there to first order in v/c. Stars 9° from it
+/// are left off by up to 0.3″ when the velocity is across the boresight, and by up to 4″ when it is along it (a change
+/// of scale, which is the same on all sides and leaves the attitude alone). `orbital_km_s` is the velocity about the
+/// Earth along the axes of ICRS; without it the annual part alone is corrected (Eq. 18). `None` for a velocity that is
+/// not finite or beyond light.
 pub fn aberration_correction(
     time: Epoch,
     orbital_km_s: Option<Vector3<f64>>,
@@ -83,9 +85,9 @@ mod tests {
 
     #[test]
     fn the_annual_velocity_is_that_of_an_ephemeris() {
-        // Heliocentric velocity at J2000 from the published orbit of the Earth: (−0.01720, −0.00290, −0.00126) au/day.
-        let expected = Vector3::new(-0.01720, -0.00290, -0.00126) * 1731.457;
-        // 1.66 % of 29.8 km/s, as the paper says, and the rounding of the numbers above.
+        // Heliocentric velocity at J2000 by ERFA's epv00, au/day.
+        let expected = Vector3::new(-0.017_207_62, -0.002_898_17, -0.001_256_39) * 1731.457;
+        // 1.66 % of 29.8 km/s, as the paper says, and its epoch 64 s off J2000.
         assert!((annual_velocity_km_s(day(2000, 1, 1)) - expected).norm() < 0.6);
     }
 

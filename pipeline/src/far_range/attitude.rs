@@ -67,8 +67,7 @@ pub(super) fn solve_q_method(stars: &[StarPair]) -> Option<Rotation<CameraFrame,
     let mut order = [0, 1, 2, 3];
     order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
     let gap = eigen.eigenvalues[order[0]] - eigen.eigenvalues[order[1]];
-    // Negated, so that a NaN is refused as well.
-    if !(gap > LEAST_GAP * stars.len() as f64) {
+    if gap.is_nan() || gap <= LEAST_GAP * stars.len() as f64 {
         return None;
     }
     let q = eigen.eigenvectors.column(order[0]);

@@ -110,9 +110,10 @@ mod tests {
     fn level_and_noise_of_a_normal_background_come_back() {
         for sigma in [0.8, 1.5, 10.0] {
             let got = estimate(normal_dn(10_000, 100.3, sigma), None).unwrap();
-            // Interpolation inside a bin of 1 DN.
+            // Linear interpolation inside bins of 1 DN, coarse when the noise is less than a bin.
+            let with_rounding = (sigma * sigma + 1.0 / 12.0).sqrt();
             assert!((got.median_dn - 100.3).abs() < 0.06, "{got:?}");
-            assert!((got.sigma_dn / (sigma * sigma + 1.0 / 12.0).sqrt() - 1.0).abs() < 0.05, "{got:?}");
+            assert!((got.sigma_dn / with_rounding - 1.0).abs() < 0.1, "{got:?}");
         }
     }
 

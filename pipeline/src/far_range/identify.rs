@@ -137,10 +137,10 @@ mod tests {
         ListedStar { id, direction, magnitude }
     }
 
-    /// Boresight along +x of ICRS, columns towards growing right ascension, rows towards the south.
+    /// Boresight along +x of ICRS, columns towards growing right ascension, rows towards the north.
     fn camera_from_icrs() -> Rotation<CameraFrame, Icrs> {
         use nalgebra::Vector3;
-        Rotation::from_axes(&Vector3::y(), &-Vector3::z(), &Vector3::x())
+        Rotation::from_axes(&Vector3::y(), &Vector3::z(), &Vector3::x())
     }
 
     fn predict(stars: &[ListedStar]) -> Vec<PredictedStar> {

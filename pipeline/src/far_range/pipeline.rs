@@ -244,8 +244,8 @@ fn unusable(frame: &Frame, telemetry: &Telemetry, model: &CameraModel) -> Option
         ));
     }
     let norm = telemetry.body_from_icrs.quaternion().norm();
-    // Negated, so that a NaN is refused as well.
-    (!((norm - 1.0).abs() < 1e-4)).then(|| format!("the telemetry's attitude has norm {norm}, expected 1"))
+    let is_unit = (norm - 1.0).abs() < 1e-4;
+    (!is_unit).then(|| format!("the telemetry's attitude has norm {norm}, expected 1"))
 }
 
 /// Builds [`FarRange`] pipelines.

@@ -1,0 +1,193 @@
+//! Somebody else's pipeline, run as a process.
+//!
+//! The process is given one JSON line on its standard input for each frame, and answers with one JSON line on its
+//! standard output. The lines are described at [`protocol`]. Whatever the process does wrong is an outcome with a
+//! reason, never an error of the run:
+//!
+//! - an answer that cannot be used (garbage, a number that is missing, not finite or off the detector, the wrong
+//!   frame) costs its frame; the next one is asked all the same;
+//! - a process that does not start, speaks another version, dies, takes too long, floods its output or speaks out of
+//!   turn is ended with all its children, and every later frame of the sequence says why.
+//!
+//! There is no shell: the command is split into words by the rules of POSIX quoting, and run.
+
+mod group;
+mod process;
+pub mod protocol;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use contract::{ContractError, Frame, NoSolution, Outcome, Pipeline, PipelineFactory, Setup, Telemetry};
+
+use process::{Fault, Process};
+
+/// Writes the image of a frame as FITS (16-bit, BZERO 32768) at a path that does not exist yet; the error is a text
+/// for the outcome.
+pub type WriteImage = dyn Fn(&Frame, &Telemetry, &Path) -> Result<(), String> + Send + Sync;
+
+/// Builds pipelines that are processes, one process a sequence.
+#[derive(Clone)]
+pub struct ExternalFactory {
+    /// The command, words quoted as in a POSIX shell; no shell runs it.
+    pub command: String,
+    /// Longest time from start to greeting, s, above 0 to 1e6.
+    pub start_timeout_s: f64,
+    /// Longest time for one frame, s, above 0 to 1e6.
+    pub timeout_s: f64,
+    /// An existing directory for images; each is removed after its answer.
+    pub scratch_dir: PathBuf,
+    /// Writes an image.
+    pub write_image: Arc<WriteImage>,
+}
+
+impl ExternalFactory {
+    /// A factory with 30 s to start and 10 s a frame.
+    pub fn new(command: impl Into<String>, scratch_dir: PathBuf, write_image: Arc<WriteImage>) -> Self {
+        Self { command: command.into(), start_timeout_s: 30.0, timeout_s: 10.0, scratch_dir, write_image }
+    }
+
+    fn cannot_build(&self, reason: impl Into<String>) -> ContractError {
+        ContractError::CannotBuild { pipeline: self.name(), reason: reason.into() }
+    }
+
+    fn limit(&self, name: &str, seconds: f64) -> Result<Duration, ContractError> {
+        if seconds > 0.0 && seconds <= 1e6 {
+            Ok(Duration::from_secs_f64(seconds))
+        } else {
+            Err(self.cannot_build(format!("{name} is {seconds}, expected above 0 to 1e6")))
+        }
+    }
+}
+
+impl fmt::Debug for ExternalFactory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ExternalFactory")
+            .field("command", &self.command)
+            .field("start_timeout_s", &self.start_timeout_s)
+            .field("timeout_s", &self.timeout_s)
+            .field("scratch_dir", &self.scratch_dir)
+            .finish_non_exhaustive()
+    }
+}
+
+impl PipelineFactory for ExternalFactory {
+    fn name(&self) -> String {
+        format!("exec:{}", self.command)
+    }
+
+    /// Starts the process and greets it. A process that does not start or greets wrongly gives a pipeline whose every
+    /// answer says so: only a command or a limit that cannot be meant is refused.
+    fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
+        let words = shlex::split(&self.command)
+            .ok_or_else(|| self.cannot_build("the command ends inside a quotation"))?;
+        let Some((program, arguments)) = words.split_first() else {
+            return Err(self.cannot_build("the command is empty"));
+        };
+        let start_limit = self.limit("start_timeout_s", self.start_timeout_s)?;
+        let frame_limit = self.limit("timeout_s", self.timeout_s)?;
+        Ok(Box::new(External {
+            state: match start(program, arguments, setup, start_limit) {
+                Ok(process) => State::Running(process),
+                Err(reason) => State::Dead(reason),
+            },
+            size_px: (setup.camera.columns, setup.camera.rows),
+            frame_limit,
+            images: Images { directory: self.scratch_dir.clone(), sequence: next_sequence() },
+            write_image: Arc::clone(&self.write_image),
+        }))
+    }
+}
+
+/// Starts a process and greets it.
+fn start(program: &str, arguments: &[String], setup: &Setup, limit: Duration) -> Result<Process, String> {
+    let mut process =
+        Process::start(program, arguments).map_err(|error| format!("`{program}` does not start: {error}"))?;
+    let greeted = protocol::greeting(setup)
+        .map_err(Fault::Broken)
+        .and_then(|line| process.exchange(line, limit))
+        .and_then(|line| protocol::check_greeting(&line).map_err(Fault::Broken));
+    match greeted {
+        Ok(()) => Ok(process),
+        Err(fault) => Err(format!("at its greeting, {}", process.end(fault))),
+    }
+}
+
+/// One sequence with one process.
+struct External {
+    state: State,
+    size_px: (usize, usize),
+    frame_limit: Duration,
+    images: Images,
+    write_image: Arc<WriteImage>,
+}
+
+enum State {
+    Running(Process),
+    /// The process has ended; why.
+    Dead(String),
+}
+
+impl Pipeline for External {
+    fn process(&mut self, frame: &Frame, telemetry: &Telemetry) -> Outcome {
+        match self.answer(frame, telemetry) {
+            Ok(outcome) => outcome,
+            Err(reason) => Outcome::none(NoSolution::Failed(reason)),
+        }
+    }
+}
+
+impl External {
+    fn answer(&mut self, frame: &Frame, telemetry: &Telemetry) -> Result<Outcome, String> {
+        let process = match &mut self.state {
+            State::Running(process) => process,
+            State::Dead(reason) => return Err(reason.clone()),
+        };
+        let image = self.images.place(frame.number());
+        (self.write_image)(frame, telemetry, &image.path)
+            .map_err(|error| format!("the image cannot be written: {error}"))?;
+        let request = protocol::request(frame, telemetry, &image.path)?;
+        match process.exchange(request, self.frame_limit) {
+            Ok(line) => protocol::outcome(&line, frame.number(), self.size_px),
+            Err(fault) => {
+                let reason = format!("at frame {}, {}", frame.number(), process.end(fault));
+                self.state = State::Dead(reason.clone());
+                Err(reason)
+            }
+        }
+    }
+}
+
+/// Number of this sequence in this run: several write their images side by side.
+fn next_sequence() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+/// Where the images of a sequence are put.
+struct Images {
+    directory: PathBuf,
+    sequence: u64,
+}
+
+impl Images {
+    fn place(&self, frame: u64) -> Image {
+        let name = format!("boresight-{}-{}-{frame}.fits", std::process::id(), self.sequence);
+        Image { path: self.directory.join(name) }
+    }
+}
+
+/// A file that is removed when it has served.
+struct Image {
+    path: PathBuf,
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        // It may never have been written, and the process may have removed it: nothing is lost in either case.
+        let _ = std::fs::remove_file(&self.path);
+    }
+}

@@ -1,0 +1,286 @@
+//! A child process that is asked and answers line by line, within limits of time and size.
+
+use std::collections::VecDeque;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, TrySendError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use super::group;
+use super::protocol::MAX_LINE_BYTES;
+
+/// A running child. Three threads of its own move its lines, so that no pipe, full or empty, can stop the caller for
+/// longer than a limit.
+pub(super) struct Process {
+    child: Child,
+    /// Lines for the child; `None` once its input is closed.
+    requests: Option<SyncSender<Vec<u8>>>,
+    events: Receiver<Event>,
+    errors: Arc<Mutex<Tail>>,
+    errors_reader: JoinHandle<()>,
+}
+
+/// What the child did, in order.
+enum Event {
+    Line(Vec<u8>),
+    LineTooLong,
+    OutputClosed,
+    InputClosed,
+}
+
+/// Why a child is ended.
+pub(super) enum Fault {
+    /// It broke the protocol; the text says how.
+    Broken(String),
+    /// It closed a pipe, and probably ended; the text says which.
+    Closed(&'static str),
+}
+
+/// Unread lines kept at most: a child that floods its output is stopped by its full pipe.
+const UNREAD_LINES: usize = 4;
+
+/// Time to see how a child that closed a pipe ends, or to end by itself when its input is closed.
+const GRACE: Duration = Duration::from_millis(300);
+
+/// Pause between two looks at whether a child has ended.
+const POLL: Duration = Duration::from_millis(2);
+
+impl Process {
+    /// Starts a program.
+    ///
+    /// # Errors
+    /// That of the operating system, when it cannot be started.
+    pub(super) fn start(program: &str, arguments: &[String]) -> std::io::Result<Self> {
+        let mut command = Command::new(program);
+        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        group::isolate(&mut command);
+        let mut child = command.spawn()?;
+        match Pipes::connect(&mut child) {
+            Ok(Pipes { requests, events, errors, errors_reader }) => {
+                Ok(Self { child, requests: Some(requests), events, errors, errors_reader })
+            }
+            Err(error) => {
+                group::kill(&mut child);
+                child.wait()?;
+                Err(error)
+            }
+        }
+    }
+
+    /// Sends a line and waits for the child's line, no longer than `limit`.
+    pub(super) fn exchange(&mut self, request: Vec<u8>, limit: Duration) -> Result<Vec<u8>, Fault> {
+        match self.events.try_recv() {
+            Err(TryRecvError::Empty) => {}
+            Err(TryRecvError::Disconnected) => return Err(Fault::Closed("its output")),
+            Ok(Event::Line(_)) => {
+                return Err(Fault::Broken("it wrote a line without being asked".to_owned()));
+            }
+            Ok(event) => return Err(fault(&event)),
+        }
+        let sent = self
+            .requests
+            .as_ref()
+            .map_or(Err(TrySendError::Disconnected(Vec::new())), |requests| requests.try_send(request));
+        match sent {
+            Ok(()) => {}
+            Err(TrySendError::Full(_)) => {
+                return Err(Fault::Broken("it answered without reading what it was asked".to_owned()));
+            }
+            Err(TrySendError::Disconnected(_)) => return Err(Fault::Closed("its input")),
+        }
+        match self.events.recv_timeout(limit) {
+            Ok(Event::Line(line)) => Ok(line),
+            Ok(event) => Err(fault(&event)),
+            Err(RecvTimeoutError::Timeout) => {
+                Err(Fault::Broken(format!("it gave no answer within {} s", limit.as_secs_f64())))
+            }
+            Err(RecvTimeoutError::Disconnected) => Err(Fault::Closed("its output")),
+        }
+    }
+
+    /// Ends the child and its descendants; says what happened, with the last of its error output.
+    pub(super) fn end(&mut self, fault: Fault) -> String {
+        let ended_by_itself = match fault {
+            Fault::Broken(_) => false,
+            Fault::Closed(_) => self.ends_within(GRACE),
+        };
+        let status = self.kill();
+        let mut text = match (fault, status) {
+            (Fault::Broken(text), _) => text,
+            (Fault::Closed(_), Some(status)) if ended_by_itself => format!("it ended with {status}"),
+            (Fault::Closed(pipe), _) => format!("it closed {pipe}"),
+        };
+        // The pipe is closed by the kill; a descendant that left the group may hold it open for ever.
+        let deadline = Instant::now() + GRACE;
+        while !self.errors_reader.is_finished() && Instant::now() < deadline {
+            std::thread::sleep(POLL);
+        }
+        let errors = self.errors.lock().unwrap_or_else(PoisonError::into_inner).last_lines();
+        if !errors.is_empty() {
+            text.push_str("; its last words: ");
+            text.push_str(&errors);
+        }
+        text
+    }
+
+    fn ends_within(&mut self, limit: Duration) -> bool {
+        let deadline = Instant::now() + limit;
+        loop {
+            if group::has_ended(&mut self.child) {
+                return true;
+            }
+            if Instant::now() >= deadline {
+                return false;
+            }
+            std::thread::sleep(POLL);
+        }
+    }
+
+    fn kill(&mut self) -> Option<std::process::ExitStatus> {
+        self.requests = None;
+        group::kill(&mut self.child);
+        self.child.wait().ok()
+    }
+}
+
+impl Drop for Process {
+    /// Closes the child's input, gives it a moment to end, and ends what is left of it.
+    fn drop(&mut self) {
+        // None: it was ended, reaped, and its number may be somebody else's by now.
+        if self.requests.take().is_some() {
+            self.ends_within(GRACE);
+            self.kill();
+        }
+    }
+}
+
+/// The caller's ends of a child's pipes.
+struct Pipes {
+    requests: SyncSender<Vec<u8>>,
+    events: Receiver<Event>,
+    errors: Arc<Mutex<Tail>>,
+    errors_reader: JoinHandle<()>,
+}
+
+impl Pipes {
+    /// Starts the threads that serve the pipes.
+    fn connect(child: &mut Child) -> std::io::Result<Self> {
+        let (Some(input), Some(output), Some(error_output)) =
+            (child.stdin.take(), child.stdout.take(), child.stderr.take())
+        else {
+            return Err(std::io::Error::other("its pipes are missing"));
+        };
+        let (event_sender, events) = sync_channel(UNREAD_LINES);
+        let (requests, request_receiver) = sync_channel(1);
+        let errors = Arc::new(Mutex::new(Tail::default()));
+        spawn("external-out", {
+            let events = event_sender.clone();
+            move || read_lines(BufReader::new(output), &events)
+        })?;
+        spawn("external-in", move || write_lines(input, &request_receiver, &event_sender))?;
+        let errors_reader = spawn("external-err", {
+            let errors = Arc::clone(&errors);
+            move || read_errors(error_output, &errors)
+        })?;
+        Ok(Self { requests, events, errors, errors_reader })
+    }
+}
+
+fn fault(event: &Event) -> Fault {
+    match event {
+        Event::Line(_) | Event::OutputClosed => Fault::Closed("its output"),
+        Event::LineTooLong => Fault::Broken(format!("it wrote a line longer than {MAX_LINE_BYTES} bytes")),
+        Event::InputClosed => Fault::Closed("its input"),
+    }
+}
+
+fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> std::io::Result<JoinHandle<()>> {
+    std::thread::Builder::new().name(name.to_owned()).spawn(work)
+}
+
+/// Reads lines until the output ends, a line is too long, or nobody listens.
+fn read_lines(mut output: impl BufRead, events: &SyncSender<Event>) {
+    loop {
+        let mut line = Vec::new();
+        // An error of a pipe is its end, as far as anybody can tell.
+        let read = (&mut output).take(MAX_LINE_BYTES as u64 + 1).read_until(b'\n', &mut line).unwrap_or(0);
+        let event = match read {
+            0 => Event::OutputClosed,
+            _ if line.last() == Some(&b'\n') => Event::Line(line),
+            n if n > MAX_LINE_BYTES => Event::LineTooLong,
+            // The last line of an output may lack its end.
+            _ => Event::Line(line),
+        };
+        let is_last = !matches!(event, Event::Line(_));
+        if events.send(event).is_err() || is_last {
+            return;
+        }
+    }
+}
+
+/// Writes lines until there are no more, or the child does not take them.
+fn write_lines(mut input: impl Write, requests: &Receiver<Vec<u8>>, events: &SyncSender<Event>) {
+    for line in requests {
+        if input.write_all(&line).and_then(|()| input.flush()).is_err() {
+            // Nobody listens when the child is being ended.
+            let _ = events.send(Event::InputClosed);
+            return;
+        }
+    }
+}
+
+/// Reads error output until it ends, so that it never blocks the child, and keeps its tail.
+fn read_errors(mut output: impl Read, errors: &Mutex<Tail>) {
+    let mut buffer = [0; 4096];
+    while let Ok(read @ 1..) = output.read(&mut buffer) {
+        errors.lock().unwrap_or_else(PoisonError::into_inner).push(&buffer[..read]);
+    }
+}
+
+/// The last bytes of a stream.
+#[derive(Default)]
+struct Tail {
+    bytes: VecDeque<u8>,
+}
+
+impl Tail {
+    const BYTES: usize = 2048;
+    const LINES: usize = 3;
+
+    fn push(&mut self, bytes: &[u8]) {
+        self.bytes.extend(bytes);
+        let excess = self.bytes.len().saturating_sub(Self::BYTES);
+        self.bytes.drain(..excess);
+    }
+
+    /// The last lines in one, bytes that are not text replaced.
+    fn last_lines(&mut self) -> String {
+        let text = String::from_utf8_lossy(self.bytes.make_contiguous());
+        let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+        lines[lines.len().saturating_sub(Self::LINES)..].join(" | ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tail_of_a_stream_is_bounded() {
+        let mut tail = Tail::default();
+        for i in 0..10_000 {
+            tail.push(format!("line {i}\n").as_bytes());
+        }
+        assert!(tail.bytes.len() <= Tail::BYTES);
+        assert_eq!(tail.last_lines(), "line 9997 | line 9998 | line 9999");
+    }
+
+    #[test]
+    fn bytes_that_are_not_text_are_shown_as_such() {
+        let mut tail = Tail::default();
+        tail.push(b"\xff\xfe");
+        assert_eq!(tail.last_lines(), "\u{fffd}\u{fffd}");
+    }
+}

@@ -1,0 +1,289 @@
+//! The lines exchanged with an external pipeline: JSON, one object a line, UTF-8.
+//!
+//! Greeting, to the process (the star list is the uploaded one; directions are unit vectors along the axes of ICRS,
+//! without aberration; quaternions are Hamilton's, scalar first, v_cam = q v_sc q*):
+//! ```json
+//! {"boresight_pipeline": 1, "camera": {"columns": 752, "rows": 580, "focal_length_mm": 20.187, "...": 0},
+//!  "q_cam_sc": [1, 0, 0, 0], "bit_depth": 12, "stars": [{"id": 11767, "icrs": [0, 0, 1], "magnitude": 1.97}]}
+//! ```
+//! and its answer:
+//! ```json
+//! {"boresight_pipeline": 1, "name": "my pipeline"}
+//! ```
+//! A frame, to the process (`image` is a FITS file of 16 bits that is removed after the answer; `windows` are the
+//! transmitted regions as [x, y, columns, rows], `null` when the whole image was transmitted; the velocity is the
+//! one about the Earth, `null` when not known):
+//! ```json
+//! {"frame": 12, "image": "/tmp/12.fits", "windows": null, "telemetry": {"time_utc": "2012-04-25T00:00:00.000000000Z",
+//!  "exposure_s": 0.25, "q_sc_j2000": [1, 0, 0, 0], "v_orbital_j2000_km_s": [7.5, 0, 0]}}
+//! ```
+//! and its answer, in which a detection has a place in pixels (the centre of the first pixel is 0, 0), and may have a
+//! line of sight, the attitude of the camera and the number of stars identified:
+//! ```json
+//! {"frame": 12, "status": "detected", "x_px": 395.2, "y_px": 288.1, "los_j2000": [1, 0, 0],
+//!  "q_cam_j2000": [1, 0, 0, 0], "n_stars": 14}
+//! ```
+//! or no target: `{"frame": 12, "status": "no_target"}`. The other words for it are those of
+//! [`contract::NoSolution::code`], and `failed: ` followed by a reason. A key that is not known makes an answer
+//! unusable, so that a misspelt one does not pass for a missing one. A line is at most
+//! [`MAX_LINE_BYTES`] long.
+
+use std::path::Path;
+
+use contract::{
+    Camera, Direction, Frame, Measurement, NoSolution, Outcome, PixelPoint, Rotation, Setup, Solution,
+    Telemetry,
+};
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// Version of the protocol, first in every greeting.
+pub const VERSION: u32 = 1;
+
+/// Longest line that a process may write, 1 MiB.
+pub const MAX_LINE_BYTES: usize = 1 << 20;
+
+#[derive(Serialize)]
+struct Greeting<'a> {
+    boresight_pipeline: u32,
+    camera: &'a Camera,
+    q_cam_sc: [f64; 4],
+    bit_depth: u8,
+    stars: Vec<Star>,
+}
+
+#[derive(Serialize)]
+struct Star {
+    id: u32,
+    icrs: [f64; 3],
+    magnitude: f64,
+}
+
+#[derive(Deserialize)]
+struct GreetingAnswer {
+    boresight_pipeline: u32,
+    /// Asked for, so that a log can be read; nothing depends on it.
+    #[serde(rename = "name")]
+    _name: String,
+}
+
+#[derive(Serialize)]
+struct Request<'a> {
+    frame: u64,
+    image: &'a str,
+    windows: Option<Vec<[usize; 4]>>,
+    telemetry: TelemetryLine,
+}
+
+#[derive(Serialize)]
+struct TelemetryLine {
+    time_utc: String,
+    exposure_s: f64,
+    q_sc_j2000: [f64; 4],
+    v_orbital_j2000_km_s: Option<[f64; 3]>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Answer {
+    frame: u64,
+    status: String,
+    x_px: Option<f64>,
+    y_px: Option<f64>,
+    los_j2000: Option<[f64; 3]>,
+    q_cam_j2000: Option<[f64; 4]>,
+    n_stars: Option<u32>,
+}
+
+/// The greeting line.
+pub(super) fn greeting(setup: &Setup) -> Result<Vec<u8>, String> {
+    let star = |star: &contract::ListedStar| Star {
+        id: star.id,
+        icrs: (*star.direction.vector()).into(),
+        magnitude: star.magnitude,
+    };
+    line(&Greeting {
+        boresight_pipeline: VERSION,
+        camera: &setup.camera,
+        q_cam_sc: setup.camera_from_body.wxyz(),
+        bit_depth: setup.bit_depth,
+        stars: setup.stars.iter().map(star).collect(),
+    })
+}
+
+/// Checks the answer to the greeting.
+pub(super) fn check_greeting(answer: &[u8]) -> Result<(), String> {
+    let answer: GreetingAnswer = parse(answer)?;
+    if answer.boresight_pipeline == VERSION {
+        Ok(())
+    } else {
+        Err(format!("it speaks version {} of the protocol, expected {VERSION}", answer.boresight_pipeline))
+    }
+}
+
+/// The line of a frame.
+pub(super) fn request(frame: &Frame, telemetry: &Telemetry, image: &Path) -> Result<Vec<u8>, String> {
+    let image = image.to_str().ok_or_else(|| format!("the path {} is not UTF-8", image.display()))?;
+    let windows =
+        frame.windows().map(|windows| windows.iter().map(|w| [w.x, w.y, w.columns, w.rows]).collect());
+    line(&Request {
+        frame: frame.number(),
+        image,
+        windows,
+        telemetry: TelemetryLine {
+            time_utc: time_utc(telemetry),
+            exposure_s: telemetry.exposure_s,
+            q_sc_j2000: telemetry.body_from_icrs.wxyz(),
+            v_orbital_j2000_km_s: telemetry.velocity_km_s.map(Into::into),
+        },
+    })
+}
+
+/// ISO 8601 with nanoseconds and Z.
+fn time_utc(telemetry: &Telemetry) -> String {
+    let (year, month, day, hour, minute, second, nanos) = telemetry.time.to_gregorian_utc();
+    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{nanos:09}Z")
+}
+
+/// The outcome that an answer to frame `number` says, or why the answer cannot be used.
+pub(super) fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Result<Outcome, String> {
+    let answer: Answer = parse(answer)?;
+    if answer.frame != number {
+        return Err(format!("it answered frame {} instead of frame {number}", answer.frame));
+    }
+    let camera_from_icrs = answer
+        .q_cam_j2000
+        .map(|wxyz| Rotation::from_wxyz(wxyz).map_err(|error| format!("its q_cam_j2000: {error}")))
+        .transpose()?;
+    let solution = match answer.status.as_str() {
+        "detected" => Solution::Detected(measurement(&answer, size_px)?),
+        status => match NoSolution::parse(status) {
+            NoSolution::Failed(_) if status != "failed" && !status.starts_with("failed: ") => {
+                return Err(format!("its status `{}` is not known", shortened(status)));
+            }
+            NoSolution::Failed(reason) => Solution::NoSolution(NoSolution::Failed(shortened(&reason))),
+            reason => Solution::NoSolution(reason),
+        },
+    };
+    Ok(Outcome {
+        solution,
+        camera_from_icrs,
+        attitude_source: None,
+        n_stars: answer.n_stars.unwrap_or(0),
+        clusters: Vec::new(),
+    })
+}
+
+fn measurement(answer: &Answer, (columns, rows): (usize, usize)) -> Result<Measurement, String> {
+    let (Some(x), Some(y)) = (answer.x_px, answer.y_px) else {
+        return Err("it detected a target and gave no x_px and y_px".to_owned());
+    };
+    let position = PixelPoint::new(x, y);
+    if !position.is_on_detector(columns, rows) {
+        return Err(format!("its target at ({x}, {y}) is not on the detector of {columns} × {rows} pixels"));
+    }
+    let line_of_sight = match answer.los_j2000 {
+        None => None,
+        Some(los) => {
+            let vector = Vector3::from(los);
+            let direction = Direction::from_vector(vector)
+                .ok()
+                .filter(|_| (vector.norm() - 1.0).abs() < 1e-5)
+                .ok_or_else(|| format!("its los_j2000 {los:?} is not a unit vector"))?;
+            Some(direction)
+        }
+    };
+    Ok(Measurement { position, line_of_sight })
+}
+
+fn line(value: &impl Serialize) -> Result<Vec<u8>, String> {
+    let mut line = serde_json::to_vec(value).map_err(|error| format!("no line can be made: {error}"))?;
+    line.push(b'\n');
+    Ok(line)
+}
+
+fn parse<'a, T: Deserialize<'a>>(line: &'a [u8]) -> Result<T, String> {
+    serde_json::from_slice(line).map_err(|error| {
+        format!("its answer `{}` cannot be read: {error}", shortened(&String::from_utf8_lossy(line)))
+    })
+}
+
+/// The beginning of a text, for a message.
+fn shortened(text: &str) -> String {
+    const MOST: usize = 200;
+    let text = text.trim_end();
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contract::NoSolution;
+
+    fn read(answer: &str) -> Result<Outcome, String> {
+        outcome(answer.as_bytes(), 7, (100, 80))
+    }
+
+    fn refused(answer: &str, because: &str) {
+        let reason = read(answer).unwrap_err();
+        assert!(reason.contains(because), "{reason}");
+    }
+
+    #[test]
+    fn a_detection_is_read() {
+        let got = read(
+            r#"{"frame": 7, "status": "detected", "x_px": 1.5, "y_px": 79.5, "los_j2000": [0, 0, 1], "n_stars": 3}"#,
+        )
+        .unwrap();
+        let measurement = got.measurement().unwrap();
+        assert_eq!(measurement.position, PixelPoint::new(1.5, 79.5));
+        assert_eq!(measurement.line_of_sight, Some(Direction::from_unit(Vector3::z())));
+        assert_eq!((got.n_stars, got.camera_from_icrs), (3, None));
+    }
+
+    #[test]
+    fn every_reason_is_read() {
+        for (status, expected) in [
+            ("no_target", NoSolution::NoTarget),
+            ("empty_frame", NoSolution::EmptyFrame),
+            ("no_previous_frame", NoSolution::NoPreviousFrame),
+            ("failed: out of film", NoSolution::Failed("out of film".to_owned())),
+        ] {
+            let got = read(&format!(r#"{{"frame": 7, "status": "{status}"}}"#)).unwrap();
+            assert_eq!(got.solution, Solution::NoSolution(expected));
+        }
+    }
+
+    #[test]
+    fn values_that_cannot_be_are_refused() {
+        let detected = |rest: &str| format!(r#"{{"frame": 7, "status": "detected", {rest}}}"#);
+        refused(&detected(r#""x_px": NaN, "y_px": 1"#), "cannot be read");
+        refused(&detected(r#""x_px": 1e999, "y_px": 1"#), "cannot be read");
+        refused(&detected(r#""x_px": null, "y_px": 1"#), "gave no x_px and y_px");
+        refused(&detected(r#""x_px": 100, "y_px": 1"#), "is not on the detector of 100 × 80 pixels");
+        refused(&detected(r#""x_px": 1, "y_px": 1, "los_j2000": [1, 1, 0]"#), "is not a unit vector");
+        refused(&detected(r#""x_px": 1, "y_px": 1, "los_j2000": [0, 0, 0]"#), "is not a unit vector");
+        refused(&detected(r#""x_px": 1, "y_px": 1, "q_cam_j2000": [2, 0, 0, 0]"#), "norm 2");
+        refused(&detected(r#""x_px": 1, "y_px": 1, "n_stars": -1"#), "cannot be read");
+        refused(&detected(r#""x_px": 1, "y_px": 1, "los_J2000": [0, 0, 1]"#), "unknown field `los_J2000`");
+    }
+
+    #[test]
+    fn an_answer_that_is_none_is_refused() {
+        refused("hello", "its answer `hello` cannot be read");
+        refused("", "cannot be read");
+        refused(r#"{"frame": 8, "status": "no_target"}"#, "it answered frame 8 instead of frame 7");
+        refused(r#"{"frame": 7, "status": "fine"}"#, "its status `fine` is not known");
+        assert!(read(&"x".repeat(100_000)).unwrap_err().len() < 400, "a message quotes the beginning only");
+    }
+
+    #[test]
+    fn a_greeting_in_another_version_is_refused() {
+        assert!(check_greeting(br#"{"boresight_pipeline": 1, "name": "a"}"#).is_ok());
+        let reason = check_greeting(br#"{"boresight_pipeline": 2, "name": "a"}"#).unwrap_err();
+        assert_eq!(reason, "it speaks version 2 of the protocol, expected 1");
+    }
+}
