@@ -1,9 +1,10 @@
 //! Which pipeline runs: the built-in one, or somebody else's program.
 
 use std::path::Path;
-use std::time::Duration;
+use std::sync::Arc;
 
 use contract::PipelineFactory;
+use pipeline::external::ExternalFactory;
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
 
 use crate::failure::Failure;
@@ -18,8 +19,8 @@ const EXEC: &str = "exec:";
 pub struct PipelineChoice {
     /// The word.
     pub word: String,
-    /// Longest time that a program may take for a frame.
-    pub timeout: Duration,
+    /// Longest time that a program may take for a frame, s.
+    pub timeout_s: f64,
 }
 
 impl PipelineChoice {
@@ -28,8 +29,13 @@ impl PipelineChoice {
     /// # Errors
     /// A [`Failure`] for a word that names no pipeline, or a program that cannot be started.
     pub fn factory(&self, far_range: &FarRangeConfig, scratch: &Path) -> Result<Box<dyn PipelineFactory>, Failure> {
+        if let Some(command) = self.word.strip_prefix(EXEC) {
+            let mut factory = ExternalFactory::new(command, scratch.to_path_buf(), Arc::new(write_image));
+            factory.timeout_s = self.timeout_s;
+            return Ok(Box::new(factory));
+        }
         if self.word == FAR_RANGE {
-            return Ok(Box::new(FarRangeFactory::new(far_range.clone()).map_err(|e| Failure::Usage(e.to_string()))?));
+            return Ok(Box::new(FarRangeFactory::new(far_range.clone()).map_err(|error| Failure::Usage(error.to_string()))?));
         }
         let hint = toml_file::nearest(&self.word, [FAR_RANGE, EXEC]).map_or(String::new(), |name| format!("; did you mean `{name}`?"));
         Err(Failure::Usage(format!("there is no pipeline `{}`; expected `far_range` or `exec:COMMAND`{hint}", self.word)))

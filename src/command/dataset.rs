@@ -68,7 +68,7 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     let dataset = Dataset::open(&arguments.directory)?;
     let setup = setup(arguments, &dataset)?;
     let scratch = super::scratch_directory()?;
-    let factory = arguments.pipeline.choice()?.factory(&dataset.camera().far_range, scratch.path())?;
+    let factory = arguments.pipeline.choice().factory(&dataset.camera().far_range, scratch.path())?;
     let measurements = arguments.out.clone().unwrap_or_else(|| arguments.directory.join("measurements.csv"));
     let clusters = measurements.with_file_name("clusters.parquet");
     let progress = output.progress(dataset.frames().len() as u64, &factory.name());

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 use std::str::FromStr;
-use std::time::Duration;
 
 use clap::Args;
 
@@ -55,11 +54,8 @@ pub(super) struct PipelineOptions {
 
 impl PipelineOptions {
     /// The pipeline asked for.
-    pub(super) fn choice(&self) -> Result<PipelineChoice, Failure> {
-        if !(self.timeout_s > 0.0 && self.timeout_s <= 86_400.0) {
-            return Err(Failure::Usage(format!("--timeout-s is {}, expected above 0 to 86400", self.timeout_s)));
-        }
-        Ok(PipelineChoice { word: self.pipeline.clone(), timeout: Duration::from_secs_f64(self.timeout_s) })
+    pub(super) fn choice(&self) -> PipelineChoice {
+        PipelineChoice { word: self.pipeline.clone(), timeout_s: self.timeout_s }
     }
 }
 

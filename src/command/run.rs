@@ -45,7 +45,7 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         jobs: arguments.selection.jobs(),
         images: arguments.save_frames,
     };
-    let choice = arguments.pipeline.choice()?;
+    let choice = arguments.pipeline.choice();
     let scratch = super::scratch_directory()?;
     let factory = choice.factory(&prepared.scenario().far_range, scratch.path())?;
     let directory = match &arguments.out {

@@ -27,8 +27,8 @@ pub enum HotspotConfig {
         /// is 0.001.
         #[serde(default = "default_v_min")]
         v_min_px_per_s: f64,
-        /// Largest N in Eq. 10, above `n_min`, so that the mean velocity becomes a moving mean over about that many
-        /// frames; `null`: the equation as printed, the mean over the whole track.
+        /// Steps that the mean velocity is taken over, the last ones, above `n_min`, at most 10000; `null`: Eq. 10 as
+        /// printed, the mean over the whole track.
         #[serde(default = "default_n_max")]
         n_max: Option<u32>,
         /// Whether the pixel of a hotspot stays marked for the rest of the sequence. If not, a hot pixel that
@@ -83,20 +83,18 @@ impl HotspotConfig {
             let speed = |v: f64| (0.0..=1000.0).contains(&v);
             require("hotspots.v_min_px_per_s", v_min_px_per_s, "0 to 1000", speed)?;
             if let Some(n_max) = n_max {
-                // N stays at n_max, so that N > n_min could never hold.
-                require("hotspots.n_max", f64::from(n_max), "greater than hotspots.n_min", |_| {
-                    n_max > n_min
-                })?;
+                let expected = "greater than hotspots.n_min, at most 10000";
+                require("hotspots.n_max", f64::from(n_max), expected, |_| n_max > n_min && n_max <= 10_000)?;
             }
         }
         Ok(())
     }
 
-    /// The bound of N in Eq. 10.
-    pub(super) fn n_max(&self) -> u32 {
+    /// How many steps a mean velocity is taken over; `None`: all of them.
+    pub(super) fn n_max(&self) -> Option<u32> {
         match self {
-            Self::Automatic { n_max, .. } => n_max.unwrap_or(u32::MAX),
-            Self::Off | Self::List { .. } => u32::MAX,
+            Self::Automatic { n_max, .. } => *n_max,
+            Self::Off | Self::List { .. } => None,
         }
     }
 }
@@ -166,7 +164,9 @@ mod tests {
     }
 
     fn track(length: u32, speed: f64) -> Track {
-        Track { length, velocity_px_per_s: [speed, 0.0], ..Track::new(&blob(10.2, 20.0, 1), false) }
+        let mut track = Track::new(&blob(10.2, 20.0, 1), false);
+        (track.length, track.velocity_px_per_s) = (length, [speed, 0.0]);
+        track
     }
 
     fn automatic(keep_pixels: bool) -> Hotspots {

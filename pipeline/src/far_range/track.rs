@@ -1,5 +1,7 @@
 //! Tracking: linking the clusters of two frames (section 2.2, Eqs. 5 to 10).
 
+use std::collections::VecDeque;
+
 use contract::{CameraFrame, Icrs, PixelPoint, Rotation};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -49,7 +51,7 @@ impl TrackingConfig {
 }
 
 /// A cluster of the previous frame and its history.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Track {
     /// c_prev.
     pub(super) centre: PixelPoint,
@@ -61,28 +63,51 @@ pub(super) struct Track {
     pub(super) length: u32,
     /// Mean velocity, px/s along columns and rows (Eq. 10).
     pub(super) velocity_px_per_s: [f64; 2],
+    /// The velocities that a bounded mean is taken over, oldest first; empty where the mean is unbounded.
+    steps_px_per_s: VecDeque<[f64; 2]>,
 }
 
 impl Track {
     /// A track that begins with this cluster.
     pub(super) fn new(blob: &Blob, is_star: bool) -> Self {
-        Self { centre: blob.centre, size: blob.size, is_star, length: 0, velocity_px_per_s: [0.0; 2] }
-    }
-
-    /// The track with one frame more, `dt_s` seconds later (Eq. 10). `n_max` bounds N: below the bound the
-    /// velocity is the mean over the whole track, above it a moving mean whose memory is about `n_max` frames.
-    pub(super) fn extended(&self, blob: &Blob, is_star: bool, dt_s: f64, n_max: u32) -> Self {
-        let n = f64::from(self.length);
-        let mean = |v: f64, now: f64, before: f64| (n * v + (now - before) / dt_s) / (n + 1.0);
         Self {
             centre: blob.centre,
             size: blob.size,
             is_star,
-            length: self.length.saturating_add(1).min(n_max),
-            velocity_px_per_s: [
-                mean(self.velocity_px_per_s[0], blob.centre.x, self.centre.x),
-                mean(self.velocity_px_per_s[1], blob.centre.y, self.centre.y),
-            ],
+            length: 0,
+            velocity_px_per_s: [0.0; 2],
+            steps_px_per_s: VecDeque::new(),
+        }
+    }
+
+    /// The track with one frame more, `dt_s` seconds later.
+    ///
+    /// Without `n_max` the mean velocity is Eq. 10 as printed, over the whole track. With it, it is the same mean
+    /// over the last `n_max` steps only: what lies farther back, a jump to another object for instance, is
+    /// forgotten altogether.
+    pub(super) fn extended(&self, blob: &Blob, is_star: bool, dt_s: f64, n_max: Option<u32>) -> Self {
+        let step = [(blob.centre.x - self.centre.x) / dt_s, (blob.centre.y - self.centre.y) / dt_s];
+        let mut steps = self.steps_px_per_s.clone();
+        let velocity_px_per_s = match n_max {
+            None => {
+                let n = f64::from(self.length);
+                std::array::from_fn(|i| (n * self.velocity_px_per_s[i] + step[i]) / (n + 1.0))
+            }
+            Some(n_max) => {
+                steps.push_back(step);
+                if steps.len() > n_max as usize {
+                    steps.pop_front();
+                }
+                std::array::from_fn(|i| steps.iter().map(|step| step[i]).sum::<f64>() / steps.len() as f64)
+            }
+        };
+        Self {
+            centre: blob.centre,
+            size: blob.size,
+            is_star,
+            length: self.length.saturating_add(1),
+            velocity_px_per_s,
+            steps_px_per_s: steps,
         }
     }
 
@@ -235,7 +260,7 @@ mod tests {
     fn mean_velocity_is_eq_10() {
         let mut track = track(0.0, 0.0, false);
         for (i, x) in [1.0, 3.0, 9.0].into_iter().enumerate() {
-            track = track.extended(&blob(x, 0.0, 1.0), false, 2.0, u32::MAX);
+            track = track.extended(&blob(x, 0.0, 1.0), false, 2.0, None);
             assert_eq!(track.length, i as u32 + 1);
         }
         // The mean of 0.5, 1 and 3 px/s.
@@ -244,7 +269,7 @@ mod tests {
 
     #[test]
     fn a_bounded_memory_forgets_the_first_frames() {
-        let run = |n_max: u32| {
+        let run = |n_max: Option<u32>| {
             let mut track = track(0.0, 0.0, false);
             // There and back: 100 frames at +1 px/s, 100 at −1 px/s.
             for i in 1..=200 {
@@ -253,7 +278,17 @@ mod tests {
             }
             track.speed_px_per_s()
         };
-        assert!(run(u32::MAX) < 1e-12, "Eq. 10 as printed: back at the first pixel, the mean velocity is 0");
-        assert!(run(10) > 0.99);
+        assert!(run(None) < 1e-12, "Eq. 10 as printed: back at the first pixel, the mean velocity is 0");
+        assert!(run(Some(10)) > 0.99);
+    }
+
+    #[test]
+    fn a_bounded_memory_forgets_a_jump_altogether() {
+        let mut track = track(0.0, 0.0, false);
+        for i in 0..=20 {
+            assert!(i == 0 || track.speed_px_per_s() > 0.0 || i > 10);
+            track = track.extended(&blob(15.0, 0.0, 1.0), false, 15.0, Some(10));
+        }
+        assert_eq!(track.speed_px_per_s(), 0.0);
     }
 }

@@ -95,20 +95,23 @@ impl Stamp {
 
     /// The fraction of its electrons outside every window, in [0, 1]; 0 for an empty stamp.
     pub fn cut(&self, windows: &[Window]) -> f64 {
-        let covers = |window: &Window| {
-            window.x <= self.x
-                && window.y <= self.y
-                && self.x + self.columns <= window.x + window.columns
-                && self.y + self.rows <= window.y + window.rows
+        let (right, bottom) = (self.x + self.columns, self.y + self.rows);
+        // Most windows of a frame are elsewhere, most stamps in one window or in none.
+        let touched: Vec<&Window> = windows
+            .iter()
+            .filter(|w| w.x < right && self.x < w.x + w.columns && w.y < bottom && self.y < w.y + w.rows)
+            .collect();
+        let covers = |w: &&Window| {
+            w.x <= self.x && w.y <= self.y && right <= w.x + w.columns && bottom <= w.y + w.rows
         };
-        if windows.iter().any(covers) {
+        if touched.iter().any(covers) {
             return 0.0;
         }
         let (mut total, mut lost) = (0.0, 0.0);
         for (x, y, row) in self.rows() {
             for (i, &signal) in row.iter().enumerate() {
                 total += signal;
-                if !windows.iter().any(|window| window.contains(x + i, y)) {
+                if !touched.iter().any(|window| window.contains(x + i, y)) {
                     lost += signal;
                 }
             }
