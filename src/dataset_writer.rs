@@ -8,8 +8,8 @@ use sim::{Exposure, Simulator};
 
 use crate::failure::Failure;
 use crate::files::{
-    CameraFile, FileError, FrameHeader, ImageFormat, RunDirectory, StarRow, TableWriter, TanSip, TelemetryRow,
-    TelemetryWriter, format_utc, write_frame, write_stars,
+    CameraFile, FileError, FrameHeader, ImageFormat, RunDirectory, StarRow, TableWriter, TanSip,
+    TelemetryRow, TelemetryWriter, format_utc, write_frame, write_stars,
 };
 use crate::run_file::RunFile;
 use crate::scenario::Scenario;

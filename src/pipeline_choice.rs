@@ -28,17 +28,27 @@ impl PipelineChoice {
     ///
     /// # Errors
     /// A [`Failure`] for a word that names no pipeline, or a program that cannot be started.
-    pub fn factory(&self, far_range: &FarRangeConfig, scratch: &Path) -> Result<Box<dyn PipelineFactory>, Failure> {
+    pub fn factory(
+        &self,
+        far_range: &FarRangeConfig,
+        scratch: &Path,
+    ) -> Result<Box<dyn PipelineFactory>, Failure> {
         if let Some(command) = self.word.strip_prefix(EXEC) {
             let mut factory = ExternalFactory::new(command, scratch.to_path_buf(), Arc::new(write_image));
             factory.timeout_s = self.timeout_s;
             return Ok(Box::new(factory));
         }
         if self.word == FAR_RANGE {
-            return Ok(Box::new(FarRangeFactory::new(far_range.clone()).map_err(|error| Failure::Usage(error.to_string()))?));
+            return Ok(Box::new(
+                FarRangeFactory::new(far_range.clone()).map_err(|error| Failure::Usage(error.to_string()))?,
+            ));
         }
-        let hint = toml_file::nearest(&self.word, [FAR_RANGE, EXEC]).map_or(String::new(), |name| format!("; did you mean `{name}`?"));
-        Err(Failure::Usage(format!("there is no pipeline `{}`; expected `far_range` or `exec:COMMAND`{hint}", self.word)))
+        let hint = toml_file::nearest(&self.word, [FAR_RANGE, EXEC])
+            .map_or(String::new(), |name| format!("; did you mean `{name}`?"));
+        Err(Failure::Usage(format!(
+            "there is no pipeline `{}`; expected `far_range` or `exec:COMMAND`{hint}",
+            self.word
+        )))
     }
 }
 

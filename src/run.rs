@@ -5,8 +5,8 @@ use std::path::Path;
 
 use contract::{Pipeline, PipelineFactory, Setup};
 use hifitime::Epoch;
-use sim::truth::{FrameTruth, ObjectTruth};
 use sim::Simulator;
+use sim::truth::{FrameTruth, ObjectTruth};
 
 use crate::dataset_writer::{DatasetWriter, save_image};
 use crate::failure::Failure;
@@ -48,9 +48,10 @@ impl Prepared {
         let simulator = source.simulator()?;
         let scenario = &source.scenario;
         let run_file = RunFile::new(&source.name, scenario, simulator.catalog().sha256())?;
-        let (_, star_epoch) = simulator.schedule().frame(0).ok_or_else(|| {
-            Failure::Usage(format!("scenario `{}` has no frame", source.name))
-        })?;
+        let (_, star_epoch) = simulator
+            .schedule()
+            .frame(0)
+            .ok_or_else(|| Failure::Usage(format!("scenario `{}` has no frame", source.name)))?;
         let stars = star_list(simulator.catalog(), scenario.star_list.magnitude_limit, star_epoch);
         Ok(Self { simulator, run_file, stars, star_epoch })
     }
@@ -103,11 +104,8 @@ impl Prepared {
         done: impl Fn(),
     ) -> Result<Scored, Failure> {
         let mut dataset = self.dataset(directory, flight)?;
-        let mut answers = Answers::create(
-            &directory.measurements(),
-            &directory.clusters(),
-            factory.build(&self.setup())?,
-        )?;
+        let mut answers =
+            Answers::create(&directory.measurements(), &directory.clusters(), factory.build(&self.setup())?)?;
         let unproject = |point| self.simulator.projection().unproject(point);
         let mut scorer = Scorer::new(context(&self.run_file, &unproject));
         self.fly(directory, flight, |exposure| {
@@ -236,7 +234,11 @@ impl Answers {
         })
     }
 
-    fn answer(&mut self, frame: &contract::Frame, telemetry: &contract::Telemetry) -> Result<contract::Outcome, FileError> {
+    fn answer(
+        &mut self,
+        frame: &contract::Frame,
+        telemetry: &contract::Telemetry,
+    ) -> Result<contract::Outcome, FileError> {
         let outcome = self.pipeline.process(frame, telemetry);
         self.measurements.write(frame.number(), &outcome)?;
         let rows = outcome.clusters.iter().map(|&cluster| FrameCluster { frame: frame.number(), cluster });

@@ -58,8 +58,11 @@ impl RunFile {
     /// # Errors
     /// [`Failure`] with the place of the first mistake.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| FileError::Io { path: path.to_owned(), doing: "read", source })?;
+        let text = std::fs::read_to_string(path).map_err(|source| FileError::Io {
+            path: path.to_owned(),
+            doing: "read",
+            source,
+        })?;
         Ok(toml_file::parse(path, &text)?)
     }
 }

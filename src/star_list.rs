@@ -25,8 +25,8 @@ pub fn star_list(catalog: &Catalog, magnitude_limit: f64, epoch: Epoch) -> Vec<S
 /// A star after `years` of proper motion.
 fn moved(star: &CatalogStar, years: f64) -> StarRow {
     let degrees = |mas_per_yr: f64| Angle::from_arcsec(mas_per_yr * years / 1000.0).degrees();
-    let ra_deg = Angle::from_radians(star.ra_rad).degrees()
-        + degrees(star.pm_ra_mas_per_yr / libm::cos(star.dec_rad));
+    let ra_deg =
+        Angle::from_radians(star.ra_rad).degrees() + degrees(star.pm_ra_mas_per_yr / libm::cos(star.dec_rad));
     let dec_deg = Angle::from_radians(star.dec_rad).degrees() + degrees(star.pm_dec_mas_per_yr);
     StarRow {
         id: star.id,
@@ -41,16 +41,15 @@ mod tests {
     use super::*;
     use crate::files::parse_utc;
 
-    /// Barnard's star, the fastest: its place at J2000.0 in the Hipparcos catalogue's own columns (I/239, fields
-    /// H3 and H4 are at J1991.25; SIMBAD gives 17 57 48.4997 +04 41 36.113 at J2000.0).
+    /// Barnard's star, the fastest. SIMBAD gives its place of Hipparcos-2 at J2000.0 as 17 57 48.49803 +04 41 36.2072.
     #[test]
     fn proper_motion_is_applied_up_to_the_epoch() {
         let list = star_list(&Catalog::hipparcos2(), 10.0, parse_utc("2000-01-01T11:58:55.816Z").unwrap());
         let barnard = list.iter().find(|star| star.id == 87937).unwrap();
         let arcsec = |degrees: f64| degrees * 3600.0;
-        // 30 mas: difference of the two reductions of Hipparcos and rounding of the published place.
-        assert!(arcsec(barnard.ra_deg - (269.0 + 27.0 / 60.0 + 7.4955 / 3600.0)).abs() < 0.03);
-        assert!(arcsec(barnard.dec_deg - (4.0 + 41.0 / 60.0 + 36.113 / 3600.0)).abs() < 0.03);
+        // 1 mas: the rounding of the published place.
+        assert!(arcsec(barnard.ra_deg - (269.0 + 27.0 / 60.0 + 7.47045 / 3600.0)).abs() < 0.001);
+        assert!(arcsec(barnard.dec_deg - (4.0 + 41.0 / 60.0 + 36.2072 / 3600.0)).abs() < 0.001);
     }
 
     #[test]

@@ -31,6 +31,7 @@ fn camera_file() -> CameraFile {
             tangential: [0.0; 2],
         },
         mounting: Mounting { phi_deg: 1.0, theta_deg: -2.0, psi_deg: 0.1 },
+        far_range: Default::default(),
     }
 }
 

@@ -119,7 +119,10 @@ impl<'a> SimulatedCamera<'a> {
             sunlit_fraction: moment.sunlit_fraction,
             target_position: moment.target_position,
             target_visibility: Visibility::of_snr(
-                objects.first().filter(|object| object.kind == ObjectKind::Target).map_or(0.0, |target| target.snr),
+                objects
+                    .first()
+                    .filter(|object| object.kind == ObjectKind::Target)
+                    .map_or(0.0, |target| target.snr),
             ),
         };
         let telemetry = simulator.knowledge.telemetry(
@@ -157,8 +160,12 @@ impl<'a> SimulatedCamera<'a> {
             target_to_sun_km.cross(&target_to_chaser_km).norm(),
             target_to_sun_km.dot(&target_to_chaser_km),
         );
-        let magnitude =
-            simulator.target.magnitude(states.range_km(), target_to_sun_km.norm(), phase_rad, sunlit_fraction);
+        let magnitude = simulator.target.magnitude(
+            states.range_km(),
+            target_to_sun_km.norm(),
+            phase_rad,
+            sunlit_fraction,
+        );
         // The target moves with the chaser: light time cancels aberration, so it is seen where it is.
         let target_position = simulator.projection.project(&(camera_from_icrs * line_of_sight));
         let target = Source {

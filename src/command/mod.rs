@@ -71,5 +71,6 @@ pub fn main() -> ExitCode {
 
 /// A directory for files that nobody keeps; gone with the value.
 fn scratch_directory() -> Result<tempfile::TempDir, Failure> {
-    tempfile::tempdir().map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))
+    tempfile::tempdir()
+        .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))
 }

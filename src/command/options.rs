@@ -17,7 +17,8 @@ impl FromStr for FrameRange {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let expected = || format!("`{text}` is not a range of frames; expected A..B with A < B, as in 0..100");
+        let expected =
+            || format!("`{text}` is not a range of frames; expected A..B with A < B, as in 0..100");
         let (from, to) = text.split_once("..").ok_or_else(expected)?;
         let from = from.trim().parse().map_err(|_| expected())?;
         let to = to.trim().parse().map_err(|_| expected())?;

@@ -33,7 +33,12 @@ pub(super) struct RunArguments {
 impl RunArguments {
     /// What the bare command means: `run argon`.
     pub(super) fn argon() -> Self {
-        Self { selection: Selection::of("argon"), out: None, pipeline: PipelineOptions::default(), save_frames: None }
+        Self {
+            selection: Selection::of("argon"),
+            out: None,
+            pipeline: PipelineOptions::default(),
+            save_frames: None,
+        }
     }
 }
 

@@ -16,7 +16,7 @@ use crate::scenario::{BUILT_IN, STARTING_POINT, Scenario, ScenarioSource};
 pub(super) enum ScenarioCommand {
     /// List the built-in scenarios
     List,
-    /// Check a scenario: exit status 0 when it can be run, 2 with the place of the first mistake
+    /// Check a scenario: exit status 0 when it can be run, 1 with the place of the first mistake
     Check {
         /// A built-in scenario or a TOML file
         scenario: String,
@@ -33,7 +33,7 @@ pub(super) enum ScenarioCommand {
 pub(super) fn scenario(command: &ScenarioCommand, output: &Output) -> Result<Answer, Failure> {
     match command {
         ScenarioCommand::List => list(output),
-        ScenarioCommand::Check { scenario } => check(scenario, output),
+        ScenarioCommand::Check { scenario } => return check(scenario, output),
         ScenarioCommand::Schema => {
             let schema = Scenario::json_schema();
             let text = serde_json::to_string_pretty(&schema)
@@ -61,16 +61,26 @@ fn list(output: &Output) -> Result<(), Failure> {
     output.answer(&document, text.join("\n"))
 }
 
-fn check(scenario: &str, output: &Output) -> Result<(), Failure> {
-    let source = ScenarioSource::read(scenario)?;
-    let simulator = source.simulator()?;
+/// A mistake in a scenario is the answer no; a file that cannot be read is none.
+fn check(scenario: &str, output: &Output) -> Result<Answer, Failure> {
+    let checked = ScenarioSource::read(scenario).and_then(|source| Ok((source.simulator()?, source.name)));
+    let (simulator, name) = match checked {
+        Err(mistake @ Failure::Toml(_)) => {
+            let document = json!({ "scenario": scenario, "ok": false, "error": mistake.to_string() });
+            output.answer(&document, mistake.explain())?;
+            return Ok(Answer::No);
+        }
+        checked => checked?,
+    };
     let (frames, stars) = (simulator.schedule().frame_count(), simulator.catalog().stars().len());
-    let document = json!({ "scenario": source.name, "frames": frames, "stars": stars, "ok": true });
-    output.answer(&document, format!("{}: {frames} frames, {stars} stars, no mistake found", source.name))
+    let document = json!({ "scenario": name, "ok": true, "frames": frames, "stars": stars });
+    output.answer(&document, format!("{name}: {frames} frames, {stars} stars, no mistake found"))?;
+    Ok(Answer::Yes)
 }
 
 fn new(file: &PathBuf, output: &Output) -> Result<(), Failure> {
-    let refuse = |error: std::io::Error| Failure::Usage(format!("{}: cannot be created: {error}", file.display()));
+    let refuse =
+        |error: std::io::Error| Failure::Usage(format!("{}: cannot be created: {error}", file.display()));
     let mut created = OpenOptions::new().write(true).create_new(true).open(file).map_err(refuse)?;
     created.write_all(STARTING_POINT.as_bytes()).map_err(refuse)?;
     let document = json!({ "file": file });

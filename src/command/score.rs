@@ -24,7 +24,8 @@ pub(super) struct ScoreArguments {
 }
 
 pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answer, Failure> {
-    let beside = || Some(arguments.measurements.with_file_name("clusters.parquet")).filter(|path| path.is_file());
+    let beside =
+        || Some(arguments.measurements.with_file_name("clusters.parquet")).filter(|path| path.is_file());
     let clusters = arguments.clusters.clone().or_else(beside);
     let score = run::score(&arguments.directory, &arguments.measurements, clusters.as_deref())?.score;
     let style = TableStyle {

@@ -142,10 +142,6 @@ impl CsvWriter {
         Ok(writer)
     }
 
-    pub(super) fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Writes a row of cells.
     pub(super) fn write(&mut self, cells: impl IntoIterator<Item = String>) -> Result<(), FileError> {
         self.writer.write_record(cells).map_err(|error| csv_error(&self.path, &error))

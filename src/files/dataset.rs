@@ -10,9 +10,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::{Place, create_new};
-use crate::toml_file;
 use super::telemetry::read_with_lines;
 use super::{FileError, TelemetryRow, parse_utc, read_frame};
+use crate::toml_file;
 
 /// `camera.toml`: what a pipeline knows before the first frame, except the stars themselves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

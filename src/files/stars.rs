@@ -28,7 +28,8 @@ impl StarRow {
     /// The star as a pipeline gets it. The list is *defined* by its rows, so that one read back from a file is the
     /// same to the bit.
     pub fn listed(&self) -> ListedStar {
-        let direction = Direction::from_ra_dec(Angle::from_degrees(self.ra_deg), Angle::from_degrees(self.dec_deg));
+        let direction =
+            Direction::from_ra_dec(Angle::from_degrees(self.ra_deg), Angle::from_degrees(self.dec_deg));
         ListedStar { id: self.id, direction, magnitude: self.magnitude }
     }
 }
@@ -73,7 +74,8 @@ pub fn read_stars(path: &Path) -> Result<Vec<StarRow>, FileError> {
 mod tests {
     use super::*;
 
-    const SIRIUS: StarRow = StarRow { id: 32349, ra_deg: 101.287_155_33, dec_deg: -16.716_115_86, magnitude: -1.44 };
+    const SIRIUS: StarRow =
+        StarRow { id: 32349, ra_deg: 101.287_155_33, dec_deg: -16.716_115_86, magnitude: -1.44 };
 
     #[test]
     fn the_list_comes_back_to_the_bit() {

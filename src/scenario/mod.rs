@@ -78,7 +78,7 @@ impl Scenario {
             schedule: self.schedule.clone(),
             attitude: self.attitude.clone(),
             knowledge: self.knowledge.clone(),
-            mounting: self.mounting.clone(),
+            mounting: self.mounting,
             camera: self.camera.clone(),
             psf: self.psf.clone(),
             radiometry: self.radiometry.clone(),

@@ -43,7 +43,8 @@ impl ScenarioSource {
                 "`{word}` is neither a built-in scenario nor a TOML file that can be read ({error}); {hint}"
             ))
         })?;
-        let name = file.file_stem().map_or_else(|| word.to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let name =
+            file.file_stem().map_or_else(|| word.to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = file.parent().map(Path::to_path_buf).unwrap_or_default();
         Self::parse(name, folder, file, text)
     }
@@ -68,7 +69,9 @@ impl ScenarioSource {
             return Err(self.refuse("star_list.magnitude_limit", message));
         }
         if let Err(PipelineError::Parameter { field, value, expected }) = self.scenario.far_range.check() {
-            return Err(self.refuse(&format!("far_range.{field}"), format!("is {value}, expected {expected}")));
+            return Err(
+                self.refuse(&format!("far_range.{field}"), format!("is {value}, expected {expected}"))
+            );
         }
         Simulator::new(&self.scenario.simulation(), &self.folder).map_err(|error| self.explain(error))
     }

@@ -43,7 +43,9 @@ impl ShutterConfig {
             Self::Automatic { min_s, max_s, target_level, step_factor, lag_s } => {
                 require("shutter.max_s", max_s, "1e-6 to 1000", exposure)?;
                 require("shutter.min_s", min_s, "1e-6 to shutter.max_s", |v| exposure(v) && v <= max_s)?;
-                require("shutter.target_level", target_level, "greater than 0, at most 1000", |v| v > 0.0 && v <= 1e3)?;
+                require("shutter.target_level", target_level, "greater than 0, at most 1000", |v| {
+                    v > 0.0 && v <= 1e3
+                })?;
                 require("shutter.step_factor", step_factor, "1.001 to 100", |v| {
                     (1.001..=100.0).contains(&v)
                 })?;

@@ -37,14 +37,15 @@ impl TargetConfig {
     /// [`SimError::Parameter`] for the first one outside its range.
     pub fn check(&self) -> Result<(), SimError> {
         match *self {
-            Self::Beacon { magnitude_at_1_km } => require(
-                "target.magnitude_at_1_km",
-                magnitude_at_1_km,
-                "-30 to 30",
-                |m| (-30.0..=30.0).contains(&m),
-            ),
+            Self::Beacon { magnitude_at_1_km } => {
+                require("target.magnitude_at_1_km", magnitude_at_1_km, "-30 to 30", |m| {
+                    (-30.0..=30.0).contains(&m)
+                })
+            }
             Self::LambertSphere { radius_m, albedo } => {
-                require("target.radius_m", radius_m, "greater than 0, at most 1000", |r| r > 0.0 && r <= 1000.0)?;
+                require("target.radius_m", radius_m, "greater than 0, at most 1000", |r| {
+                    r > 0.0 && r <= 1000.0
+                })?;
                 require("target.albedo", albedo, "0 to 1", |a| (0.0..=1.0).contains(&a))
             }
         }
@@ -53,13 +54,23 @@ impl TargetConfig {
     /// Visual magnitude seen from `range_km`, with the Sun at `sun_distance_km` from the target, the angle
     /// Sun–target–observer `phase_rad`, and `sunlit_fraction` of the Sun's disk shining on it. Infinite when no light
     /// comes from it.
-    pub fn magnitude(&self, range_km: f64, sun_distance_km: f64, phase_rad: f64, sunlit_fraction: f64) -> f64 {
+    pub fn magnitude(
+        &self,
+        range_km: f64,
+        sun_distance_km: f64,
+        phase_rad: f64,
+        sunlit_fraction: f64,
+    ) -> f64 {
         match *self {
             Self::Beacon { magnitude_at_1_km } => magnitude_at_1_km + 5.0 * libm::log10(range_km),
             Self::LambertSphere { radius_m, albedo } => {
                 let range_ratio = radius_m / (range_km * 1000.0);
                 let sun_au = sun_distance_km / AU_KM;
-                let flux_ratio = 2.0 / 3.0 * albedo * lambert_phase(phase_rad) * range_ratio * range_ratio
+                let flux_ratio = 2.0 / 3.0
+                    * albedo
+                    * lambert_phase(phase_rad)
+                    * range_ratio
+                    * range_ratio
                     * sunlit_fraction
                     / (sun_au * sun_au);
                 SUN_V_MAG_AT_1_AU - 2.5 * libm::log10(flux_ratio)

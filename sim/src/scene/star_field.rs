@@ -80,7 +80,8 @@ impl StarField {
         for star in self.around(camera_from_icrs, projection, 0.0) {
             // Most stars are fainter than the best so far and need no place.
             if star.electrons_per_s > brightest
-                && let Some(position) = projection.project(&(camera_from_icrs * observer.apparent(&star.motion)))
+                && let Some(position) =
+                    projection.project(&(camera_from_icrs * observer.apparent(&star.motion)))
                 && is_within(position, projection, 0.0)
             {
                 brightest = star.electrons_per_s;
