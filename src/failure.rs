@@ -36,10 +36,11 @@ impl Failure {
             return format!("error: {self}");
         };
         let mut text = String::new();
-        // Without colours and line drawing: the message must read well in a log as on a terminal.
+        // Without colours and line drawing, and without the theme's mark `x`: the message must read well in a log as
+        // on a terminal.
         let handler = GraphicalReportHandler::new_themed(GraphicalTheme::none()).with_width(100);
         match handler.render_report(&mut text, error.as_ref()) {
-            Ok(()) => format!("error: {}", text.trim()),
+            Ok(()) => format!("error: {}", text.trim().trim_start_matches("x ")),
             Err(_) => format!("error: {self}"),
         }
     }
