@@ -11,8 +11,8 @@ use sim::truth::{FrameTruth, ObjectTruth};
 use crate::dataset_writer::{DatasetWriter, save_image};
 use crate::failure::Failure;
 use crate::files::{
-    Dataset, FileError, FrameCluster, ImageFormat, MeasurementWriter, RunDirectory, StarRow, TableReader,
-    TableWriter, read_measurements,
+    Dataset, Expected, FileError, FrameCluster, ImageFormat, MeasurementWriter, RunDirectory, StarRow,
+    TableReader, TableWriter, read_measurements, write_expected,
 };
 use crate::flight::fly;
 use crate::run_file::RunFile;
@@ -29,6 +29,17 @@ pub struct Flight {
     pub jobs: usize,
     /// Images to keep.
     pub images: Option<ImageFormat>,
+    /// Whether the noise-free expectation of every frame is kept with the truth.
+    pub expectation: Expectation,
+}
+
+/// What becomes of the noise-free expectation of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Expectation {
+    /// Written to `truth/expected/`, electrons, EXR.
+    Kept,
+    /// Dropped.
+    Dropped,
 }
 
 /// A scenario with its simulator and star list, ready to fly.
@@ -123,6 +134,9 @@ impl Prepared {
     }
 
     fn dataset(&self, directory: &RunDirectory, flight: &Flight) -> Result<DatasetWriter, Failure> {
+        if flight.expectation == Expectation::Kept {
+            directory.create_expected()?;
+        }
         DatasetWriter::create(directory, &self.run_file, &self.stars, self.star_epoch, flight.images)
     }
 
@@ -136,6 +150,12 @@ impl Prepared {
             let exposure = camera.expose(frame)?;
             if let Some(format) = flight.images {
                 save_image(directory, format, &self.simulator, &self.run_file, &exposure)?;
+            }
+            if flight.expectation == Expectation::Kept {
+                let image = camera.expected();
+                let (columns, rows) = image.size();
+                let electrons = image.iter().map(|electrons| electrons as f32).collect();
+                write_expected(&directory.expected(frame), &Expected { columns, rows, electrons })?;
             }
             Ok(exposure)
         };

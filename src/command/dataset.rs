@@ -11,7 +11,7 @@ use super::options::{PipelineOptions, Selection};
 use super::output::Output;
 use crate::failure::Failure;
 use crate::files::{Dataset, ImageFormat, RunDirectory, StarRow, read_stars};
-use crate::run::{self, Flight, Prepared};
+use crate::run::{self, Expectation, Flight, Prepared};
 use crate::star_list::star_list;
 
 #[derive(Debug, Args)]
@@ -24,6 +24,9 @@ pub(super) struct RenderArguments {
     /// Format of the images
     #[arg(long, value_name = "fits|png|exr", default_value_t = ImageFormat::Fits)]
     format: ImageFormat,
+    /// Write the noise-free expectation of every frame too, in electrons, to truth/expected/
+    #[arg(long)]
+    expected: bool,
 }
 
 pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Answer, Failure> {
@@ -33,6 +36,7 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
         frames: arguments.selection.frames(prepared.frame_count())?,
         jobs: arguments.selection.jobs(),
         images: Some(arguments.format),
+        expectation: if arguments.expected { Expectation::Kept } else { Expectation::Dropped },
     };
     let directory = RunDirectory::create(&arguments.out)?;
     let frames = flight.frames.end - flight.frames.start;

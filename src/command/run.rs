@@ -9,7 +9,7 @@ use super::options::{PipelineOptions, Selection};
 use super::output::Output;
 use crate::failure::Failure;
 use crate::files::{ImageFormat, RunDirectory};
-use crate::run::{Flight, Prepared};
+use crate::run::{Expectation, Flight, Prepared};
 use crate::score::ARGON_TABLE_2;
 use crate::table::{TableStyle, far_range};
 
@@ -49,6 +49,7 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         frames: arguments.selection.frames(prepared.frame_count())?,
         jobs: arguments.selection.jobs(),
         images: arguments.save_frames,
+        expectation: Expectation::Dropped,
     };
     let choice = arguments.pipeline.choice();
     let scratch = super::scratch_directory()?;

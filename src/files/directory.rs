@@ -101,6 +101,20 @@ impl RunDirectory {
         self.path.join("truth/objects.parquet")
     }
 
+    /// Makes the folder of the noise-free expectations.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when it cannot be made.
+    pub fn create_expected(&self) -> Result<(), FileError> {
+        let folder = self.path.join("truth/expected");
+        fs::create_dir(&folder).map_err(|source| FileError::io(&folder, "create", source))
+    }
+
+    /// The noise-free expectation of a frame, electrons.
+    pub fn expected(&self, frame: u64) -> PathBuf {
+        self.path.join(format!("truth/expected/{frame:06}.exr"))
+    }
+
     /// `measurements.csv`: a pipeline's answers.
     pub fn measurements(&self) -> PathBuf {
         self.path.join("measurements.csv")
