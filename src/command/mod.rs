@@ -50,7 +50,14 @@ enum Answer {
 
 /// Runs the command of this process's arguments. Exit status: 0 done, 1 the answer is no, 2 usage or bad input.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // The arguments are not known to be right, but what the caller reads is.
+            output::Output::new(std::env::args_os().any(|word| word == "--json")).misuse(&error);
+            error.exit();
+        }
+    };
     let output = output::Output::new(arguments.json);
     let answer = match arguments.command.unwrap_or_else(|| Command::Run(run::RunArguments::argon())) {
         Command::Run(arguments) => run::run(&arguments, &output),

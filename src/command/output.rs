@@ -46,6 +46,16 @@ impl Output {
         self.note(failure.explain());
     }
 
+    /// With `--json`, tells on stdout what is wrong with the arguments; clap itself tells it on stderr. Asking for help
+    /// or for the version is no mistake.
+    pub(super) fn misuse(&self, error: &clap::Error) {
+        if self.json && error.use_stderr() {
+            let text = error.to_string();
+            let document = serde_json::json!({ "error": text.strip_prefix("error: ").unwrap_or(&text).trim_end() });
+            let _ = print_line(document);
+        }
+    }
+
     /// A progress bar over `frames` on stderr; hidden when stderr is not a terminal.
     pub(super) fn progress(&self, frames: u64, what: &str) -> ProgressBar {
         if !std::io::stderr().is_terminal() {
