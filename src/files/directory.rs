@@ -32,10 +32,11 @@ impl RunDirectory {
                     _ => FileError::io(path, "create", source),
                 })?;
             }
-            Err(error) if error.kind() == ErrorKind::NotADirectory => {
+            // Otherwise something above it is no directory.
+            Err(error) if error.kind() == ErrorKind::NotADirectory && path.symlink_metadata().is_ok() => {
                 return Err(taken("exists and is not a directory"));
             }
-            Err(source) => return Err(FileError::io(path, "open", source)),
+            Err(source) => return Err(FileError::io(path, "create", source)),
         }
         Self::checked(path.to_owned())
     }
@@ -190,9 +191,11 @@ mod tests {
         let message = RunDirectory::create(&path).unwrap_err().to_string();
         assert!(message.contains("not empty") && message.contains("--out"), "{message}");
         assert_eq!(fs::read_to_string(path.join("run.toml")).unwrap(), "mine");
-        for inside in ["run.toml", "run.toml/below"] {
+        for (inside, reason) in
+            [("run.toml", "exists and is not a directory"), ("run.toml/below", "cannot create")]
+        {
             let message = RunDirectory::create(&path.join(inside)).unwrap_err().to_string();
-            assert!(message.contains("not a directory"), "{message}");
+            assert!(message.contains(inside) && message.contains(reason), "{message}");
         }
         let empty = tempdir().unwrap();
         assert!(RunDirectory::create(empty.path()).is_ok());
