@@ -94,8 +94,16 @@ for line in sys.stdin:
 /// A run over [`FRAMES`] with a program; the statuses and the score.
 fn run_with(bench: &Bench, program: &str, more: &[&str]) -> (Vec<String>, Value) {
     bench.write("program.py", program);
-    let words =
-        ["run", "starting-point", "--frames", FRAMES, "--out", "run", "--pipeline", "exec:python3 program.py"];
+    let words = [
+        "run",
+        "starting-point",
+        "--frames",
+        FRAMES,
+        "--out",
+        "run",
+        "--pipeline",
+        "exec:python3 program.py",
+    ];
     bench.boresight_words(&[words.as_slice(), more].concat()).done();
     (statuses(bench), bench.json("run/score.json"))
 }
@@ -163,8 +171,16 @@ fn check_fails_at_once(bench: &Bench, answer: Answer, part: &str) {
 #[test]
 fn a_program_that_does_not_exist_is_a_failure_of_every_frame() {
     let bench = Bench::new();
-    let words =
-        ["run", "starting-point", "--frames", FRAMES, "--out", "run", "--pipeline", "exec:no-such-program -x"];
+    let words = [
+        "run",
+        "starting-point",
+        "--frames",
+        FRAMES,
+        "--out",
+        "run",
+        "--pipeline",
+        "exec:no-such-program -x",
+    ];
     let answer = bench.boresight_words(&words);
     check_fails_at_once(&bench, answer, "`no-such-program` does not start");
 }
@@ -172,9 +188,20 @@ fn a_program_that_does_not_exist_is_a_failure_of_every_frame() {
 #[test]
 fn a_program_of_another_version_is_a_failure_of_every_frame() {
     let bench = Bench::new();
-    bench.write("program.py", "print('{\"boresight_pipeline\": 2, \"name\": \"x\"}', flush=True)\ninput()\ninput()");
-    let words =
-        ["run", "starting-point", "--frames", FRAMES, "--out", "run", "--pipeline", "exec:python3 program.py"];
+    bench.write(
+        "program.py",
+        "print('{\"boresight_pipeline\": 2, \"name\": \"x\"}', flush=True)\ninput()\ninput()",
+    );
+    let words = [
+        "run",
+        "starting-point",
+        "--frames",
+        FRAMES,
+        "--out",
+        "run",
+        "--pipeline",
+        "exec:python3 program.py",
+    ];
     let answer = bench.boresight_words(&words);
     check_fails_at_once(&bench, answer, "version");
 }

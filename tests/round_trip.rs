@@ -52,7 +52,9 @@ fn an_exr_dataset_processed_and_scored_gives_what_the_run_gives() {
 fn a_run_with_images_is_a_dataset_too() {
     let bench = Bench::new();
     bench.boresight(&format!("run argon --frames {FRAMES} --save-frames png --out run")).done();
-    bench.boresight("process run --out again/measurements.csv").refused(&["again/measurements.csv", "cannot create"]);
+    bench
+        .boresight("process run --out again/measurements.csv")
+        .refused(&["again/measurements.csv", "cannot create"]);
     std::fs::create_dir(bench.path("again")).unwrap();
     bench.boresight("process run --out again/measurements.csv").done();
     for file in ["measurements.csv", "clusters.parquet"] {
@@ -163,7 +165,8 @@ fn a_place_on_a_hot_pixel_is_wrong_and_says_what_was_taken() {
     let bench = with_run();
     let objects = bench.objects("run");
     let hot_pixel = |frame: u64| {
-        let hot = objects.iter().filter(|object| object.frame == frame && object.kind == ObjectKind::HotPixel);
+        let hot =
+            objects.iter().filter(|object| object.frame == frame && object.kind == ObjectKind::HotPixel);
         hot.max_by(|a, b| a.electrons.total_cmp(&b.electrons)).unwrap().position
     };
     let score = score_of(&bench, |truth, _| {

@@ -15,12 +15,34 @@ pub enum SimError {
         /// What is allowed.
         expected: &'static str,
     },
+    /// A parameter outside its range in an entry of a list.
+    #[error("{path} is {value}, expected {expected}")]
+    Entry {
+        /// Path of the parameter in the scenario with the place of its entry, counted from 0: `schedule[2].count`.
+        path: String,
+        /// The value met.
+        value: String,
+        /// What is allowed.
+        expected: &'static str,
+    },
     /// A value that the contract refuses.
     #[error(transparent)]
     Contract(#[from] contract::ContractError),
     /// A star catalogue that cannot be used.
     #[error(transparent)]
     Catalog(#[from] crate::catalog::CatalogError),
+}
+
+impl SimError {
+    /// The error of a parameter of a list, as `schedule[].count`, with the place of its entry, counted from 0.
+    pub(crate) fn in_entry(self, index: usize) -> Self {
+        match self {
+            Self::Parameter { field, value, expected } => {
+                Self::Entry { path: field.replacen("[]", &format!("[{index}]"), 1), value, expected }
+            }
+            other => other,
+        }
+    }
 }
 
 /// Checks that `value` is finite and satisfies `holds`.

@@ -51,7 +51,8 @@ impl Output {
     pub(super) fn misuse(&self, error: &clap::Error) {
         if self.json && error.use_stderr() {
             let text = error.to_string();
-            let document = serde_json::json!({ "error": text.strip_prefix("error: ").unwrap_or(&text).trim_end() });
+            let document =
+                serde_json::json!({ "error": text.strip_prefix("error: ").unwrap_or(&text).trim_end() });
             let _ = print_line(document);
         }
     }

@@ -82,6 +82,9 @@ impl ScenarioSource {
             SimError::Parameter { field, value, expected } => {
                 self.refuse(field, format!("is {value}, expected {expected}"))
             }
+            SimError::Entry { path, value, expected } => {
+                self.refuse(path, format!("is {value}, expected {expected}"))
+            }
             SimError::Contract(contract::ContractError::OutOfRange { field, value, expected }) => {
                 self.refuse(field, format!("is {value}, expected {expected}"))
             }

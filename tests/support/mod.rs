@@ -127,8 +127,7 @@ impl Bench {
 /// Two directories hold the same files with the same bytes.
 pub(crate) fn check_same_files(a: &BTreeMap<PathBuf, Vec<u8>>, b: &BTreeMap<PathBuf, Vec<u8>>) {
     assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
-    let differing: Vec<&Path> =
-        a.keys().filter(|name| a[*name] != b[*name]).map(PathBuf::as_path).collect();
+    let differing: Vec<&Path> = a.keys().filter(|name| a[*name] != b[*name]).map(PathBuf::as_path).collect();
     assert!(differing.is_empty(), "{differing:?} differ");
 }
 

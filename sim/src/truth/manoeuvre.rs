@@ -23,9 +23,9 @@ impl ManoeuvreConfig {
     /// Checks text and numbers; `index` is the place in the list, counted from 0, for the message.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for a time that is none or a change of velocity outside its range.
+    /// [`SimError::Entry`] for a time that is none or a change of velocity outside its range.
     pub fn check(&self, index: usize) -> Result<(), SimError> {
-        self.time()?;
+        self.time().map_err(|error| error.in_entry(index))?;
         if self.dv_rtn_m_s.iter().all(|dv| dv.abs() <= 100.0) {
             Ok(())
         } else {
@@ -51,18 +51,16 @@ impl ManoeuvreConfig {
     pub(crate) fn refused_impulse(&self, index: usize, expected: &'static str) -> SimError {
         SimError::Parameter {
             field: "orbit.manoeuvres[].dv_rtn_m_s",
-            value: format!("{:?} (manoeuvre {index}, counted from 0)", self.dv_rtn_m_s),
+            value: format!("{:?}", self.dv_rtn_m_s),
             expected,
         }
+        .in_entry(index)
     }
 
     /// The error of a time, naming its place in the list.
     pub(crate) fn refused_time(&self, index: usize, expected: &'static str) -> SimError {
-        SimError::Parameter {
-            field: "orbit.manoeuvres[].time_utc",
-            value: format!("{} (manoeuvre {index}, counted from 0)", self.time_utc),
-            expected,
-        }
+        SimError::Parameter { field: "orbit.manoeuvres[].time_utc", value: self.time_utc.clone(), expected }
+            .in_entry(index)
     }
 }
 
@@ -133,6 +131,8 @@ mod tests {
     fn an_impulse_that_is_not_a_number_is_refused_by_its_index() {
         let manoeuvre =
             ManoeuvreConfig { time_utc: "2012-04-23T00:00:00Z".into(), dv_rtn_m_s: [f64::NAN, 0.0, 0.0] };
-        assert!(manoeuvre.check(3).unwrap_err().to_string().contains("manoeuvre 3"));
+        assert!(
+            manoeuvre.check(3).unwrap_err().to_string().contains("orbit.manoeuvres[3].dv_rtn_m_s is [NaN")
+        );
     }
 }

@@ -80,14 +80,15 @@ impl Schedule {
     /// Checks the groups and numbers their frames.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when a group is wrong by itself, a name comes twice, a group does not begin after the
-    /// last frame of the one before, there is no group, or there are too many frames.
+    /// [`SimError::Entry`] when a group is wrong by itself, a name comes twice, a group does not begin after the last
+    /// frame of the one before, or there are too many frames; [`SimError::Parameter`] when there is no group.
     pub fn new(configs: &[GroupConfig]) -> Result<Self, SimError> {
         let mut names = BTreeSet::new();
         let mut groups: Vec<Group> = Vec::with_capacity(configs.len());
         let mut first_frame = 0;
-        for config in configs {
-            config.check()?;
+        for (index, config) in configs.iter().enumerate() {
+            let refused = |field, value, expected| refused(field, value, expected).in_entry(index);
+            config.check().map_err(|error| error.in_entry(index))?;
             if !names.insert(config.name.as_str()) {
                 return Err(refused("schedule[].name", config.name.clone(), "a name used once"));
             }
@@ -212,12 +213,12 @@ mod tests {
         check(&[], "schedule");
         check(&[group(" ", start, 15.0, 1)], "name");
         check(&[group("a", start, 15.0, 0)], "count");
-        check(&[group("a", start, 15.0, u64::MAX)], "count");
+        check(&[group("a", start, 15.0, u64::MAX)], "schedule[0].count");
         check(&[group("a", start, 0.0, 1)], "cadence_s");
         check(&[group("a", start, f64::NAN, 1)], "cadence_s");
         check(
             &[group("a", start, 15.0, 1), group("a", "2012-04-24T00:00:00Z", 15.0, 1)],
-            "`a`".trim_matches('`'),
+            "schedule[1].name is a,",
         );
         // The second group begins at the last frame of the first.
         check(&[group("a", start, 15.0, 2), group("b", "2012-04-23T09:00:15Z", 15.0, 1)], "group `b`");

@@ -35,7 +35,7 @@ impl OrbitConfig {
     /// Checks everything, the order of the manoeuvres included.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first thing that is wrong.
+    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first thing that is wrong.
     pub fn check(&self) -> Result<(), SimError> {
         Trajectory::new(self).map(|_| ())
     }
@@ -96,8 +96,8 @@ impl Trajectory {
     /// Computes the arcs.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for a time that is none, an orbit outside what is supported, or a manoeuvre (named by
-    /// its index) that is out of order, not after the epoch, or leaves no supported orbit.
+    /// [`SimError::Parameter`] for an epoch that is none or an orbit outside what is supported; [`SimError::Entry`] for
+    /// a manoeuvre that is out of order, not after the epoch, or leaves no supported orbit.
     pub fn new(config: &OrbitConfig) -> Result<Self, SimError> {
         let epoch = parse_utc_of("orbit.epoch_utc", &config.epoch_utc)?;
         let target = config.target.elements()?;
@@ -234,9 +234,9 @@ mod tests {
             config.manoeuvres[k].time_utc = time.into();
             config.check().unwrap_err().to_string()
         };
-        assert!(with(0, "2012-04-22T23:00:00Z").contains("manoeuvre 0"));
-        assert!(with(1, "2012-04-23T05:00:00Z").contains("manoeuvre 1"));
-        assert!(with(1, "2012-04-23T06:00:00Z").contains("manoeuvre 1"));
+        assert!(with(0, "2012-04-22T23:00:00Z").contains("orbit.manoeuvres[0].time_utc"));
+        assert!(with(1, "2012-04-23T05:00:00Z").contains("orbit.manoeuvres[1].time_utc"));
+        assert!(with(1, "2012-04-23T06:00:00Z").contains("orbit.manoeuvres[1].time_utc"));
         assert!(with(1, "soon").contains("time_utc"));
     }
 
