@@ -5,6 +5,7 @@ use std::path::{Component, Path, PathBuf};
 
 use contract::{Camera, Frame, Mounting, Telemetry};
 use hifitime::Epoch;
+use pipeline::PipelineError;
 use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -72,6 +73,9 @@ impl CameraFile {
         }
         if !(-2.0..=15.0).contains(&self.magnitude_limit) {
             return error("magnitude_limit", self.magnitude_limit.to_string(), "-2 to 15");
+        }
+        if let Err(PipelineError::Parameter { field, value, expected }) = self.far_range.check() {
+            return error(&format!("far_range.{field}"), value, expected);
         }
         match self.star_epoch_utc.as_deref().map(parse_utc) {
             Some(Err(expected)) => {
