@@ -11,8 +11,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::{Place, create_new};
+use super::frame_file::read_image;
 use super::telemetry::read_with_lines;
-use super::{FileError, TelemetryRow, parse_utc, read_frame};
+use super::{FileError, TelemetryRow, parse_utc};
 use crate::toml_file;
 
 /// `camera.toml`: what a pipeline knows before the first frame, except the stars themselves.
@@ -149,15 +150,16 @@ impl Dataset {
     /// Reads the image of a frame.
     ///
     /// # Errors
-    /// The errors of [`read_frame`]; [`FileError::Value`] for an image whose size is not the camera's.
+    /// The errors of [`super::read_frame`]; [`FileError::Value`] for an image whose size is not the camera's.
     pub fn read(&self, frame: &DatasetFrame) -> Result<Frame, FileError> {
         let (path, row) = (&frame.path, &frame.row);
-        let image = read_frame(path, row.frame, self.camera.bit_depth, row.windows.clone())?;
+        let image = read_image(path)?;
         let camera = &self.camera.camera;
-        if (image.columns(), image.rows()) == (camera.columns, camera.rows) {
-            Ok(image)
+        // First of all: of an image of another size, the regions would be refused, and they are not what is wrong.
+        if (image.columns, image.rows) == (camera.columns, camera.rows) {
+            image.into_frame(path, row.frame, self.camera.bit_depth, row.windows.clone())
         } else {
-            let size = format!("{} × {}", image.columns(), image.rows());
+            let size = format!("{} × {}", image.columns, image.rows);
             let expected = format!("{} × {}, that of camera.toml", camera.columns, camera.rows);
             Err(FileError::value(path, Place::Header, "image size", size, expected))
         }

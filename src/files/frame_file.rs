@@ -8,6 +8,7 @@ use contract::{Frame, Window};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
+use super::raw_image::RawImage;
 use super::{FileError, TanSip, exr, fits, image16};
 
 /// The formats that frames are written in.
@@ -105,8 +106,13 @@ pub fn read_frame(
     bit_depth: u8,
     windows: Option<Vec<Window>>,
 ) -> Result<Frame, FileError> {
+    read_image(path)?.into_frame(path, number, bit_depth, windows)
+}
+
+/// Reads what a file of one of the extensions of [`read_frame`] holds, before it is taken for a frame.
+pub(super) fn read_image(path: &Path) -> Result<RawImage, FileError> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    let image = match extension.as_str() {
+    match extension.as_str() {
         "fits" | "fit" | "fts" => fits::read(path),
         "png" => image16::read(path, image::ImageFormat::Png),
         "tif" | "tiff" => image16::read(path, image::ImageFormat::Tiff),
@@ -116,8 +122,7 @@ pub fn read_frame(
                 format!("the extension `{extension}` is none of fits, fit, fts, png, tif, tiff, exr");
             Err(FileError::format(path, "image", reason))
         }
-    }?;
-    image.into_frame(path, number, bit_depth, windows)
+    }
 }
 
 #[cfg(test)]
