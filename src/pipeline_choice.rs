@@ -27,7 +27,7 @@ impl PipelineChoice {
     /// The factory. A program finds the images of its frames in `scratch`.
     ///
     /// # Errors
-    /// A [`Failure`] for a word that names no pipeline, or a program that cannot be started.
+    /// A [`Failure`] for a word that names no pipeline, a command that is none, or a limit outside its range.
     pub fn factory(
         &self,
         far_range: &FarRangeConfig,
@@ -36,6 +36,8 @@ impl PipelineChoice {
         if let Some(command) = self.word.strip_prefix(EXEC) {
             let mut factory = ExternalFactory::new(command, scratch.to_path_buf(), Arc::new(write_image));
             factory.timeout_s = self.timeout_s;
+            // Now, while nothing has been written for it.
+            factory.check()?;
             return Ok(Box::new(factory));
         }
         if self.word == FAR_RANGE {

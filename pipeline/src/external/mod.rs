@@ -50,6 +50,27 @@ impl ExternalFactory {
         Self { command: command.into(), start_timeout_s: 30.0, timeout_s: 10.0, scratch_dir, write_image }
     }
 
+    /// Checks the command and the limits, before anything is started.
+    ///
+    /// # Errors
+    /// [`ContractError::CannotBuild`] for a command that is empty or ends inside a quotation, or a limit outside its
+    /// range.
+    pub fn check(&self) -> Result<(), ContractError> {
+        self.plan().map(|_| ())
+    }
+
+    fn plan(&self) -> Result<Plan, ContractError> {
+        let mut words = shlex::split(&self.command)
+            .ok_or_else(|| self.cannot_build("the command ends inside a quotation"))?
+            .into_iter();
+        Ok(Plan {
+            program: words.next().ok_or_else(|| self.cannot_build("the command is empty"))?,
+            arguments: words.collect(),
+            start_limit: self.limit("start_timeout_s", self.start_timeout_s)?,
+            frame_limit: self.limit("timeout_s", self.timeout_s)?,
+        })
+    }
+
     fn cannot_build(&self, reason: impl Into<String>) -> ContractError {
         ContractError::CannotBuild { pipeline: self.name(), reason: reason.into() }
     }
@@ -74,6 +95,14 @@ impl fmt::Debug for ExternalFactory {
     }
 }
 
+/// What a factory's command and limits come to.
+struct Plan {
+    program: String,
+    arguments: Vec<String>,
+    start_limit: Duration,
+    frame_limit: Duration,
+}
+
 impl PipelineFactory for ExternalFactory {
     fn name(&self) -> String {
         format!("exec:{}", self.command)
@@ -82,15 +111,9 @@ impl PipelineFactory for ExternalFactory {
     /// Starts the process and greets it. A process that does not start or greets wrongly gives a pipeline whose every
     /// answer says so: only a command or a limit that cannot be meant is refused.
     fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
-        let words = shlex::split(&self.command)
-            .ok_or_else(|| self.cannot_build("the command ends inside a quotation"))?;
-        let Some((program, arguments)) = words.split_first() else {
-            return Err(self.cannot_build("the command is empty"));
-        };
-        let start_limit = self.limit("start_timeout_s", self.start_timeout_s)?;
-        let frame_limit = self.limit("timeout_s", self.timeout_s)?;
+        let Plan { program, arguments, start_limit, frame_limit } = self.plan()?;
         Ok(Box::new(External {
-            state: match start(program, arguments, setup, start_limit) {
+            state: match start(&program, &arguments, setup, start_limit) {
                 Ok(process) => State::Running(process),
                 Err(reason) => State::Dead(reason),
             },
