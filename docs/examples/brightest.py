@@ -1,49 +1,48 @@
-"""A pipeline for Boresight in plain Python: python3 docs/examples/brightest.py
+"""A pipeline for Boresight in plain Python: --pipeline "exec:python3 docs/examples/brightest.py"
 
-Takes for the target the brightest cluster that is within 8 px of a cluster of the previous frame. That works while
-the camera follows the target and the stars stream through. It knows no star list, so a hot pixel, or a bright
-star in a frame sequence that does not move, fools it. No line of sight is given: it measures in the image only.
+The target is the brightest cluster of two pixels or more that has moved by less than 8 px since the frame before:
+right while the camera follows the target and the stars stream through. It measures in the image only.
 """
 import array, json, math, sys
 
-def read_fits(path):  # 16 bits, BZERO 32768: rows of big-endian numbers after header blocks of 2880 bytes
-    with open(path, "rb") as file:
-        cards = {}
-        while "END" not in cards:
-            block = file.read(2880).decode("ascii")
-            cards |= {block[i:i + 8].strip(): block[i + 10:i + 80].split("/")[0].strip() for i in range(0, len(block), 80)}
-        columns, rows = int(cards["NAXIS1"]), int(cards["NAXIS2"])
-        pixels = array.array("h", file.read(2 * columns * rows))
-    if sys.byteorder == "little":
-        pixels.byteswap()
-    return columns, [value + 32768 for value in pixels]
+def read_fits(path):  # 16 bits; what is stored is the digital number minus 32768, so 0 is -32768
+    data = open(path, "rb").read()
+    end = next(i for i in range(0, len(data), 80) if data[i:i + 8] == b"END     ")
+    card = {data[i:i + 8].strip(): data[i + 10:i + 30] for i in range(0, end, 80)}
+    columns, start = int(card[b"NAXIS1"]), (end // 2880 + 1) * 2880
+    stored = array.array("h", data[start:start + 2 * columns * int(card[b"NAXIS2"])])
+    if sys.byteorder == "little":  # FITS is big-endian
+        stored.byteswap()
+    return columns, stored
 
-def clusters(columns, dn):  # brightness centre and total above the median of each set of connected pixels
-    ordered = sorted(dn)
-    median = ordered[len(dn) // 2]
-    threshold = median + 6 * max(1, median - ordered[len(dn) * 16 // 100])
-    left = {i for i, value in enumerate(dn) if value > threshold}
+def clusters(columns, stored):  # signal and brightness centre of each set of connected pixels that stand out
+    sample = sorted(value for value in stored[::7] if value > -32768) or [0]  # outside transmitted regions there is 0
+    median, low = sample[len(sample) // 2], sample[len(sample) * 16 // 100]
+    threshold = median + 6 * max(1, median - low)  # six standard deviations
+    left = {i for i, value in enumerate(stored) if value > threshold}
     while left:
         members = [left.pop()]
         for i in members:  # grows while it is walked
-            x = i % columns
-            for j in (i + dy * columns + dx for dy in (-1, 0, 1) for dx in (-1, 0, 1) if 0 <= x + dx < columns):
-                if j in left:
-                    left.remove(j)
-                    members.append(j)
-        total = sum(dn[i] - median for i in members)
-        yield (total, sum((dn[i] - median) * (i % columns) for i in members) / total,
-               sum((dn[i] - median) * (i // columns) for i in members) / total)
+            beside = [dx for dx in (-1, 0, 1) if 0 <= i % columns + dx < columns]
+            near = left.intersection(i + dx + dy for dx in beside for dy in (-columns, 0, columns))
+            left -= near
+            members += near
+        if len(members) > 1:  # a single one is a hot pixel
+            weights = [stored[i] - median for i in members]
+            moments = (sum(w * (i % columns) for w, i in zip(weights, members)),
+                       sum(w * (i // columns) for w, i in zip(weights, members)))
+            yield sum(weights), *(moment / sum(weights) for moment in moments)
 
 json.loads(input())  # the greeting: camera, mounting, star list
 print(json.dumps({"boresight_pipeline": 1, "name": "brightest"}), flush=True)
 previous = None
 for line in sys.stdin:
     request = json.loads(line)
-    found = sorted(clusters(*read_fits(request["image"])), reverse=True)
+    found = list(clusters(*read_fits(request["image"])))
     near = [c for c in found if any(math.dist(c[1:], p[1:]) < 8 for p in previous or [])]
     answer = {"frame": request["frame"], "status": "no_previous_frame" if previous is None else "no_target"}
     if near:
-        answer |= {"status": "detected", "x_px": near[0][1], "y_px": near[0][2]}
+        _, answer["x_px"], answer["y_px"] = max(near)
+        answer["status"] = "detected"
     previous = found
     print(json.dumps(answer), flush=True)
