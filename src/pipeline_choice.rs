@@ -8,7 +8,7 @@ use pipeline::external::ExternalFactory;
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
 
 use crate::failure::Failure;
-use crate::files::{FrameHeader, ImageFormat, write_frame};
+use crate::files::{FrameHeader, ImageFormat, format_utc, write_frame};
 use crate::toml_file;
 
 const FAR_RANGE: &str = "far_range";
@@ -34,7 +34,8 @@ impl PipelineChoice {
         scratch: &Path,
     ) -> Result<Box<dyn PipelineFactory>, Failure> {
         if let Some(command) = self.word.strip_prefix(EXEC) {
-            let mut factory = ExternalFactory::new(command, scratch.to_path_buf(), Arc::new(write_image));
+            let mut factory =
+                ExternalFactory::new(command, scratch.to_path_buf(), Arc::new(write_image), format_utc);
             factory.timeout_s = self.timeout_s;
             // Now, while nothing has been written for it.
             factory.check()?;

@@ -285,7 +285,8 @@ fn context<'a>(run_file: &RunFile, unproject: crate::score::Unproject<'a>) -> Sc
 
 fn write_score(path: &Path, score: &Score) -> Result<(), Failure> {
     let json = serde_json::to_string_pretty(score)
-        .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?;
+        .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?
+        + "\n";
     let io = |source| FileError::Io { path: path.to_owned(), doing: "create", source };
     let mut file = std::fs::File::create_new(path).map_err(io)?;
     std::io::Write::write_all(&mut file, json.as_bytes()).map_err(io)?;

@@ -56,14 +56,21 @@ impl RunFile {
     /// Reads the file.
     ///
     /// # Errors
-    /// [`Failure`] with the place of the first mistake.
+    /// [`Failure`] with the place of the first mistake, or when the scenario is no longer the one that was run.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let text = std::fs::read_to_string(path).map_err(|source| FileError::Io {
+        let text = toml_file::read_text(path).map_err(|source| FileError::Io {
             path: path.to_owned(),
             doing: "read",
             source,
         })?;
-        Ok(toml_file::parse(path, &text)?)
+        let run_file: Self = toml_file::parse(path, &text)?;
+        if sha256_hex(&to_toml(&run_file.scenario)?) == run_file.hash {
+            Ok(run_file)
+        } else {
+            let message =
+                "is not the hash of the scenario below: the file was edited after the run".to_owned();
+            Err(toml_file::refuse(path, &text, "hash", message).into())
+        }
     }
 }
 

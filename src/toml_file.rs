@@ -38,7 +38,7 @@ impl TomlError {
             span,
             help: nearest_valid_name(&message),
             path,
-            message,
+            message: in_plain_words(message),
         }
     }
 }
@@ -68,6 +68,27 @@ impl Diagnostic for TomlError {
         let label = LabeledSpan::new_with_span(Some("here".to_owned()), self.span.clone());
         Some(Box::new(std::iter::once(label)))
     }
+}
+
+/// Largest TOML file that is read, bytes.
+const MAX_BYTES: u64 = 1 << 24;
+
+/// The text of a TOML file: a pipe or a device, which may have no end, is refused.
+///
+/// # Errors
+/// Those of the operating system, and for a file that is not regular, larger than 16 MiB, or not UTF-8.
+pub fn read_text(file: &Path) -> std::io::Result<String> {
+    let metadata = std::fs::metadata(file)?;
+    if !metadata.is_file() {
+        return Err(std::io::Error::other("it is not a regular file"));
+    }
+    if metadata.len() > MAX_BYTES {
+        return Err(std::io::Error::other(format!(
+            "it has {} bytes, expected at most {MAX_BYTES}",
+            metadata.len()
+        )));
+    }
+    std::fs::read_to_string(file)
 }
 
 /// Reads `text`, which came from `file`, as a `T`.
@@ -123,6 +144,16 @@ fn locate(text: &str, path: &str) -> Option<Range<usize>> {
 /// Whether a span covers the whole text, which says nothing about the place.
 fn is_whole(span: &Range<usize>, text: &str) -> bool {
     span.start == 0 && span.end >= text.trim_end().len()
+}
+
+/// serde names Rust's types; a person reads what they mean.
+fn in_plain_words(message: String) -> String {
+    let types = ["usize", "u64", "u32", "u8"];
+    let whole = "a whole number from 0";
+    types
+        .iter()
+        .fold(message, |text, name| text.replace(&format!("expected {name}"), &format!("expected {whole}")))
+        .replace("expected f64", "expected a number")
 }
 
 /// For serde's "unknown field `x`, expected one of `a`, `b`": the nearest of the names.

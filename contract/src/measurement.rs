@@ -147,8 +147,8 @@ pub struct Outcome {
     pub camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
     /// Where that attitude comes from.
     pub attitude_source: Option<AttitudeSource>,
-    /// Stars identified in the frame.
-    pub n_stars: u32,
+    /// Stars identified in the frame; `None` when the pipeline does not tell.
+    pub n_stars: Option<u32>,
     /// Every cluster with its label; may be empty when the pipeline does not tell.
     pub clusters: Vec<Cluster>,
 }
@@ -160,7 +160,7 @@ impl Outcome {
             solution: Solution::NoSolution(reason),
             camera_from_icrs: None,
             attitude_source: None,
-            n_stars: 0,
+            n_stars: None,
             clusters: Vec::new(),
         }
     }

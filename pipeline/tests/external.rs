@@ -82,7 +82,10 @@ struct Bench {
 impl Bench {
     fn command(command: impl Into<String>) -> Self {
         let scratch = tempfile::tempdir().unwrap();
-        let factory = ExternalFactory::new(command, scratch.path().to_owned(), Arc::new(write_fits));
+        let factory =
+            ExternalFactory::new(command, scratch.path().to_owned(), Arc::new(write_fits), |time| {
+                time.to_string()
+            });
         Self { scratch, factory }
     }
 

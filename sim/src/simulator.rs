@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use contract::{Body, Camera, CameraFrame, Rotation};
+use hifitime::Unit;
 
 use crate::catalog::{Catalog, CatalogConfig};
 use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
@@ -80,13 +81,8 @@ impl Simulator {
         simulation.target.check()?;
         let trajectory = Trajectory::new(&simulation.orbit)?;
         let schedule = Schedule::new(&simulation.schedule)?;
-        // Every time of the schedule lies between the first and the last frame: if these can be seen, all can.
-        for number in [0, schedule.frame_count().saturating_sub(1)] {
-            if let Some((_, time)) = schedule.frame(number) {
-                let chaser = trajectory.at(time).chaser;
-                Observer::new(time, chaser.position_km, chaser.velocity_km_s)?;
-            }
-        }
+        let shutter = Shutter::new(&simulation.shutter, simulation.sensor.saturation_e())?;
+        check_times(&schedule, &trajectory, shutter.lag_s())?;
         let projection = Projection::new(&simulation.camera)?;
         let (columns, rows) = projection.detector();
         if let Some(roi) = &simulation.roi {
@@ -105,7 +101,7 @@ impl Simulator {
             projection,
             psf: Psf::new(&simulation.psf)?,
             sensor: Sensor::new(&simulation.sensor, columns, rows)?,
-            shutter: Shutter::new(&simulation.shutter, simulation.sensor.saturation_e())?,
+            shutter,
             roi: simulation.roi.clone(),
             seed,
             target: simulation.target.clone(),
@@ -135,4 +131,30 @@ impl Simulator {
     pub fn camera(&self) -> Result<SimulatedCamera<'_>, SimError> {
         SimulatedCamera::new(self)
     }
+}
+
+/// Checks that the chaser can see from where it is: at the time that the shutter control looks at for the first frame,
+/// and at the first and last frame. All others lie between.
+fn check_times(schedule: &Schedule, trajectory: &Trajectory, lag_s: f64) -> Result<(), SimError> {
+    let last = schedule.frame_count().saturating_sub(1);
+    for (number, earlier_s) in [(0, lag_s), (0, 0.0), (last, 0.0)] {
+        let Some((_, time)) = schedule.frame(number) else { continue };
+        let states = trajectory.at(time - earlier_s * Unit::Second);
+        let chaser = states.chaser;
+        Observer::new(time - earlier_s * Unit::Second, chaser.position_km, chaser.velocity_km_s).map_err(
+            |error| match error {
+                SimError::Parameter { value, expected, .. } => {
+                    SimError::Parameter { field: "schedule", value, expected }
+                }
+                other => other,
+            },
+        )?;
+        crate::error::require(
+            "orbit.relative",
+            states.range_km() * 1000.0,
+            "a separation of 1 m or more",
+            |m| m >= 1.0,
+        )?;
+    }
+    Ok(())
 }

@@ -1,5 +1,6 @@
 //! A directory of images to be processed: ours or anybody's.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -22,7 +23,9 @@ use crate::toml_file;
 pub struct CameraFile {
     /// Bits of the analogue-digital converter, 1 to 16.
     pub bit_depth: u8,
-    /// Magnitude V down to which stars are listed for the pipeline, −2 to 15.
+    /// Magnitude V down to which stars of the built-in catalogue are listed for the pipeline when the dataset has no
+    /// `stars.csv`, −2 to 15; without it, 7.
+    #[serde(default = "default_magnitude_limit")]
     pub magnitude_limit: f64,
     /// UTC time to which proper motion is applied in the star list, as 2012-04-25T00:00:00Z; without it, the time of
     /// the first frame.
@@ -30,11 +33,16 @@ pub struct CameraFile {
     pub star_epoch_utc: Option<String>,
     /// Nominal camera.
     pub camera: Camera,
-    /// Nominal mounting.
+    /// Nominal mounting; without it, the camera's axes are those of the body.
+    #[serde(default)]
     pub mounting: Mounting,
     /// Parameters of the built-in pipeline; without it, its defaults.
     #[serde(default)]
     pub far_range: FarRangeConfig,
+}
+
+fn default_magnitude_limit() -> f64 {
+    7.0
 }
 
 impl CameraFile {
@@ -44,7 +52,7 @@ impl CameraFile {
     /// [`FileError::Format`] with line and column for what is not TOML or has a wrong, unknown or missing field;
     /// [`FileError::Contract`] or [`FileError::Value`] for a number outside its range.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        let text = fs::read_to_string(path).map_err(|source| FileError::io(path, "read", source))?;
+        let text = toml_file::read_text(path).map_err(|source| FileError::io(path, "read", source))?;
         let file: Self = toml_file::parse(path, &text).map_err(FileError::Toml)?;
         file.check(path)?;
         Ok(file)
@@ -127,7 +135,8 @@ impl Dataset {
                 reason,
             }),
         };
-        let frames = rows.into_iter().map(locate).collect::<Result<_, _>>()?;
+        let frames: Vec<DatasetFrame> = rows.into_iter().map(locate).collect::<Result<_, _>>()?;
+        refuse_unnamed(&table, &frames)?;
         Ok(Self { camera, frames })
     }
 
@@ -164,6 +173,25 @@ impl Dataset {
             Err(FileError::value(path, Place::Header, "image size", size, expected))
         }
     }
+}
+
+/// Refuses an image that lies beside the others and that no row of the telemetry names: its row is missing.
+fn refuse_unnamed(table: &Path, frames: &[DatasetFrame]) -> Result<(), FileError> {
+    let named: BTreeSet<&Path> = frames.iter().map(|frame| frame.path.as_path()).collect();
+    let extension = |path: &Path| path.extension().map(|e| e.to_ascii_lowercase());
+    let extensions: BTreeSet<_> = named.iter().filter_map(|path| extension(path)).collect();
+    let folders: BTreeSet<&Path> = named.iter().filter_map(|path| path.parent()).collect();
+    for folder in folders {
+        let error = |source| FileError::io(folder, "open", source);
+        for entry in fs::read_dir(folder).map_err(error)? {
+            let path = entry.map_err(error)?.path();
+            if extension(&path).is_some_and(|e| extensions.contains(&e)) && !named.contains(path.as_path()) {
+                let expected = "a row that names it: the frame's telemetry is missing";
+                return Err(FileError::value(table, Place::Header, "file", path.display(), expected));
+            }
+        }
+    }
+    Ok(())
 }
 
 impl DatasetFrame {

@@ -61,7 +61,7 @@ impl MeasurementWriter {
         let quaternion = cells(outcome.camera_from_icrs.map(|rotation| rotation.wxyz()));
         let attitude = outcome.attitude_source.map_or("", AttitudeSource::code).to_owned();
         let start = [frame.to_string(), status];
-        let end = [attitude, outcome.n_stars.to_string()];
+        let end = [attitude, outcome.n_stars.map_or_else(String::new, |n| n.to_string())];
         self.0.write(start.into_iter().chain(position).chain(line_of_sight).chain(quaternion).chain(end))
     }
 
@@ -96,7 +96,7 @@ fn parse(row: &CsvRow<'_>) -> Result<Outcome, FileError> {
                 .ok_or_else(|| row.error("attitude", "`stars`, `too_few_stars`, `no_stars` or nothing"))?,
         ),
     };
-    let n_stars = if row.text("n_stars").trim().is_empty() { 0 } else { row.count("n_stars")? };
+    let n_stars = if row.text("n_stars").trim().is_empty() { None } else { Some(row.count("n_stars")?) };
     Ok(Outcome {
         solution: solution(row)?,
         camera_from_icrs: attitude(row)?,
@@ -216,7 +216,7 @@ mod tests {
             Just(AttitudeSource::TooFewStars),
             Just(AttitudeSource::NoStars),
         ]);
-        (solution, prop::option::of(vector()), source, any::<u32>()).prop_map(
+        (solution, prop::option::of(vector()), source, prop::option::of(any::<u32>())).prop_map(
             |(solution, axis, attitude_source, n_stars)| Outcome {
                 solution,
                 camera_from_icrs: axis.map(Rotation::from_rotation_vector),

@@ -31,16 +31,13 @@ impl RawImage {
         bit_depth: u8,
         windows: Option<Vec<Window>>,
     ) -> Result<Frame, FileError> {
+        if let Some(own) = self.bit_depth.filter(|own| *own != bit_depth) {
+            let expected = format!("{bit_depth}, that of the camera");
+            return Err(FileError::value(path, Place::Header, "bit depth", own, expected));
+        }
         let columns = self.columns.max(1);
-        let frame = Frame::new(
-            number,
-            self.columns,
-            self.rows,
-            self.bit_depth.unwrap_or(bit_depth),
-            self.dn,
-            windows.or(self.windows),
-        )
-        .map_err(|source| FileError::contract(path, source))?;
+        let frame = Frame::new(number, self.columns, self.rows, bit_depth, self.dn, windows.or(self.windows))
+            .map_err(|source| FileError::contract(path, source))?;
         let full_scale = frame.full_scale_dn();
         match frame.dn().iter().position(|&dn| dn > full_scale) {
             None => Ok(frame),

@@ -29,6 +29,9 @@ const LAYOUT: Layout = &[
     ("windows", Optional),
 ];
 
+/// Faster than any orbit about the Earth, km/s: beyond it the unit is wrong.
+const FASTEST_KM_S: f64 = 100.0;
+
 /// One row: the telemetry of one frame, and where its image is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TelemetryRow {
@@ -78,7 +81,7 @@ impl TelemetryWriter {
     }
 }
 
-/// Reads the table. Frames ascend and may have gaps; times never go back.
+/// Reads the table. Frames ascend and may have gaps; times ascend.
 ///
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be; an empty table is
@@ -104,8 +107,8 @@ pub(super) fn read_with_lines(path: &Path) -> Result<Vec<(u64, TelemetryRow)>, F
 fn parse(row: &CsvRow<'_>, previous: Option<&TelemetryRow>) -> Result<TelemetryRow, FileError> {
     let frame = row.frame_after(previous.map(|row| row.frame))?;
     let time = parse_utc(row.text("time_utc").trim()).map_err(|expected| row.error("time_utc", expected))?;
-    if previous.is_some_and(|previous| time < previous.telemetry.time) {
-        return Err(row.error("time_utc", "not before the time of the row above"));
+    if previous.is_some_and(|previous| time <= previous.telemetry.time) {
+        return Err(row.error("time_utc", "later than the time of the row above"));
     }
     let exposure_s = row.number("exposure_s")?;
     if exposure_s < 0.0 {
@@ -114,6 +117,9 @@ fn parse(row: &CsvRow<'_>, previous: Option<&TelemetryRow>) -> Result<TelemetryR
     let body_from_icrs = Rotation::from_wxyz(row.numbers(QUATERNION)?)
         .map_err(|error| row.error(QUATERNION[0], format!("a unit quaternion: {error}")))?;
     let velocity_km_s = row.optional_numbers(VELOCITY)?.map(Vector3::from);
+    if velocity_km_s.is_some_and(|velocity| velocity.norm() > FASTEST_KM_S) {
+        return Err(row.error(VELOCITY[0], "a velocity about the Earth of at most 100 km/s"));
+    }
     let windows = windows::parse(row.text("windows")).map_err(|expected| row.error("windows", expected))?;
     let file = Some(row.text("file")).filter(|file| !file.is_empty()).map(str::to_owned);
     let telemetry = Telemetry { time, exposure_s, body_from_icrs, velocity_km_s };

@@ -33,7 +33,7 @@ impl ScenarioSource {
             return Self::parse(word.to_owned(), PathBuf::new(), file, built_in.text.to_owned());
         }
         let file = PathBuf::from(word);
-        let text = std::fs::read_to_string(&file).map_err(|error| {
+        let text = toml_file::read_text(&file).map_err(|error| {
             let names = BUILT_IN.iter().map(|built_in| built_in.name);
             let hint = match toml_file::nearest(word, names.clone()) {
                 Some(nearest) => format!("did you mean `{nearest}`?"),

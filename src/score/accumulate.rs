@@ -119,7 +119,7 @@ impl<'a> Scorer<'a> {
             frame,
             group,
             verdict: judge(truth, objects, outcome, detector, self.context.unproject),
-            n_stars: outcome.map(|outcome| outcome.n_stars),
+            n_stars: outcome.and_then(|outcome| outcome.n_stars),
             attitude_source: outcome.and_then(|outcome| outcome.attitude_source),
         });
         Ok(&self.verdicts[self.verdicts.len() - 1])

@@ -7,7 +7,11 @@ use sim::truth::{ObjectKind, ObjectTruth, Visibility};
 /// is measured no better.
 const MIN_REACH_PX: f64 = 1.5;
 
-/// How far from an object's centre a cluster's centre may lie and still hold the object: max(`radius_px`, 1.5), px.
+/// Share of an object's radius within which the brightness centre of its image lies, whatever part of it is cut away:
+/// the centre of half a disk of radius R is 4R/(3π) = 0.42 R from the disk's.
+const CENTRE_SHARE: f64 = 0.5;
+
+/// How far the visible image of an object reaches from its centre: max(`radius_px`, 1.5), px.
 pub(super) fn reach_px(object: &ObjectTruth) -> f64 {
     // `max` drops a NaN.
     object.radius_px.max(MIN_REACH_PX)
@@ -18,9 +22,9 @@ pub(super) fn transmitted_electrons(object: &ObjectTruth) -> f64 {
     object.electrons * (1.0 - object.cut)
 }
 
-/// Whether a cluster with its centre at `position` holds the object.
+/// Whether a cluster with its centre at `position` holds the object: it lies within max(`radius_px`/2, 1.5) px.
 pub(super) fn holds(position: PixelPoint, object: &ObjectTruth) -> bool {
-    position.distance(object.position) <= reach_px(object)
+    position.distance(object.position) <= (CENTRE_SHARE * object.radius_px).max(MIN_REACH_PX)
 }
 
 /// Whether the images of two objects touch, so that they may be one cluster.

@@ -92,7 +92,7 @@ pub(crate) fn detected_at(position: PixelPoint) -> Outcome {
         solution: Solution::Detected(Measurement { position, line_of_sight: None }),
         camera_from_icrs: None,
         attitude_source: None,
-        n_stars: 0,
+        n_stars: None,
         clusters: Vec::new(),
     }
 }

@@ -171,7 +171,7 @@ pub(super) fn judge(
     let missed = |outcome| Verdict::Missed { cause: cause(truth, objects, outcome, detector) };
     let Some(answer) = outcome else { return missed(None) };
     let Some(measurement) = answer.measurement() else { return missed(outcome) };
-    let Some(error) = sound_error(measurement, truth, unproject) else {
+    let Some(error) = sound_error(measurement, truth, detector, unproject) else {
         let no_answer = Outcome::none(NoSolution::Failed("the answer is no direction".to_owned()));
         return missed(Some(&no_answer));
     };
@@ -188,14 +188,18 @@ pub(super) fn judge(
     }
 }
 
-/// The error of a measurement that has a finite position and a direction.
+/// The error of a measurement that has a position on the detector and a direction.
 fn sound_error(
     measurement: &Measurement,
     truth: &FrameTruth,
+    detector: Detector,
     unproject: Unproject<'_>,
 ) -> Option<LineOfSightError> {
-    let PixelPoint { x, y } = measurement.position;
-    if x.is_finite() && y.is_finite() { LineOfSightError::of(measurement, truth, unproject) } else { None }
+    if measurement.position.is_on_detector(detector.columns, detector.rows) {
+        LineOfSightError::of(measurement, truth, unproject)
+    } else {
+        None
+    }
 }
 
 /// What the cluster at the reported position holds.

@@ -21,6 +21,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use hifitime::Epoch;
+
 use contract::{ContractError, Frame, NoSolution, Outcome, Pipeline, PipelineFactory, Setup, Telemetry};
 
 use process::{Fault, Process};
@@ -28,6 +30,9 @@ use process::{Fault, Process};
 /// Writes the image of a frame as FITS (16-bit, BZERO 32768) at a path that does not exist yet; the error is a text
 /// for the outcome.
 pub type WriteImage = dyn Fn(&Frame, &Telemetry, &Path) -> Result<(), String> + Send + Sync;
+
+/// Writes a time as UTC in ISO 8601 with `Z`, as the caller's files have it: leap seconds are its business.
+pub type WriteTime = fn(Epoch) -> String;
 
 /// Builds pipelines that are processes, one process a sequence.
 #[derive(Clone)]
@@ -42,12 +47,20 @@ pub struct ExternalFactory {
     pub scratch_dir: PathBuf,
     /// Writes an image.
     pub write_image: Arc<WriteImage>,
+    /// Writes a time.
+    pub write_time: WriteTime,
 }
 
 impl ExternalFactory {
     /// A factory with 30 s to start and 10 s a frame.
-    pub fn new(command: impl Into<String>, scratch_dir: PathBuf, write_image: Arc<WriteImage>) -> Self {
-        Self { command: command.into(), start_timeout_s: 30.0, timeout_s: 10.0, scratch_dir, write_image }
+    pub fn new(
+        command: impl Into<String>,
+        scratch_dir: PathBuf,
+        write_image: Arc<WriteImage>,
+        write_time: WriteTime,
+    ) -> Self {
+        let command = command.into();
+        Self { command, start_timeout_s: 30.0, timeout_s: 10.0, scratch_dir, write_image, write_time }
     }
 
     /// Checks the command and the limits, before anything is started.
@@ -121,6 +134,7 @@ impl PipelineFactory for ExternalFactory {
             frame_limit,
             images: Images { directory: self.scratch_dir.clone(), sequence: next_sequence() },
             write_image: Arc::clone(&self.write_image),
+            write_time: self.write_time,
         }))
     }
 }
@@ -146,6 +160,7 @@ struct External {
     frame_limit: Duration,
     images: Images,
     write_image: Arc<WriteImage>,
+    write_time: WriteTime,
 }
 
 enum State {
@@ -172,7 +187,7 @@ impl External {
         let image = self.images.place(frame.number());
         (self.write_image)(frame, telemetry, &image.path)
             .map_err(|error| format!("the image cannot be written: {error}"))?;
-        let request = protocol::request(frame, telemetry, &image.path)?;
+        let request = protocol::request(frame, telemetry, (self.write_time)(telemetry.time), &image.path)?;
         match process.exchange(request, self.frame_limit) {
             Ok(line) => protocol::outcome(&line, frame.number(), self.size_px),
             Err(fault) => {

@@ -122,7 +122,12 @@ pub(super) fn check_greeting(answer: &[u8]) -> Result<(), String> {
 }
 
 /// The line of a frame.
-pub(super) fn request(frame: &Frame, telemetry: &Telemetry, image: &Path) -> Result<Vec<u8>, String> {
+pub(super) fn request(
+    frame: &Frame,
+    telemetry: &Telemetry,
+    time_utc: String,
+    image: &Path,
+) -> Result<Vec<u8>, String> {
     let image = image.to_str().ok_or_else(|| format!("the path {} is not UTF-8", image.display()))?;
     let windows =
         frame.windows().map(|windows| windows.iter().map(|w| [w.x, w.y, w.columns, w.rows]).collect());
@@ -131,18 +136,12 @@ pub(super) fn request(frame: &Frame, telemetry: &Telemetry, image: &Path) -> Res
         image,
         windows,
         telemetry: TelemetryLine {
-            time_utc: time_utc(telemetry),
+            time_utc,
             exposure_s: telemetry.exposure_s,
             q_sc_j2000: telemetry.body_from_icrs.wxyz(),
             v_orbital_j2000_km_s: telemetry.velocity_km_s.map(Into::into),
         },
     })
-}
-
-/// ISO 8601 with nanoseconds and Z.
-fn time_utc(telemetry: &Telemetry) -> String {
-    let (year, month, day, hour, minute, second, nanos) = telemetry.time.to_gregorian_utc();
-    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{nanos:09}Z")
 }
 
 /// The outcome that an answer to frame `number` says, or why the answer cannot be used.
@@ -169,7 +168,7 @@ pub(super) fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Re
         solution,
         camera_from_icrs,
         attitude_source: None,
-        n_stars: answer.n_stars.unwrap_or(0),
+        n_stars: answer.n_stars,
         clusters: Vec::new(),
     })
 }
@@ -241,7 +240,7 @@ mod tests {
         let measurement = got.measurement().unwrap();
         assert_eq!(measurement.position, PixelPoint::new(1.5, 79.5));
         assert_eq!(measurement.line_of_sight, Some(Direction::from_unit(Vector3::z())));
-        assert_eq!((got.n_stars, got.camera_from_icrs), (3, None));
+        assert_eq!((got.n_stars, got.camera_from_icrs), (Some(3), None));
     }
 
     #[test]

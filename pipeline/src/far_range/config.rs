@@ -20,7 +20,8 @@ pub struct FarRangeConfig {
     pub thresholds: ThresholdConfig,
     /// What weights the pixels of a cluster: `intensity` as in the paper, or `above_background`.
     pub weights: Weights,
-    /// Most clusters kept in a frame, those of the largest weighted size, 1 to 10000. Bounds the time of linking.
+    /// Most clusters kept in a frame, those of the largest weighted size, 1 to 2000. Bounds the time of linking, which
+    /// grows with the cube of the clusters that could all be linked with each other.
     pub max_clusters: u32,
     /// Identification of stars.
     pub identification: IdentificationConfig,
@@ -71,9 +72,7 @@ impl FarRangeConfig {
     /// [`PipelineError::Parameter`] for the first one outside its range, by its path.
     pub fn check(&self) -> Result<(), PipelineError> {
         self.thresholds.check()?;
-        require("max_clusters", f64::from(self.max_clusters), "1 to 10000", |v| {
-            (1.0..=10_000.0).contains(&v)
-        })?;
+        require("max_clusters", f64::from(self.max_clusters), "1 to 2000", |v| (1.0..=2000.0).contains(&v))?;
         self.identification.check()?;
         self.tracking.check()?;
         self.hotspots.check()?;
@@ -103,7 +102,7 @@ mod tests {
         };
         let expected = "attitude.filter_lambda is 1, expected 0 to below 1";
         assert_eq!(refusal(r#"{"attitude": {"filter_lambda": 1.0}}"#), expected);
-        assert_eq!(refusal(r#"{"max_clusters": 0}"#), "max_clusters is 0, expected 1 to 10000");
+        assert_eq!(refusal(r#"{"max_clusters": 0}"#), "max_clusters is 0, expected 1 to 2000");
         assert!(
             refusal(r#"{"tracking": {"weight_size": 0, "weight_displacement": 0}}"#).contains("weight_size")
         );

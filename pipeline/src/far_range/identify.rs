@@ -21,7 +21,7 @@ pub struct IdentificationConfig {
 
 impl Default for IdentificationConfig {
     fn default() -> Self {
-        Self { radius_px: 3.0, max_magnitude: 7.0 }
+        Self { radius_px: 3.0, max_magnitude: 30.0 }
     }
 }
 

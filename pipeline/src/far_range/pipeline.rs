@@ -227,7 +227,7 @@ impl Pipeline for FarRange {
             solution,
             camera_from_icrs: Some(camera_from_icrs),
             attitude_source: Some(attitude_source),
-            n_stars: seen.len() as u32,
+            n_stars: Some(seen.len() as u32),
             clusters,
         }
     }

@@ -55,7 +55,7 @@ impl Catalog {
     /// [`CatalogError`] with the file, the line and the place in it.
     pub fn read(path: &Path) -> Result<Self, CatalogError> {
         let bytes =
-            std::fs::read(path).map_err(|source| CatalogError::Io { path: path.to_path_buf(), source })?;
+            read_file(path).map_err(|source| CatalogError::Io { path: path.to_path_buf(), source })?;
         let (rows, exclusions) = read::parse(path, &bytes)?;
         Ok(Self { stars: unique(path, rows)?, sha256: hex(&Sha256::digest(&bytes)), exclusions })
     }
@@ -123,6 +123,24 @@ fn unique(path: &Path, rows: Vec<(usize, CatalogStar)>) -> Result<Vec<CatalogSta
 /// Bytes in lower-case hexadecimal.
 pub(super) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Largest catalogue that is read, bytes: ten times hip_main.dat.
+const MAX_BYTES: u64 = 1 << 29;
+
+/// A whole file: a pipe or a device, which may have no end, is refused.
+fn read_file(path: &Path) -> std::io::Result<Vec<u8>> {
+    let metadata = std::fs::metadata(path)?;
+    if !metadata.is_file() {
+        return Err(std::io::Error::other("it is not a regular file"));
+    }
+    if metadata.len() > MAX_BYTES {
+        return Err(std::io::Error::other(format!(
+            "it has {} bytes, expected at most {MAX_BYTES}",
+            metadata.len()
+        )));
+    }
+    std::fs::read(path)
 }
 
 #[cfg(test)]
