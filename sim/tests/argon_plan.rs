@@ -75,7 +75,7 @@ fn the_schedule_has_the_papers_counts_and_its_sample_image() {
     assert_eq!(counts, [1634, 2978, 3319, 5415, 2731]);
     assert_eq!(schedule.frame_count(), 16_077);
     let sample = Epoch::from_gregorian_utc_hms(2012, 4, 25, 12, 18, 54);
-    assert_eq!(schedule.frame(1634 + 2978 + 1516), Some((2, sample)));
+    assert_eq!(schedule.frame(1634 + 2978 + 1516), Some(("day 3", sample)));
 }
 
 /// Half fields of the camera: 9.1° along columns, 6.8° along rows.
