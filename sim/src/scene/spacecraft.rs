@@ -132,4 +132,42 @@ mod tests {
     fn in_umbra_no_light_comes() {
         assert_eq!(SPHERE.magnitude(3.0, AU_KM, 1.0, 0.0), f64::INFINITY);
     }
+
+    #[test]
+    fn a_beacon_fades_with_distance_and_knows_no_sun() {
+        let beacon = TargetConfig::Beacon { magnitude_at_1_km: 2.0 };
+        assert_eq!(beacon.magnitude(1.0, AU_KM, 0.0, 1.0), 2.0);
+        assert_eq!(beacon.magnitude(10.0, AU_KM, 3.0, 0.0), 7.0);
+    }
+
+    /// A white sphere of 1 m at 1 km, full phase, at 1 au: −26.76 − 2.5 log10(2/3 · 1e-6) = −11.32.
+    #[test]
+    fn a_sphere_has_the_magnitude_of_its_closed_form() {
+        let white = TargetConfig::LambertSphere { radius_m: 1.0, albedo: 1.0 };
+        assert!((white.magnitude(1.0, AU_KM, 0.0, 1.0) + 11.3198).abs() < 1e-4);
+        // Twice as far from the Sun it is a quarter as bright.
+        let far = white.magnitude(1.0, 2.0 * AU_KM, 0.0, 1.0) - white.magnitude(1.0, AU_KM, 0.0, 1.0);
+        assert!((far - 5.0 * libm::log10(2.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_black_sphere_and_a_new_one_give_no_light() {
+        let black = TargetConfig::LambertSphere { radius_m: 1.0, albedo: 0.0 };
+        assert_eq!(black.magnitude(1.0, AU_KM, 0.0, 1.0), f64::INFINITY);
+        // Φ(π) is 4e-17, not 0: fainter than anything all the same.
+        assert!(SPHERE.magnitude(1.0, AU_KM, std::f64::consts::PI, 1.0) > 25.0);
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_named() {
+        let message = |config: TargetConfig| config.check().unwrap_err().to_string();
+        assert!(
+            message(TargetConfig::LambertSphere { radius_m: 0.0, albedo: 0.5 })
+                .contains("target.radius_m is 0")
+        );
+        assert!(
+            message(TargetConfig::LambertSphere { radius_m: 1.0, albedo: 1.1 }).contains("target.albedo")
+        );
+        assert!(message(TargetConfig::Beacon { magnitude_at_1_km: f64::NAN }).contains("magnitude_at_1_km"));
+    }
 }

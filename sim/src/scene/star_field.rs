@@ -8,7 +8,8 @@ use crate::optics::{Projection, RadiometryConfig};
 use crate::truth::{ObjectKind, Observer, StarMotion};
 
 /// How far a star may stand from its catalogued place: proper motion (Barnard's star, 10.4″ a year, over 60
-/// years), aberration and parallax together stay below 0.2°.
+/// years), aberration and parallax together stay below 0.2°. A star of a user's catalogue that moves faster than
+/// 11″ a year is lost when its catalogued place is farther than this from the cone about the field.
 const CATALOG_MARGIN: Angle = Angle::from_degrees(0.2);
 
 /// The catalogue, ready to be looked at.
@@ -109,4 +110,115 @@ fn is_within(position: PixelPoint, projection: &Projection, margin_px: f64) -> b
     let (columns, rows) = projection.detector();
     let inside = |v: f64, n: usize| v >= -0.5 - margin_px && v <= n as f64 - 0.5 + margin_px;
     inside(position.x, columns) && inside(position.y, rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::CatalogStar;
+    use crate::truth::clock;
+    use contract::Camera;
+    use nalgebra::Vector3;
+
+    const RADIOMETRY: RadiometryConfig = RadiometryConfig { zero_point_e_per_s: 1e6 };
+
+    fn projection() -> Projection {
+        Projection::new(&Camera {
+            columns: 300,
+            rows: 200,
+            focal_length_mm: 20.0,
+            pixel_width_um: 10.0,
+            pixel_height_um: 10.0,
+            principal_x_px: 149.5,
+            principal_y_px: 99.5,
+            radial: [0.0; 3],
+            tangential: [0.0; 2],
+        })
+        .unwrap()
+    }
+
+    fn observer() -> Observer {
+        let time = clock::parse_utc("2012-04-25T12:00:00Z").unwrap();
+        Observer::new(time, Vector3::new(7000.0, 0.0, 0.0), Vector3::new(0.0, 7.5, 0.0)).unwrap()
+    }
+
+    fn looking_at(ra_deg: f64, dec_deg: f64) -> Rotation<CameraFrame, Icrs> {
+        let z = *Direction::<Icrs>::from_ra_dec(Angle::from_degrees(ra_deg), Angle::from_degrees(dec_deg))
+            .vector();
+        let x = z.cross(&Vector3::new(0.1, 0.2, 0.7)).normalize();
+        Rotation::from_axes(&x, &z.cross(&x), &z)
+    }
+
+    fn seen(field: &StarField, camera_from_icrs: Rotation<CameraFrame, Icrs>, margin_px: f64) -> Vec<Source> {
+        let mut sources = Vec::new();
+        field.look(&observer(), camera_from_icrs, &projection(), margin_px, &mut sources);
+        sources
+    }
+
+    /// What the shutter control follows must be what is drawn.
+    #[test]
+    fn the_brightest_is_the_brightest_of_those_on_the_detector() {
+        let field = StarField::new(&Catalog::hipparcos2(), &RADIOMETRY);
+        for (ra_deg, dec_deg) in [(84.0, -1.0), (101.0, -16.0), (266.4, -29.0), (0.0, 90.0), (180.0, 0.0)] {
+            let camera_from_icrs = looking_at(ra_deg, dec_deg);
+            let stars = seen(&field, camera_from_icrs, 0.0);
+            let expected = stars.iter().map(|star| star.electrons_per_s).fold(0.0, f64::max);
+            let brightest =
+                |at_least| field.brightest(&observer(), camera_from_icrs, &projection(), at_least);
+            assert!(expected > 0.0);
+            assert_eq!(brightest(0.0), expected);
+            assert_eq!(brightest(2.0 * expected), 2.0 * expected, "something brighter than all stars");
+        }
+    }
+
+    #[test]
+    fn a_margin_adds_stars_around_the_detector_and_keeps_the_others() {
+        let field = StarField::new(&Catalog::hipparcos2(), &RADIOMETRY);
+        let (inside, around) =
+            (seen(&field, looking_at(84.0, -1.0), 0.0), seen(&field, looking_at(84.0, -1.0), 20.0));
+        assert!(inside.iter().all(|star| around.contains(star) && star.position.is_on_detector(300, 200)));
+        let added = around.iter().filter(|star| !star.position.is_on_detector(300, 200));
+        // 11 % of the area more each way: 340 × 240 against 300 × 200 is a factor of 1.36.
+        let share = added.count() as f64 / inside.len() as f64;
+        assert!((0.15..0.6).contains(&share), "{share}");
+        assert!(around.is_sorted_by(|a, b| a.id < b.id));
+    }
+
+    /// A known limit, see [`CATALOG_MARGIN`]: a star that moves 90″ a year, of a user's catalogue, has gone 0.53° from
+    /// 1991.25 to 2012 and is not found at the edge of the field. A slower one in the same place is.
+    #[test]
+    fn a_star_faster_than_any_known_is_lost_at_the_edge() {
+        let camera_from_icrs = looking_at(40.0, 0.0);
+        let icrs_from_camera = camera_from_icrs.inverse();
+        let corner = icrs_from_camera * projection().unproject(PixelPoint::new(2.0, 2.0)).unwrap();
+        let boresight = icrs_from_camera * Direction::z();
+        let years = 21.065;
+        let found = |arcsec_per_yr: f64| {
+            // Straight away from the boresight, back along the way that the star has come.
+            let outwards = (corner.vector() - boresight.vector()).normalize();
+            let back = Angle::from_arcsec(arcsec_per_yr * years).radians();
+            let start: Direction<Icrs> = Direction::from_vector(corner.vector() + outwards * back).unwrap();
+            // The field is near the equator: right ascension is as long as declination to 1e-3.
+            let pm = |to: Angle, from: Angle| (to.arcsec() - from.arcsec()) * 1000.0 / years;
+            let star = CatalogStar {
+                id: 1,
+                ra_rad: start.ra().radians(),
+                dec_rad: start.dec().radians(),
+                parallax_mas: 0.0,
+                pm_ra_mas_per_yr: pm(corner.ra(), start.ra()),
+                pm_dec_mas_per_yr: pm(corner.dec(), start.dec()),
+                radial_velocity_km_s: 0.0,
+                hp_mag: 5.0,
+                b_v: None,
+                v_i: None,
+            };
+            let motion = StarMotion::new(&star);
+            let at = projection().project(&(camera_from_icrs * observer().apparent(&motion))).unwrap();
+            assert!(at.is_on_detector(300, 200), "{at:?}");
+            let prepared = PreparedStar { id: 1, motion, magnitude: 5.0, electrons_per_s: 1e4 };
+            let field = StarField { index: ConeIndex::new(&[star]), stars: vec![prepared] };
+            seen(&field, camera_from_icrs, 0.0).len()
+        };
+        assert_eq!((found(10.4), found(90.0)), (1, 0));
+    }
 }
