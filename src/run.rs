@@ -1,9 +1,9 @@
 //! Simulate, process, score: what the commands `run`, `render`, `process` and `score` do.
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use contract::{Pipeline, PipelineFactory, Setup};
+use contract::{NoSolution, Pipeline, PipelineFactory, Setup, Solution};
 use hifitime::Epoch;
 use sim::Simulator;
 use sim::truth::{FrameTruth, ObjectTruth};
@@ -40,6 +40,15 @@ pub enum Expectation {
     Kept,
     /// Dropped.
     Dropped,
+}
+
+/// What a run gave.
+#[derive(Debug)]
+pub struct Ran {
+    /// Score and verdicts.
+    pub scored: Scored,
+    /// The first failure of the pipeline, if it failed at all.
+    pub first_failure: Option<FirstFailure>,
 }
 
 /// A scenario with its simulator and star list, ready to fly.
@@ -113,7 +122,7 @@ impl Prepared {
         flight: &Flight,
         factory: &dyn PipelineFactory,
         done: impl Fn(),
-    ) -> Result<Scored, Failure> {
+    ) -> Result<Ran, Failure> {
         let mut dataset = self.dataset(directory, flight)?;
         let mut answers =
             Answers::create(&directory.measurements(), &directory.clusters(), factory.build(&self.setup())?)?;
@@ -127,10 +136,10 @@ impl Prepared {
             Ok(())
         })?;
         dataset.finish()?;
-        answers.finish()?;
+        let first_failure = answers.finish()?;
         let scored = scorer.finish();
         write_score(&directory.score(), &scored.score)?;
-        Ok(scored)
+        Ok(Ran { scored, first_failure })
     }
 
     fn dataset(&self, directory: &RunDirectory, flight: &Flight) -> Result<DatasetWriter, Failure> {
@@ -175,14 +184,87 @@ pub fn process(
     measurements: &Path,
     clusters: &Path,
     done: impl Fn(),
-) -> Result<u64, Failure> {
-    let mut answers = Answers::create(measurements, clusters, factory.build(setup)?)?;
+) -> Result<Processed, Failure> {
+    // Under other names until all is done, so that a run that fails leaves nothing in the way of the next one.
+    let partial = Partial::of(&[measurements, clusters])?;
+    let mut answers = Answers::create(&partial.paths[0], &partial.paths[1], factory.build(setup)?)?;
     for frame in dataset.frames() {
         answers.answer(&dataset.read(frame)?, frame.telemetry())?;
         done();
     }
-    answers.finish()?;
-    Ok(dataset.frames().len() as u64)
+    let first_failure = answers.finish()?;
+    partial.complete()?;
+    Ok(Processed { frames: dataset.frames().len() as u64, first_failure })
+}
+
+/// What [`process`] did.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Processed {
+    /// Frames answered.
+    pub frames: u64,
+    /// The first failure of the pipeline, if it failed at all.
+    pub first_failure: Option<FirstFailure>,
+}
+
+/// The first frame that a pipeline failed at, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FirstFailure {
+    /// Number of the frame.
+    pub frame: u64,
+    /// The reason.
+    pub reason: String,
+}
+
+/// Files that get their names when they are complete; until then they go by `NAME.partial`, and are removed when
+/// the value is dropped.
+struct Partial {
+    names: Vec<PathBuf>,
+    paths: Vec<PathBuf>,
+}
+
+impl Partial {
+    fn of(names: &[&Path]) -> Result<Self, FileError> {
+        for name in names {
+            if name.exists() {
+                let reason = "exists; nothing is overwritten";
+                return Err(FileError::OutputTaken { path: name.to_path_buf(), reason });
+            }
+        }
+        let partial = |name: &Path| {
+            let mut path = name.as_os_str().to_owned();
+            path.push(".partial");
+            PathBuf::from(path)
+        };
+        let names: Vec<PathBuf> = names.iter().map(|name| name.to_path_buf()).collect();
+        let files = Self { paths: names.iter().map(|name| partial(name)).collect(), names };
+        files.remove(); // What a process that was killed left.
+        Ok(files)
+    }
+
+    fn complete(self) -> Result<(), FileError> {
+        for (path, name) in self.paths.iter().zip(&self.names) {
+            // A link, unlike a renaming, never replaces a file.
+            std::fs::hard_link(path, name).map_err(|source| FileError::Io {
+                path: name.clone(),
+                doing: "create",
+                source,
+            })?;
+        }
+        Ok(())
+    }
+
+    fn remove(&self) {
+        for path in &self.paths {
+            // It may not be there.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
+impl Drop for Partial {
+    fn drop(&mut self) {
+        self.remove();
+    }
 }
 
 /// Scores measurements, somebody's or our own, against the truth in `directory`. Clusters are evidence for the causes
@@ -243,6 +325,7 @@ struct Answers {
     pipeline: Box<dyn Pipeline>,
     measurements: MeasurementWriter,
     clusters: TableWriter<FrameCluster>,
+    first_failure: Option<FirstFailure>,
 }
 
 impl Answers {
@@ -251,6 +334,7 @@ impl Answers {
             pipeline,
             measurements: MeasurementWriter::create(measurements)?,
             clusters: TableWriter::create(clusters)?,
+            first_failure: None,
         })
     }
 
@@ -260,15 +344,21 @@ impl Answers {
         telemetry: &contract::Telemetry,
     ) -> Result<contract::Outcome, FileError> {
         let outcome = self.pipeline.process(frame, telemetry);
+        if let Solution::NoSolution(NoSolution::Failed(reason)) = &outcome.solution
+            && self.first_failure.is_none()
+        {
+            self.first_failure = Some(FirstFailure { frame: frame.number(), reason: reason.clone() });
+        }
         self.measurements.write(frame.number(), &outcome)?;
         let rows = outcome.clusters.iter().map(|&cluster| FrameCluster { frame: frame.number(), cluster });
         self.clusters.write(rows)?;
         Ok(outcome)
     }
 
-    fn finish(self) -> Result<(), FileError> {
+    fn finish(self) -> Result<Option<FirstFailure>, FileError> {
         self.measurements.finish()?;
-        self.clusters.finish()
+        self.clusters.finish()?;
+        Ok(self.first_failure)
     }
 }
 

@@ -79,7 +79,9 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     let processed =
         run::process(&dataset, &setup, factory.as_ref(), &measurements, &clusters, || progress.inc(1));
     progress.finish_and_clear();
-    let frames = processed?;
+    let processed = processed?;
+    output.first_failure(processed.first_failure.as_ref());
+    let frames = processed.frames;
     output.answer(
         &json!({ "measurements": measurements, "clusters": clusters, "frames": frames }),
         format!("{frames} frames processed, answers in {}", measurements.display()),

@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::failure::Failure;
+use crate::run::FirstFailure;
 
 /// The two streams, and whether stdout belongs to a machine.
 #[derive(Debug, Clone, Copy)]
@@ -35,6 +36,13 @@ impl Output {
     pub(super) fn note(&self, text: impl Display) {
         // Nobody can be told that stderr is closed.
         let _ = writeln!(std::io::stderr(), "{text}");
+    }
+
+    /// Tells of a pipeline that failed, so that a program which never started is not taken for a poor one.
+    pub(super) fn first_failure(&self, failure: Option<&FirstFailure>) {
+        if let Some(FirstFailure { frame, reason }) = failure {
+            self.note(format!("the pipeline failed, first at frame {frame}: {reason}"));
+        }
     }
 
     /// Tells why there is no answer: on stderr with the place of the mistake, and with `--json` on stdout too.

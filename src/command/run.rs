@@ -62,11 +62,13 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
     let progress = output.progress(frames, &format!("{}, {}", source.name, factory.name()));
     let scored = prepared.run(&directory, &flight, factory.as_ref(), || progress.inc(1));
     progress.finish_and_clear();
-    let score = scored?.score;
+    let ran = scored?;
+    output.first_failure(ran.first_failure.as_ref());
+    let score = ran.scored.score;
 
     let style = TableStyle {
         styled: output.is_terminal(),
-        reference: (source.name == "argon").then_some(&ARGON_TABLE_2),
+        reference: source.is_argon().then_some(&ARGON_TABLE_2),
         ..TableStyle::default()
     };
     let table = far_range(&score, style);

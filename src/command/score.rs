@@ -8,6 +8,8 @@ use super::Answer;
 use super::output::Output;
 use crate::failure::Failure;
 use crate::run;
+use crate::run_file::RunFile;
+use crate::scenario::is_argon;
 use crate::score::ARGON_TABLE_2;
 use crate::table::{TableStyle, far_range};
 
@@ -28,9 +30,10 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
         || Some(arguments.measurements.with_file_name("clusters.parquet")).filter(|path| path.is_file());
     let clusters = arguments.clusters.clone().or_else(beside);
     let score = run::score(&arguments.directory, &arguments.measurements, clusters.as_deref())?.score;
+    let is_argon = is_argon(&RunFile::read(&arguments.directory.join("run.toml"))?.scenario);
     let style = TableStyle {
         styled: output.is_terminal(),
-        reference: (score.scenario == "argon").then_some(&ARGON_TABLE_2),
+        reference: is_argon.then_some(&ARGON_TABLE_2),
         ..TableStyle::default()
     };
     output.answer(&score, far_range(&score, style))?;

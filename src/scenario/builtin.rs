@@ -1,5 +1,7 @@
 //! Scenarios that are embedded in the binary.
 
+use super::Scenario;
+
 /// A scenario of the folder `scenarios/`, embedded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BuiltIn {
@@ -14,6 +16,14 @@ pub const BUILT_IN: &[BuiltIn] = &[
     BuiltIn { name: "argon", text: include_str!("../../scenarios/argon.toml") },
     BuiltIn { name: "starting-point", text: STARTING_POINT },
 ];
+
+/// Whether a scenario flies what the built-in `argon` flies: the same orbits and the same images. Only then do the
+/// figures that the paper publishes stand beside its own.
+pub fn is_argon(scenario: &Scenario) -> bool {
+    let built_in = BUILT_IN.iter().find(|built_in| built_in.name == "argon");
+    let argon = built_in.and_then(|argon| toml::from_str::<Scenario>(argon.text).ok());
+    argon.is_some_and(|argon| argon.orbit == scenario.orbit && argon.schedule == scenario.schedule)
+}
 
 /// A small scenario with a comment on every line: what `scenario new` writes.
 pub const STARTING_POINT: &str = include_str!("../../scenarios/starting-point.toml");

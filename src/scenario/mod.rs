@@ -3,7 +3,7 @@
 mod builtin;
 mod source;
 
-pub use builtin::{BUILT_IN, BuiltIn, STARTING_POINT};
+pub use builtin::{BUILT_IN, BuiltIn, STARTING_POINT, is_argon};
 pub use source::ScenarioSource;
 
 use contract::Camera;

@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use pipeline::PipelineError;
+use sim::catalog::CatalogSource;
 use sim::{SimError, Simulator};
 
-use super::{BUILT_IN, Scenario};
+use super::{BUILT_IN, Scenario, is_argon};
 use crate::failure::Failure;
+use crate::run_file::RunFile;
 use crate::toml_file;
 
 /// A scenario that was read and checked, with its text for the places of later mistakes.
@@ -23,7 +25,7 @@ pub struct ScenarioSource {
 }
 
 impl ScenarioSource {
-    /// Reads `word`: a built-in name or the path of a TOML file.
+    /// Reads `word`: a built-in name, the path of a TOML file, or of the `run.toml` of a run to be repeated.
     ///
     /// # Errors
     /// A [`Failure`] when there is no such scenario, or with the place of the first mistake in it.
@@ -43,6 +45,10 @@ impl ScenarioSource {
                 "`{word}` is neither a built-in scenario nor a TOML file that can be read ({error}); {hint}"
             ))
         })?;
+        if file.file_name().is_some_and(|name| name == "run.toml") {
+            let RunFile { name, scenario, .. } = RunFile::read(&file)?;
+            return Ok(Self { name, folder: PathBuf::new(), scenario, file, text });
+        }
         let name =
             file.file_stem().map_or_else(|| word.to_owned(), |stem| stem.to_string_lossy().into_owned());
         let folder = file.parent().map(Path::to_path_buf).unwrap_or_default();
@@ -54,8 +60,19 @@ impl ScenarioSource {
     /// # Errors
     /// A [`Failure`] with the place of the first mistake.
     pub fn parse(name: String, folder: PathBuf, file: PathBuf, text: String) -> Result<Self, Failure> {
-        let scenario: Scenario = toml_file::parse(&file, &text)?;
+        let mut scenario: Scenario = toml_file::parse(&file, &text)?;
+        if let CatalogSource::File(path) = &mut scenario.catalog.source
+            && let Ok(absolute) = std::path::absolute(folder.join(&*path))
+        {
+            // So that run.toml can be run from anywhere.
+            *path = absolute.to_string_lossy().into_owned();
+        }
         Ok(Self { name, folder, scenario, file, text })
+    }
+
+    /// Whether the published figures of ARGON may stand beside those of this scenario.
+    pub fn is_argon(&self) -> bool {
+        is_argon(&self.scenario)
     }
 
     /// The simulator of this scenario; every value is checked.

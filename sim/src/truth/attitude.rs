@@ -8,14 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::drift::{Drift, DriftConfig, check_axes, radians, turned_by, white};
 use super::guidance::Guidance;
 use super::mounting::MountingConfig;
-use super::trajectory::{States, Trajectory};
+use super::trajectory::States;
 use crate::SimError;
 use crate::error::require;
 use crate::randomness::{Effect, Seed};
-
-/// Half the interval of the difference that gives the angular rate, s. Its error is (2πh/P)²/6 of the rate of a
-/// sinusoid of period P (2e-4 at 10 s), and rounding 1e-12 rad/s.
-const HALF_STEP_S: f64 = 0.05;
 
 /// How the chaser is pointed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -93,19 +89,6 @@ impl Attitude {
         turned_by(self.drift.at(states.time_s) + jitter) * self.guided(states)
     }
 
-    /// The true angular rate of the body against ICRS at `time_s` seconds after the orbit's epoch, rad/s, along the
-    /// body's axes: of guidance and slow control error, without the frame's jitter. Within 0.05 s of a manoeuvre the
-    /// local orbital frame's small jump is spread over 0.1 s.
-    pub fn angular_rate_rad_s(&self, trajectory: &Trajectory, time_s: f64) -> Vector3<f64> {
-        let smooth = |time_s: f64| {
-            let states = trajectory.at_seconds(time_s);
-            turned_by(self.drift.at(time_s)) * self.guided(&states)
-        };
-        let later_from_earlier = smooth(time_s + HALF_STEP_S) * smooth(time_s - HALF_STEP_S).inverse();
-        // Components turn against the axes.
-        -later_from_earlier.quaternion().scaled_axis() / (2.0 * HALF_STEP_S)
-    }
-
     /// The attitude that guidance asks for.
     fn guided(&self, states: &States) -> Rotation<Body, Icrs> {
         self.body_from_camera * self.guidance.camera_from_icrs(states)
@@ -115,6 +98,7 @@ impl Attitude {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::truth::Trajectory;
     use crate::truth::orbit::ElementsConfig;
     use crate::truth::relative::RelativeElements;
     use crate::truth::trajectory::OrbitConfig;
@@ -216,31 +200,6 @@ pub(crate) mod tests {
         for axis in 0..3 {
             assert!((chi2[axis] - n as f64).abs() < 400.0, "{chi2}");
         }
-    }
-
-    #[test]
-    fn the_angular_rate_in_the_local_orbital_frame_is_the_orbital_rate_about_the_normal() {
-        let attitude = Attitude::new(&quiet(), &MountingConfig::default(), SEED).unwrap();
-        let rate = attitude.angular_rate_rad_s(&trajectory(), 3000.0);
-        // The body is the camera here: N = −y. The oblateness changes the rate by 1e-3, the chaser's e of 4e-5 by 2e-4.
-        assert!((rate.y / -1.04862e-3 - 1.0).abs() < 2e-3, "{rate}");
-        // The node's drift of 2e-7 rad/s remains.
-        assert!(rate.xz().norm() < 3e-7, "{rate}");
-    }
-
-    #[test]
-    fn the_angular_rate_is_that_of_the_truth() {
-        let mut config = restless();
-        config.control.jitter_arcsec = [0.0; 3];
-        let attitude = Attitude::new(&config, &mounting(), SEED).unwrap();
-        let trajectory = trajectory();
-        let at = |time_s| attitude.truth(&trajectory.at_seconds(time_s), 0);
-        let rate = attitude.angular_rate_rad_s(&trajectory, 777.0);
-        // Turned on by the rate for half a second, the attitude is that of half a second later; the acceleration of
-        // 60″ in 97 s leaves (2π/97)²·3e-4·0.125 = 2e-7 rad.
-        let ahead = turned_by(rate * 0.5) * at(777.0);
-        assert!(ahead.angle_to(&at(777.5)).radians() < 4e-7);
-        assert!(turned_by(rate * -0.5).angle_to(&turned_by(rate * 0.5)).radians() > 1e-3);
     }
 
     #[test]
