@@ -1,5 +1,6 @@
 //! Simulate, process, score: what the commands `run`, `render`, `process` and `score` do.
 
+use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
@@ -164,7 +165,7 @@ impl Prepared {
 }
 
 /// Has a pipeline process a dataset, real images included, and writes its answers to `measurements`, with its
-/// clusters beside them.
+/// clusters beside them. When it fails, neither file is left: half a table would be in the way of the next attempt.
 ///
 /// # Errors
 /// A [`Failure`] when an image cannot be read or a file not be written.
@@ -176,13 +177,22 @@ pub fn process(
     clusters: &Path,
     done: impl Fn(),
 ) -> Result<u64, Failure> {
-    let mut answers = Answers::create(measurements, clusters, factory.build(setup)?)?;
+    let answers = Answers::create(measurements, clusters, factory.build(setup)?)?;
+    answer_all(dataset, answers, done).inspect_err(|_| {
+        for made in [measurements, clusters] {
+            // The failure itself is what is told.
+            let _ = fs::remove_file(made);
+        }
+    })?;
+    Ok(dataset.frames().len() as u64)
+}
+
+fn answer_all(dataset: &Dataset, mut answers: Answers, done: impl Fn()) -> Result<(), FileError> {
     for frame in dataset.frames() {
         answers.answer(&dataset.read(frame)?, frame.telemetry())?;
         done();
     }
-    answers.finish()?;
-    Ok(dataset.frames().len() as u64)
+    answers.finish()
 }
 
 /// Scores measurements, somebody's or our own, against the truth in `directory`. Clusters are evidence for the causes
@@ -247,11 +257,11 @@ struct Answers {
 
 impl Answers {
     fn create(measurements: &Path, clusters: &Path, pipeline: Box<dyn Pipeline>) -> Result<Self, FileError> {
-        Ok(Self {
-            pipeline,
-            measurements: MeasurementWriter::create(measurements)?,
-            clusters: TableWriter::create(clusters)?,
-        })
+        let writer = MeasurementWriter::create(measurements)?;
+        let clusters = TableWriter::create(clusters).inspect_err(|_| {
+            let _ = fs::remove_file(measurements);
+        })?;
+        Ok(Self { pipeline, measurements: writer, clusters })
     }
 
     fn answer(
@@ -288,7 +298,7 @@ fn write_score(path: &Path, score: &Score) -> Result<(), Failure> {
         .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?
         + "\n";
     let io = |source| FileError::Io { path: path.to_owned(), doing: "create", source };
-    let mut file = std::fs::File::create_new(path).map_err(io)?;
+    let mut file = fs::File::create_new(path).map_err(io)?;
     std::io::Write::write_all(&mut file, json.as_bytes()).map_err(io)?;
     Ok(())
 }
