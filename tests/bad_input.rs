@@ -6,6 +6,7 @@ mod support;
 
 use std::fs;
 
+use boresight::scenario::{BUILT_IN, STARTING_POINT};
 use support::Bench;
 
 /// The command refuses these words with a message that has these parts; with `--json` the message is one JSON
@@ -34,17 +35,26 @@ fn check_refused_words(bench: &Bench, words: &[&str], parts: &[&str]) {
 mod scenarios {
     use super::*;
 
-    /// A scenario file with one line replaced is refused.
+    /// A scenario file with a text replaced is refused, at the line of the new text.
     fn check_edited(old: &str, new: &str, parts: &[&str]) {
+        let text = STARTING_POINT.split(old).next().unwrap();
+        let place = format!("mine.toml:{}:", 1 + text.matches('\n').count());
+        check_mistake(old, new, &[&[place.as_str()], parts].concat());
+    }
+
+    /// A scenario file with a text replaced is refused by the commands that would use it, and by the one that checks it.
+    fn check_mistake(old: &str, new: &str, parts: &[&str]) {
         let bench = Bench::new();
         bench.boresight("scenario new mine.toml").done();
         bench.edit("mine.toml", old, new);
-        let line = 1 + bench.read("mine.toml").split(new).next().unwrap().matches('\n').count();
-        let place = format!("mine.toml:{line}:");
-        let parts = [&[place.as_str()], parts].concat();
-        check_refused(&bench, "scenario check mine.toml", &parts);
-        check_refused(&bench, "run mine.toml --frames 0..2 --out run", &parts);
-        check_refused(&bench, "render mine.toml --frames 0..2 --out set", &parts);
+        check_refused(&bench, "run mine.toml --frames 0..2 --out run", parts);
+        check_refused(&bench, "render mine.toml --frames 0..2 --out set", parts);
+        let check = bench.boresight("scenario check mine.toml");
+        assert_eq!(check.status, Some(1), "{}", check.stderr);
+        assert!(parts.iter().all(|part| check.stdout.contains(part)), "{parts:?} in\n{}", check.stdout);
+        let check = bench.boresight("scenario check mine.toml --json");
+        assert_eq!(check.status, Some(1), "{}", check.stderr);
+        assert_eq!(check.json()["ok"], false);
     }
 
     #[test]
@@ -80,7 +90,7 @@ mod scenarios {
     #[test]
     fn text_that_is_not_toml_has_line_and_column() {
         check_edited("seed = 1 #", "seed = = 1 #", &[":8: "]);
-        check_edited("[psf]", "[psf", &["mine.toml:"]);
+        check_edited("[psf]", "[psf", &[":5: "]);
     }
 
     #[test]
@@ -90,12 +100,13 @@ mod scenarios {
             "gian_e_per_dn = 10.0",
             &["`gian_e_per_dn`", "did you mean `gain_e_per_dn`?"],
         );
-        check_edited("[psf]", "[pfs]", &["`pfs`", "did you mean `psf`?"]);
+        check_edited("[shutter]", "[shuter]", &["`shuter`", "did you mean `shutter`?"]);
     }
 
     #[test]
     fn a_missing_key_is_named_with_its_table() {
-        check_edited("sigma_px = 0.8\n", "", &["sigma_px"]);
+        // The place is that of the table.
+        check_mistake("sigma_px = 0.8\n", "", &["mine.toml:42:1: psf", "`sigma_px`"]);
     }
 
     #[test]
@@ -134,6 +145,20 @@ mod scenarios {
             "start_utc = \"yesterday\"",
             &["schedule[0].start_utc", "yesterday"],
         );
+    }
+
+    #[test]
+    fn a_mistake_in_a_later_group_or_manoeuvre_is_found_there() {
+        let argon = BUILT_IN.iter().find(|scenario| scenario.name == "argon").unwrap().text;
+        for (old, new, path) in [
+            ("count = 5415", "count = 0", "schedule[3].count"),
+            ("time_utc = \"2012-04-25T22:24:07Z\"", "time_utc = \"later\"", "orbit.manoeuvres[6].time_utc"),
+        ] {
+            let bench = Bench::new();
+            bench.write("mine.toml", argon.replace(old, new));
+            let line = 1 + argon.split(old).next().unwrap().matches('\n').count();
+            check_refused(&bench, "run mine.toml --out run", &[&format!("mine.toml:{line}:"), path]);
+        }
     }
 
     #[test]

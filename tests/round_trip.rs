@@ -4,6 +4,9 @@
 
 mod support;
 
+use std::path::PathBuf;
+
+use boresight::files::read_expected;
 use contract::PixelPoint;
 use serde_json::Value;
 use sim::truth::{FrameTruth, ObjectKind};
@@ -59,6 +62,41 @@ fn a_run_with_images_is_a_dataset_too() {
     bench.boresight("process run --out again/measurements.csv").done();
     for file in ["measurements.csv", "clusters.parquet"] {
         bench.check_same(&format!("again/{file}"), &format!("run/{file}"));
+    }
+}
+
+#[test]
+fn expected_images_are_the_mean_of_the_frames_and_change_nothing_else() {
+    let bench = Bench::new();
+    bench.boresight("render starting-point --frames 100..102 --format png --out plain").done();
+    bench.boresight("render starting-point --frames 100..102 --format png --expected --out set").done();
+    let mut files = bench.tree("set");
+    let expected: Vec<PathBuf> =
+        files.keys().filter(|file| file.starts_with("truth/expected")).cloned().collect();
+    assert_eq!(expected, ["truth/expected/000100.exr", "truth/expected/000101.exr"].map(PathBuf::from));
+    files.retain(|file, _| !expected.contains(file));
+    check_same_files(&files, &bench.tree("plain"));
+
+    for frame in ["000100", "000101"] {
+        let expected = read_expected(&bench.path(&format!("set/truth/expected/{frame}.exr"))).unwrap();
+        let image = image::open(bench.path(&format!("set/frames/{frame}.png"))).unwrap().into_luma16();
+        let (bias_dn, gain_e_per_dn, saturation_e) = (40.0, 10.0, 40_000.0);
+        let residuals_dn: Vec<f64> = image
+            .iter()
+            .zip(&expected.electrons)
+            .map(|(dn, electrons)| (f64::from(*dn), f64::from(*electrons)))
+            .filter(|(_, electrons)| *electrons < 0.9 * saturation_e)
+            .map(|(dn, electrons)| dn - bias_dn - electrons / gain_e_per_dn)
+            .collect();
+        let n = residuals_dn.len() as f64;
+        let mean_dn = residuals_dn.iter().sum::<f64>() / n;
+        let variance_dn2 = residuals_dn.iter().map(|r| r * r).sum::<f64>() / n;
+        assert!(n > 430_000.0, "{n} pixels below saturation");
+        // Five standard errors of the mean: 0.012 DN. A frame against another's expectation, a bias or a rounding
+        // that is forgotten, is beyond it.
+        assert!(mean_dn.abs() < 5.0 * (variance_dn2 / n).sqrt(), "frame {frame}: {mean_dn} DN");
+        // Read noise of 15 e-, the shot noise of a few electrons of dark current and background, and rounding.
+        assert!((1.5..2.0).contains(&variance_dn2.sqrt()), "frame {frame}: {} DN", variance_dn2.sqrt());
     }
 }
 
