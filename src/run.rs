@@ -1,7 +1,7 @@
 //! Simulate, process, score: what the commands `run`, `render`, `process` and `score` do.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use contract::{NoSolution, Pipeline, PipelineFactory, Setup, Solution};
 use hifitime::Epoch;
@@ -11,8 +11,8 @@ use sim::truth::{FrameTruth, ObjectTruth};
 use crate::dataset_writer::{DatasetWriter, save_image};
 use crate::failure::Failure;
 use crate::files::{
-    Dataset, Expected, FileError, FrameCluster, ImageFormat, MeasurementWriter, RunDirectory, StarRow,
-    TableReader, TableWriter, read_measurements, write_expected,
+    Dataset, Expected, FileError, FrameCluster, ImageFormat, MeasurementWriter, PartialFiles, RunDirectory,
+    StarRow, TableReader, TableWriter, read_measurements, write_expected,
 };
 use crate::flight::fly;
 use crate::run_file::RunFile;
@@ -186,8 +186,8 @@ pub fn process(
     done: impl Fn(),
 ) -> Result<Processed, Failure> {
     // Under other names until all is done, so that a run that fails leaves nothing in the way of the next one.
-    let partial = Partial::of(&[measurements, clusters])?;
-    let mut answers = Answers::create(&partial.paths[0], &partial.paths[1], factory.build(setup)?)?;
+    let partial = PartialFiles::of(&[measurements, clusters])?;
+    let mut answers = Answers::create(partial.path(0), partial.path(1), factory.build(setup)?)?;
     for frame in dataset.frames() {
         answers.answer(&dataset.read(frame)?, frame.telemetry())?;
         done();
@@ -213,58 +213,6 @@ pub struct FirstFailure {
     pub frame: u64,
     /// The reason.
     pub reason: String,
-}
-
-/// Files that get their names when they are complete; until then they go by `NAME.partial`, and are removed when
-/// the value is dropped.
-struct Partial {
-    names: Vec<PathBuf>,
-    paths: Vec<PathBuf>,
-}
-
-impl Partial {
-    fn of(names: &[&Path]) -> Result<Self, FileError> {
-        for name in names {
-            if name.exists() {
-                let reason = "exists; nothing is overwritten";
-                return Err(FileError::OutputTaken { path: name.to_path_buf(), reason });
-            }
-        }
-        let partial = |name: &Path| {
-            let mut path = name.as_os_str().to_owned();
-            path.push(".partial");
-            PathBuf::from(path)
-        };
-        let names: Vec<PathBuf> = names.iter().map(|name| name.to_path_buf()).collect();
-        let files = Self { paths: names.iter().map(|name| partial(name)).collect(), names };
-        files.remove(); // What a process that was killed left.
-        Ok(files)
-    }
-
-    fn complete(self) -> Result<(), FileError> {
-        for (path, name) in self.paths.iter().zip(&self.names) {
-            // A link, unlike a renaming, never replaces a file.
-            std::fs::hard_link(path, name).map_err(|source| FileError::Io {
-                path: name.clone(),
-                doing: "create",
-                source,
-            })?;
-        }
-        Ok(())
-    }
-
-    fn remove(&self) {
-        for path in &self.paths {
-            // It may not be there.
-            let _ = std::fs::remove_file(path);
-        }
-    }
-}
-
-impl Drop for Partial {
-    fn drop(&mut self) {
-        self.remove();
-    }
 }
 
 /// Scores measurements, somebody's or our own, against the truth in `directory`. Clusters are evidence for the causes

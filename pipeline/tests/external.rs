@@ -84,7 +84,8 @@ impl Bench {
         let scratch = tempfile::tempdir().unwrap();
         let factory =
             ExternalFactory::new(command, scratch.path().to_owned(), Arc::new(write_fits), |time| {
-                time.to_string()
+                let (year, month, day, hour, minute, second, nanos) = time.to_gregorian_utc();
+                format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{nanos:09}Z")
             });
         Self { scratch, factory }
     }

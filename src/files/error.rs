@@ -112,7 +112,7 @@ pub enum FileError {
         reason: &'static str,
     },
     /// A place for output that is taken.
-    #[error("{path} {reason}; give another directory with --out", path = path.display())]
+    #[error("{path} {reason}; give another place with --out", path = path.display())]
     OutputTaken {
         /// The directory.
         path: PathBuf,

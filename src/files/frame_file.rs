@@ -94,8 +94,8 @@ pub fn write_frame(
 /// Reads a frame of anybody's making, of the format that the extension names: `fits`, `fit`, `fts`, `png`, `tif`,
 /// `tiff` or `exr`, in any case.
 ///
-/// Values are rounded to whole DN, halves away from zero, and raised to 0 where negative. `bit_depth` holds where
-/// the file says nothing of it; `windows`, when given, come before those of the file.
+/// Values are rounded to whole DN, halves away from zero, and raised to 0 where negative. a file that tells another
+/// `bit_depth` is refused; `windows`, when given, come before those of the file.
 ///
 /// # Errors
 /// A [`FileError`] for a file that cannot be read, an image that is not grey, larger than
@@ -156,7 +156,7 @@ pub(super) mod tests {
         let directory = tempdir().unwrap();
         let path = directory.path().join("a").with_extension(format.extension());
         write_frame(&path, format, frame, &header()).unwrap();
-        read_frame(&path, frame.number(), 12, windows).unwrap()
+        read_frame(&path, frame.number(), frame.bit_depth(), windows).unwrap()
     }
 
     proptest! {

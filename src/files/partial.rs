@@ -1,0 +1,71 @@
+//! Files that are not there until they are complete.
+
+use std::path::{Path, PathBuf};
+
+use super::FileError;
+
+/// Files that get their names when they are complete; until then they go by `NAME.partial`, and are removed when
+/// the value is dropped.
+#[derive(Debug)]
+pub struct PartialFiles {
+    names: Vec<PathBuf>,
+    paths: Vec<PathBuf>,
+}
+
+impl PartialFiles {
+    /// Files that will be `names`; none of them may exist.
+    ///
+    /// # Errors
+    /// [`FileError::OutputTaken`] when one does.
+    pub fn of(names: &[&Path]) -> Result<Self, FileError> {
+        for name in names {
+            if name.exists() {
+                let reason = "exists; nothing is overwritten";
+                return Err(FileError::OutputTaken { path: name.to_path_buf(), reason });
+            }
+        }
+        let partial = |name: &Path| {
+            let mut path = name.as_os_str().to_owned();
+            path.push(".partial");
+            PathBuf::from(path)
+        };
+        let names: Vec<PathBuf> = names.iter().map(|name| name.to_path_buf()).collect();
+        let files = Self { paths: names.iter().map(|name| partial(name)).collect(), names };
+        files.remove(); // What a process that was killed left.
+        Ok(files)
+    }
+
+    /// Where the file of the name number `index` is written meanwhile.
+    pub fn path(&self, index: usize) -> &Path {
+        &self.paths[index]
+    }
+
+    /// Gives the files their names.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when a file of that name has come up meanwhile.
+    pub fn complete(self) -> Result<(), FileError> {
+        for (path, name) in self.paths.iter().zip(&self.names) {
+            // A link, unlike a renaming, never replaces a file.
+            std::fs::hard_link(path, name).map_err(|source| FileError::Io {
+                path: name.clone(),
+                doing: "create",
+                source,
+            })?;
+        }
+        Ok(())
+    }
+
+    fn remove(&self) {
+        for path in &self.paths {
+            // It may not be there.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
+impl Drop for PartialFiles {
+    fn drop(&mut self) {
+        self.remove();
+    }
+}
