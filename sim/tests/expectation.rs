@@ -9,11 +9,19 @@
 mod small_scene;
 
 use boresight_sim::Simulation;
+use boresight_sim::catalog::CatalogConfig;
+use boresight_sim::onboard::ShutterConfig;
 use small_scene::{restless, simulator, still};
 
 #[test]
 fn the_expected_image_holds_the_electrons_of_the_truth_table_and_the_flat_level() {
-    for simulation in [still(), restless()] {
+    // Without a magnitude limit, in a hundredth of a second: objects of less than an electron.
+    let faint = Simulation {
+        catalog: CatalogConfig::default(),
+        shutter: ShutterConfig::Fixed { exposure_s: 0.01 },
+        ..still()
+    };
+    for simulation in [still(), restless(), faint] {
         let simulator = simulator(&simulation);
         let mut camera = simulator.camera().unwrap();
         for frame in 0..20 {
@@ -130,8 +138,10 @@ fn two_hundred_frames_agree_with_their_expectation() {
     let chi2: f64 = z.iter().map(|z| z * z).sum();
     assert!(((chi2 - n) / (2.0 * n).sqrt()).abs() < FIVE_SIGMA, "chi-square of {chi2} for {n} pixels");
 
-    // Each way in which a pixel is drawn: by the table, with some electrons on top, by the sampler.
-    for (signal_e, at_least) in [(0.0..=0.0, 2000), (1e-9..=4.0, 2000), (4.0..=1e6, 200)] {
+    // Each way in which a pixel is drawn: by the table, with some electrons on top, by the sampler; and the brightest,
+    // in which an error of the gain shows best.
+    for (signal_e, at_least) in [(0.0..=0.0, 2000), (1e-9..=4.0, 2000), (4.0..=1e6, 200), (1000.0..=1e6, 10)]
+    {
         let (sigmas, count) = mean_of(&scatter, signal_e.clone());
         assert!(count > at_least, "{count} pixels of {signal_e:?} e⁻");
         assert!(sigmas.abs() < FIVE_SIGMA, "{count} pixels of {signal_e:?} e⁻: {sigmas} standard deviations");
@@ -150,7 +160,7 @@ fn the_noise_of_neighbours_in_space_and_time_is_independent() {
     }
 }
 
-/// The null control: what the test above would miss. A tenth of an electron is a hundredth of a digital number.
+/// The null control: what the test above must not miss. A tenth of an electron is a hundredth of a digital number.
 #[test]
 fn saboteur_a_tenth_of_an_electron_too_much_is_seen() {
     let (sigmas, _) = mean_of(&scatter(&still(), 0.1), 0.0..=0.0);

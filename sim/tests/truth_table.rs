@@ -13,7 +13,7 @@ use boresight_sim::catalog::{Catalog, CatalogConfig};
 use boresight_sim::optics::{Projection, Psf, Stamp};
 use boresight_sim::truth::{
     FrameTruth, Guidance, ObjectKind, ObjectTruth, Observer, Shadow, StarMotion, Trajectory, Visibility,
-    clock, ephemeris,
+    clock, ephemeris, shadow,
 };
 use boresight_sim::{Exposure, Simulation};
 use contract::{Angle, Direction, Icrs, PixelPoint};
@@ -317,6 +317,7 @@ fn in_the_earths_shadow_the_target_fades_through_penumbra_and_is_gone_in_umbra()
     simulation.schedule[0].cadence_s = 2.0;
     simulation.schedule[0].count = 3000;
     let simulator = simulator(&simulation);
+    let trajectory = Trajectory::new(&simulation.orbit).unwrap();
     let mut camera = simulator.camera().unwrap();
     let (mut umbra, mut penumbra, mut changes) = (0, 0, Vec::new());
     let mut before = None;
@@ -356,6 +357,16 @@ fn in_the_earths_shadow_the_target_fades_through_penumbra_and_is_gone_in_umbra()
         }
         if before.replace(truth.shadow) != Some(truth.shadow) {
             changes.push(truth.shadow);
+            // Where exactly: the two seconds before, in steps of 10 ms, or 75 m.
+            for step in 0..200 {
+                let at =
+                    trajectory.at(truth.time - hifitime::Unit::Millisecond * (10 * step)).target.position_km;
+                let told = shadow::classify(shadow::sunlit_fraction(&at, &sun_km));
+                assert!(
+                    shadow_of(&at, &sun_km).is_none_or(|expected| told == expected),
+                    "{step} before {frame}"
+                );
+            }
         }
     }
     // Through the shadow once: a third of a revolution of 5990 s, and on each side some 8 s in which the Sun sets. The
