@@ -111,7 +111,7 @@ mod scenarios {
 
     #[test]
     fn a_value_of_the_wrong_type_is_named() {
-        check_edited("seed = 1 #", "seed = \"one\" #", &["seed", "string \"one\"", "u64"]);
+        check_edited("seed = 1 #", "seed = \"one\" #", &["seed", "string \"one\"", "a whole number"]);
         check_edited("kind = \"gaussian\"", "kind = \"airy\"", &["`airy`", "`gaussian`"]);
     }
 

@@ -124,9 +124,9 @@ fn world_coordinates(cards: &mut Cards<'_>, wcs: &TanSip) -> Result<(), FileErro
     for (name, terms) in [("A", &wcs.a), ("B", &wcs.b), ("AP", &wcs.ap), ("BP", &wcs.bp)] {
         polynomial(cards, name, wcs.order, terms)?;
     }
-    cards.comment("World coordinates are astrometric: stellar aberration is folded into");
-    cards.comment("CRVAL, CD and the SIP polynomials, which are fitted to the whole mapping");
-    cards.comment(&format!("from the sky to the detector; largest residual {:.1e} pix.", wcs.residual_px));
+    cards.comment("World coordinates are astrometric, made from the truth: stellar");
+    cards.comment("aberration is folded into CRVAL, CD and the SIP polynomials,");
+    cards.comment(&format!("which are fitted; largest residual {:.1e} pix.", wcs.residual_px));
     Ok(())
 }
 

@@ -60,7 +60,7 @@ impl TelemetryWriter {
     /// Writes one row. Numbers are written so that they read back to the same bits, the time to the nanosecond.
     ///
     /// # Errors
-    /// [`FileError::Value`] for a time that UTC cannot name (inside a leap second), [`FileError::Io`].
+    /// [`FileError::Io`].
     pub fn write(&mut self, row: &TelemetryRow) -> Result<(), FileError> {
         let telemetry = &row.telemetry;
         let time = format_utc(telemetry.time);

@@ -37,7 +37,7 @@ pub mod names {
     pub const RA_MEDIAN_DEG: &str = "ra_median_deg";
     /// Median Dec error of the correct, degrees.
     pub const DEC_MEDIAN_DEG: &str = "dec_median_deg";
-    /// Mean number of identified stars, over the answered frames.
+    /// Mean number of identified stars, over the frames whose answer tells it.
     pub const STARS_MEAN: &str = "stars_mean";
     /// Attitude solved from the stars of the frame itself, of all frames.
     pub const ATTITUDE_FROM_STARS_RATE: &str = "attitude_from_stars_rate";

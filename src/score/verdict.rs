@@ -14,16 +14,16 @@ use super::cause::{Cause, Detector, cause};
 /// What the oracle says about one frame: exactly one of three.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Verdict {
-    /// The pipeline has no target. An answer whose place or line of sight is no direction (not finite, or off every
-    /// possible image) is no answer and is missed too.
+    /// The pipeline has no target. An answer whose place is not on the detector, or which has no direction, is no answer
+    /// and is missed too.
     Missed {
         /// Why.
         cause: Cause,
     },
     /// The pipeline has the target.
     ///
-    /// An object belongs to the chosen cluster when its true centre lies within max(`radius_px`, 1.5) px of the
-    /// reported position. The answer is correct when the target belongs to it and more than half of the electrons
+    /// An object belongs to the chosen cluster when its true centre lies within max(`radius_px`/2, 1.5) px of
+    /// the reported position. The answer is correct when the target belongs to it and more than half of the electrons
     /// of all that belongs to it (stars and hot pixels included) are the target's. Only transmitted electrons
     /// count: electrons × (1 − cut).
     Correct {

@@ -70,7 +70,9 @@ impl Shutter {
     /// [`SimError::Parameter`] for a number out of range.
     pub fn new(config: &ShutterConfig, saturation_e: f64) -> Result<Self, SimError> {
         config.check()?;
-        require("saturation of the sensor, e⁻", saturation_e, "greater than 0", |v| v > 0.0)?;
+        require("sensor.bias_dn", saturation_e, "below full scale (value: electrons at saturation)", |v| {
+            v > 0.0
+        })?;
         Ok(Self { config: config.clone(), saturation_e })
     }
 
