@@ -120,6 +120,7 @@ mod scenarios {
         for (old, new, parts) in [
             ("gain_e_per_dn = 10.0", "gain_e_per_dn = -1.0", ["sensor.gain_e_per_dn", "is -1, expected"]),
             ("bit_depth = 12", "bit_depth = 17", ["sensor.bit_depth", "is 17, expected"]),
+            ("bias_dn = 40.0", "bias_dn = 5000.0", ["sensor.bias_dn", "is 5000, expected"]),
             (
                 "magnitude_limit = 6.5",
                 "magnitude_limit = 99",
@@ -251,7 +252,7 @@ mod output {
     fn measurements_are_not_overwritten() {
         let bench = dataset();
         bench.write("mine.csv", "mine");
-        check_refused(&bench, "process set --out mine.csv", &["mine.csv", "exists", "--out"]);
+        check_refused(&bench, "process set --out mine.csv", &["mine.csv", "cannot create", "exists"]);
         check_refused(&bench, "process set --out nowhere/mine.csv", &["nowhere/mine.csv", "cannot create"]);
         bench.write("new/clusters.parquet", "mine");
         check_refused(&bench, "process set --out new/mine.csv", &["new/clusters.parquet", "exists"]);
@@ -371,6 +372,11 @@ mod telemetry {
     }
 
     #[test]
+    fn a_frame_whose_row_is_missing_is_named_by_its_image() {
+        check(|table| drop(table.remove(2)), &["frames/000021.png", "the frame's telemetry is missing"]);
+    }
+
+    #[test]
     fn an_image_outside_the_dataset_is_refused() {
         check_cell(2, "file", "../set/frames/000020.png", &["outside the dataset"]);
         check_cell(2, "file", "/etc/passwd", &["outside the dataset"]);
@@ -395,7 +401,12 @@ mod telemetry {
     fn frames_given_twice_or_out_of_order_are_refused() {
         check_cell(4, "frame", "21", &["`frame` is `21`", "expected"]);
         check(|table| table.swap(2, 3), &["line 4", "`frame` is `21`", "expected"]);
-        check_cell(4, "time_utc", "2012-04-22T00:00:00Z", &["`time_utc`", "later than"]);
+        check_cell(
+            4,
+            "time_utc",
+            "2012-04-22T00:00:00Z",
+            &["`time_utc`", "later than the time of the row above"],
+        );
     }
 
     #[test]
@@ -500,6 +511,7 @@ mod images {
         check("fits", with_card("NAXIS1", "NAXIS1  =                   -1"), &["NAXIS1", "`-1`"]);
         check("fits", with_card("NAXIS2", "NAXIS2  =                  579"), &["752 × 579", "752 × 580"]);
         check("fits", with_card("BITPIX", "BITPIX  =                   12"), &["BITPIX", "`12`"]);
+        check("fits", with_card("BITDEPTH", "BITDEPTH=                   14"), &["`14`", "12"]);
     }
 
     #[test]
@@ -608,6 +620,9 @@ mod measurements {
         let bench = dataset();
         bench.write("mine.csv", format!("{HEADER}\n20,no_target,,\n"));
         check_refused(&bench, "score nowhere mine.csv", &["nowhere/run.toml", "No such file"]);
+        bench.edit("set/run.toml", "gain_e_per_dn = 10.0", "gain_e_per_dn = 11.0");
+        check_refused(&bench, "score set mine.csv", &["set/run.toml:4:8: hash", "edited after the run"]);
+        bench.edit("set/run.toml", "gain_e_per_dn = 11.0", "gain_e_per_dn = 10.0");
         bench.write("set/clusters.parquet", "no table");
         let words = "score set mine.csv --clusters set/clusters.parquet";
         check_refused(&bench, words, &["set/clusters.parquet", "not a readable"]);

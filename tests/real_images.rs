@@ -16,9 +16,7 @@ use support::Bench;
 type Grey16 = ImageBuffer<Luma<u16>, Vec<u16>>;
 
 /// What the outsider's camera.toml says: nothing that has a default.
-const CAMERA: &str = "magnitude_limit = 6.5
-
-[camera]
+const CAMERA: &str = "[camera]
 columns = 752
 rows = 580
 focal_length_mm = 20.187

@@ -79,6 +79,8 @@ impl Simulator {
         let seed = Seed { seed: simulation.seed, case: 0 };
         simulation.radiometry.check()?;
         simulation.target.check()?;
+        // Before the shutter, which takes the sensor's saturation for granted.
+        simulation.sensor.check()?;
         let trajectory = Trajectory::new(&simulation.orbit)?;
         let schedule = Schedule::new(&simulation.schedule)?;
         simulation.sensor.check()?;

@@ -150,8 +150,10 @@ impl Answer {
     pub(crate) fn refused(self, parts: &[&str]) -> Self {
         assert_eq!(self.status, Some(2), "boresight {}\n{}", self.words, self.stderr);
         assert!(!self.stderr.contains("panicked"), "{}", self.stderr);
+        // Long messages are broken into lines.
+        let message = self.stderr.replace("\n  | ", " ");
         for part in parts {
-            assert!(self.stderr.contains(part), "boresight {}: `{part}` in\n{}", self.words, self.stderr);
+            assert!(message.contains(part), "boresight {}: `{part}` in\n{}", self.words, self.stderr);
         }
         self
     }

@@ -65,7 +65,7 @@ pub struct SensorConfig {
     pub bit_depth: u8,
     /// Electrons a digital number, 0.05 to 1e5.
     pub gain_e_per_dn: f64,
-    /// Digital number of a pixel without electrons, 0 to 65535; fractions are allowed.
+    /// Digital number of a pixel without electrons, 0 to less than 2^bit_depth − 1; fractions are allowed.
     pub bias_dn: f64,
     /// Electrons that a pixel holds, 1 to 1e9; more are lost (no blooming).
     pub full_well_e: f64,
@@ -92,7 +92,9 @@ impl SensorConfig {
         let within = |low: f64, high: f64| move |v: f64| (low..=high).contains(&v);
         require("sensor.bit_depth", f64::from(self.bit_depth), "8 to 16", within(8.0, 16.0))?;
         require("sensor.gain_e_per_dn", self.gain_e_per_dn, "0.05 to 1e5", within(0.05, 1e5))?;
-        require("sensor.bias_dn", self.bias_dn, "0 to 65535", within(0.0, 65535.0))?;
+        let full_scale_dn = f64::from(self.full_scale_dn());
+        let expected = "0 or more, and less than the largest digital number, 2^bit_depth - 1";
+        require("sensor.bias_dn", self.bias_dn, expected, |v| (0.0..full_scale_dn).contains(&v))?;
         require("sensor.full_well_e", self.full_well_e, "1 to 1e9", within(1.0, 1e9))?;
         require("sensor.read_noise_e", self.read_noise_e, "0 to 500", within(0.0, 500.0))?;
         require("sensor.dark_current_e_per_s", self.dark_current_e_per_s, "0 to 1e6", within(0.0, 1e6))?;
