@@ -252,7 +252,7 @@ mod output {
     fn measurements_are_not_overwritten() {
         let bench = dataset();
         bench.write("mine.csv", "mine");
-        check_refused(&bench, "process set --out mine.csv", &["mine.csv", "cannot create", "exists"]);
+        check_refused(&bench, "process set --out mine.csv", &["mine.csv", "exists", "--out"]);
         check_refused(&bench, "process set --out nowhere/mine.csv", &["nowhere/mine.csv", "cannot create"]);
         bench.write("new/clusters.parquet", "mine");
         check_refused(&bench, "process set --out new/mine.csv", &["new/clusters.parquet", "exists"]);

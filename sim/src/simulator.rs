@@ -83,7 +83,6 @@ impl Simulator {
         simulation.sensor.check()?;
         let trajectory = Trajectory::new(&simulation.orbit)?;
         let schedule = Schedule::new(&simulation.schedule)?;
-        simulation.sensor.check()?;
         let shutter = Shutter::new(&simulation.shutter, simulation.sensor.saturation_e())?;
         check_times(&schedule, &trajectory, shutter.lag_s())?;
         let projection = Projection::new(&simulation.camera)?;
