@@ -5,9 +5,9 @@ use hifitime::{Epoch, Unit};
 
 use crate::draw::ExpectedImage;
 use crate::onboard::{RoiExtractor, downlink};
-use crate::optics::{Psf, Stamp};
-use crate::scene::Source;
-use crate::sensor::{FlatLaws, RawImage};
+use crate::optics::{ImagePoint, Psf, Stamp, trail};
+use crate::scene::{CameraMotion, Source};
+use crate::sensor::{FlatLaws, RawImage, Switch};
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, shadow};
 use crate::{SimError, Simulator};
 
@@ -34,6 +34,7 @@ pub struct SimulatedCamera<'a> {
     raw: RawImage,
     regions: Option<RoiExtractor>,
     sources: Vec<Source>,
+    points: Vec<ImagePoint>,
     stamps: Vec<Stamp>,
 }
 
@@ -63,6 +64,7 @@ impl<'a> SimulatedCamera<'a> {
             raw: simulator.sensor.new_raw(),
             regions,
             sources: Vec::new(),
+            points: Vec::new(),
             stamps: Vec::new(),
         })
     }
@@ -79,7 +81,8 @@ impl<'a> SimulatedCamera<'a> {
             expected: "a frame of the schedule",
         })?;
         let exposure_s = self.exposure_s(time, number)?;
-        let moment = self.moment(time, number)?;
+        let mut moment = self.moment(time, number)?;
+        let camera = self.motion(&mut moment, time, exposure_s, number)?;
 
         self.sources.clear();
         if moment.target_position.is_some() {
@@ -87,7 +90,7 @@ impl<'a> SimulatedCamera<'a> {
         }
         simulator.stars.look(
             &moment.observer,
-            moment.camera_from_icrs,
+            &camera,
             &simulator.projection,
             self.psf.margin_px(),
             &mut self.sources,
@@ -172,6 +175,7 @@ impl<'a> SimulatedCamera<'a> {
             kind: ObjectKind::Target,
             id: 0,
             position: target_position.unwrap_or_default(),
+            ends: [target_position.unwrap_or_default(); 2],
             astrometric: Some(line_of_sight),
             // In the umbra there is no light, and no magnitude.
             magnitude: magnitude.is_finite().then_some(magnitude),
@@ -188,6 +192,29 @@ impl<'a> SimulatedCamera<'a> {
             target,
             target_position,
         })
+    }
+
+    /// How the camera turns during the exposure about the middle `moment`, and where its target is at both ends.
+    fn motion(
+        &self,
+        moment: &mut Moment,
+        time: Epoch,
+        exposure_s: f64,
+        number: u64,
+    ) -> Result<CameraMotion, SimError> {
+        let simulator = self.simulator;
+        let mut camera = CameraMotion::still(moment.camera_from_icrs);
+        if simulator.attitude.motion_smear() == Switch::On {
+            for (end, side) in [-0.5, 0.5].into_iter().enumerate() {
+                let states = simulator.trajectory.at(time + side * exposure_s * Unit::Second);
+                camera.ends[end] = simulator.camera_from_body * simulator.attitude.truth(&states, number);
+                let line_of_sight = Direction::from_vector(states.line_of_sight_km())?;
+                if let Some(position) = simulator.projection.project(&(camera.ends[end] * line_of_sight)) {
+                    moment.target.ends[end] = position;
+                }
+            }
+        }
+        Ok(camera)
     }
 
     /// The exposure time that the shutter control chooses: it follows the brightest object on the detector, as it
@@ -214,13 +241,17 @@ impl<'a> SimulatedCamera<'a> {
         let flat_e = sensor.flat_electrons(exposure_s);
         let detector = self.image.size();
         self.image.clear(sensor.sky_electrons(exposure_s));
-        let hot_pixels = sensor.hot_pixels().iter().map(|hot| Source {
-            kind: ObjectKind::HotPixel,
-            id: (hot.y * detector.0 + hot.x) as u32,
-            position: PixelPoint::new(hot.x as f64, hot.y as f64),
-            astrometric: None,
-            magnitude: None,
-            electrons_per_s: hot.rate_e_per_s,
+        let hot_pixels = sensor.hot_pixels().iter().map(|hot| {
+            let position = PixelPoint::new(hot.x as f64, hot.y as f64);
+            Source {
+                kind: ObjectKind::HotPixel,
+                id: (hot.y * detector.0 + hot.x) as u32,
+                position,
+                ends: [position; 2],
+                astrometric: None,
+                magnitude: None,
+                electrons_per_s: hot.rate_e_per_s,
+            }
         });
         let mut objects = Vec::with_capacity(self.sources.len() + hot_pixels.len());
         for source in self.sources.iter().copied().chain(hot_pixels) {
@@ -233,7 +264,10 @@ impl<'a> SimulatedCamera<'a> {
                 // The sensor itself collects it; here it is only described.
                 stamp.set_pixel(source.position.x as usize, source.position.y as usize, electrons);
             } else {
-                self.psf.stamp(source.position, electrons, Psf::FLOOR_E, detector, stamp);
+                self.points.clear();
+                let [begin, end] = source.ends;
+                trail(begin, source.position, end, &mut self.points);
+                self.psf.stamp_extended(&self.points, electrons, Psf::FLOOR_E, detector, stamp);
                 self.image.add(stamp);
             }
             let truth = stamp.truth(flat_e, sensor.read_noise_e());
@@ -242,7 +276,7 @@ impl<'a> SimulatedCamera<'a> {
                     frame: number,
                     kind: source.kind,
                     id: source.id,
-                    position: source.position,
+                    position: stamp.centre(),
                     astrometric: source.astrometric,
                     magnitude: source.magnitude,
                     electrons: truth.electrons,

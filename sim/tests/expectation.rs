@@ -11,6 +11,9 @@ mod small_scene;
 use boresight_sim::Simulation;
 use boresight_sim::catalog::CatalogConfig;
 use boresight_sim::onboard::ShutterConfig;
+use boresight_sim::optics::PsfConfig;
+use boresight_sim::sensor::Switch;
+use boresight_sim::truth::ObjectKind;
 use small_scene::{restless, simulator, still};
 
 #[test]
@@ -37,6 +40,51 @@ fn the_expected_image_holds_the_electrons_of_the_truth_table_and_the_flat_level(
             assert!(faintest > 1e-8 * in_table, "the tolerance would hide an object of {faintest} e⁻");
         }
     }
+}
+
+/// A camera fixed in the orbital frame turns: a star is smeared along its way, the longer the exposure the more, and
+/// its place in the table is the centroid of what is in the image.
+#[test]
+fn motion_during_the_exposure_smears_stars_about_the_place_of_the_table() {
+    let exposed = |exposure_s: f64, motion_smear: Switch| {
+        let mut simulation = Simulation {
+            shutter: ShutterConfig::Fixed { exposure_s },
+            psf: PsfConfig::Gaussian { sigma_px: 0.8 },
+            roi: None,
+            ..restless()
+        };
+        simulation.attitude.motion_smear = motion_smear;
+        simulation.sensor.hot_pixels.count = 0;
+        let simulator = simulator(&simulation);
+        let mut camera = simulator.camera().unwrap();
+        let objects = camera.expose(3).unwrap().objects;
+        let star = objects
+            .iter()
+            .filter(|o| o.kind == ObjectKind::Star)
+            .filter(|o| (20.0..140.0).contains(&o.position.x) && (20.0..100.0).contains(&o.position.y))
+            .max_by(|a, b| a.electrons.total_cmp(&b.electrons))
+            .unwrap()
+            .clone();
+        // Centroid and variance along the rows, in a window that has nothing else of this brightness in it.
+        let image = camera.expected();
+        let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
+        for y in star.position.y as usize - 8..star.position.y as usize + 9 {
+            for x in star.position.x as usize - 12..star.position.x as usize + 13 {
+                let signal = image.at(x, y) - image.flat_e();
+                sum += signal;
+                first += signal * x as f64;
+                second += signal * (x as f64 - star.position.x) * (x as f64 - star.position.x);
+            }
+        }
+        (star, first / sum, second / sum)
+    };
+    let (_, _, still_px2) = exposed(1.0, Switch::Off);
+    let (star, centroid, smeared_px2) = exposed(1.0, Switch::On);
+    // Faint neighbours pull by some hundredths of a pixel.
+    assert!((centroid - star.position.x).abs() < 0.05, "{centroid} and {}", star.position.x);
+    // The orbital rate, 0.0602 °/s, is 2.46 px/s along the rows: a uniform trail of variance L²/12.
+    let trail_px2 = 2.46 * 2.46 / 12.0;
+    assert!((smeared_px2 - still_px2 - trail_px2).abs() < 0.05, "{smeared_px2} − {still_px2} px²");
 }
 
 const SEEDS: u64 = 5;

@@ -4,8 +4,10 @@ mod projection;
 mod psf;
 mod radiometry;
 mod stamp;
+mod trail;
 
 pub use projection::Projection;
 pub use psf::{Psf, PsfConfig};
 pub use radiometry::RadiometryConfig;
 pub use stamp::{Stamp, StampTruth};
+pub use trail::{ImagePoint, trail};

@@ -4,7 +4,7 @@ use contract::PixelPoint;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Stamp;
+use super::{ImagePoint, Stamp};
 use crate::SimError;
 use crate::error::require;
 
@@ -88,14 +88,33 @@ impl Psf {
         Ok(Self { components, profile_x: Vec::new(), profile_y: Vec::new() })
     }
 
-    /// The image of a point of `electrons` at `centre`, on a detector of `detector` = (columns, rows).
+    /// The image of a point of `electrons` at `centre`: [`Psf::stamp_extended`] of that one point.
+    pub fn stamp(
+        &mut self,
+        centre: PixelPoint,
+        electrons: f64,
+        floor_e: f64,
+        detector: (usize, usize),
+        stamp: &mut Stamp,
+    ) {
+        self.stamp_extended(
+            &[ImagePoint { position: centre, share: 1.0 }],
+            electrons,
+            floor_e,
+            detector,
+            stamp,
+        );
+    }
+
+    /// The image of an object of `electrons` whose undisturbed image is made of `points` (a trail, a resolved body), on a
+    /// detector of `detector` = (columns, rows). The centre of the stamp is the mean of the points by their shares.
     ///
     /// Pixels with fewer than `floor_e` electrons (greater than 0) are left at zero. A Gaussian of width σ thereby
     /// loses at most about 2πσ² `floor_e` electrons; the truth is taken from the stamp, so that truth and image
     /// stay the same.
-    pub fn stamp(
+    pub fn stamp_extended(
         &mut self,
-        centre: PixelPoint,
+        points: &[ImagePoint],
         electrons: f64,
         floor_e: f64,
         detector: (usize, usize),
@@ -106,28 +125,32 @@ impl Psf {
             .iter()
             .map(|component| component.reach_px(electrons, floor_e))
             .fold(0.0, f64::max);
-        let x = pixels_within(centre.x, reach_px, detector.0);
-        let y = pixels_within(centre.y, reach_px, detector.1);
-        stamp.reset(centre, x, y);
+        let extent = Extent::of(points);
+        let x = pixels_within(extent.x, reach_px, detector.0);
+        let y = pixels_within(extent.y, reach_px, detector.1);
+        stamp.reset(extent.centre, x, y);
         if stamp.electrons.is_empty() || reach_px == 0.0 {
             return;
         }
         for component in &self.components {
             let own_px = component.reach_px(electrons, floor_e);
-            let own_x = pixels_within(centre.x, own_px, detector.0);
-            let own_y = pixels_within(centre.y, own_px, detector.1);
-            if own_px == 0.0 || own_x.0 >= own_x.1 || own_y.0 >= own_y.1 {
-                continue;
-            }
-            component.profile(centre.x, own_x, &mut self.profile_x);
-            component.profile(centre.y, own_y, &mut self.profile_y);
-            let flux = electrons * component.weight;
-            let (left, width) = (own_x.0 - x.0, own_x.1 - own_x.0);
-            let rows = stamp.electrons.chunks_exact_mut(stamp.columns).skip(own_y.0 - y.0);
-            for (row, share_y) in rows.zip(&self.profile_y) {
-                let row_flux = flux * share_y;
-                for (pixel, share_x) in row[left..left + width].iter_mut().zip(&self.profile_x) {
-                    *pixel += row_flux * share_x;
+            for point in points {
+                let PixelPoint { x: px, y: py } = point.position;
+                let own_x = pixels_within((px, px), own_px, detector.0);
+                let own_y = pixels_within((py, py), own_px, detector.1);
+                if own_px == 0.0 || own_x.0 >= own_x.1 || own_y.0 >= own_y.1 {
+                    continue;
+                }
+                component.profile(px, own_x, &mut self.profile_x);
+                component.profile(py, own_y, &mut self.profile_y);
+                let flux = electrons * component.weight * point.share;
+                let (left, width) = (own_x.0 - x.0, own_x.1 - own_x.0);
+                let rows = stamp.electrons.chunks_exact_mut(stamp.columns).skip(own_y.0 - y.0);
+                for (row, share_y) in rows.zip(&self.profile_y) {
+                    let row_flux = flux * share_y;
+                    for (pixel, share_x) in row[left..left + width].iter_mut().zip(&self.profile_x) {
+                        *pixel += row_flux * share_x;
+                    }
                 }
             }
         }
@@ -191,13 +214,39 @@ impl Component {
     }
 }
 
-/// The range of pixels of an axis of `count` whose centres lie within `reach_px` of `centre`.
-fn pixels_within(centre: f64, reach_px: f64, count: usize) -> (usize, usize) {
+/// The rectangle that the points of an image span, and their mean.
+struct Extent {
+    x: (f64, f64),
+    y: (f64, f64),
+    centre: PixelPoint,
+}
+
+impl Extent {
+    fn of(points: &[ImagePoint]) -> Self {
+        let nothing = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut extent = Self { x: nothing, y: nothing, centre: PixelPoint::default() };
+        let mut shares = 0.0;
+        for ImagePoint { position, share } in points {
+            extent.x = (extent.x.0.min(position.x), extent.x.1.max(position.x));
+            extent.y = (extent.y.0.min(position.y), extent.y.1.max(position.y));
+            extent.centre.x += position.x * share;
+            extent.centre.y += position.y * share;
+            shares += share;
+        }
+        if shares > 0.0 {
+            extent.centre = PixelPoint::new(extent.centre.x / shares, extent.centre.y / shares);
+        }
+        extent
+    }
+}
+
+/// The range of pixels of an axis of `count` whose centres lie within `reach_px` of the interval `span`.
+fn pixels_within(span: (f64, f64), reach_px: f64, count: usize) -> (usize, usize) {
     let last = count as f64;
     // A cast of a float saturates, and NaN gives 0: an empty range.
     (
-        (centre - reach_px).ceil().clamp(0.0, last) as usize,
-        (centre + reach_px + 1.0).floor().clamp(0.0, last) as usize,
+        (span.0 - reach_px).ceil().clamp(0.0, last) as usize,
+        (span.1 + reach_px + 1.0).floor().clamp(0.0, last) as usize,
     )
 }
 

@@ -53,6 +53,11 @@ impl Stamp {
         self.electrons.resize(self.columns * self.rows, 0.0);
     }
 
+    /// Where the light of the undisturbed image has its mean, off the detector included.
+    pub fn centre(&self) -> PixelPoint {
+        self.centre
+    }
+
     /// The rectangle it covers; `None` when no pixel of the detector is in it.
     pub fn window(&self) -> Option<Window> {
         (!self.electrons.is_empty()).then_some(Window {

@@ -6,9 +6,31 @@ mod star_field;
 pub use spacecraft::TargetConfig;
 pub use star_field::StarField;
 
-use contract::{Direction, Icrs, PixelPoint};
+use contract::{Angle, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
 
 use crate::truth::ObjectKind;
+
+/// Where the camera looks during an exposure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CameraMotion {
+    /// In the middle of the exposure.
+    pub middle: Rotation<CameraFrame, Icrs>,
+    /// At its begin and its end.
+    pub ends: [Rotation<CameraFrame, Icrs>; 2],
+}
+
+impl CameraMotion {
+    /// A camera at rest.
+    pub fn still(camera_from_icrs: Rotation<CameraFrame, Icrs>) -> Self {
+        Self { middle: camera_from_icrs, ends: [camera_from_icrs; 2] }
+    }
+
+    /// How far it turns from the middle to the farther end.
+    pub fn reach(&self) -> Angle {
+        let [begin, end] = self.ends.map(|end| end.angle_to(&self.middle));
+        if begin.radians() > end.radians() { begin } else { end }
+    }
+}
 
 /// A point-like source of electrons on the detector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,8 +39,10 @@ pub struct Source {
     pub kind: ObjectKind,
     /// Number within its kind.
     pub id: u32,
-    /// Centre of its image; may lie off the detector by as much as its image reaches.
+    /// Where it is in the middle of the exposure; may lie off the detector by as much as its image reaches.
     pub position: PixelPoint,
+    /// Where it is at the begin and at the end of the exposure.
+    pub ends: [PixelPoint; 2],
     /// Direction without aberration; for the target its geometric line of sight; `None` for what is no light of the
     /// sky.
     pub astrometric: Option<Direction<Icrs>>,

@@ -2,7 +2,7 @@
 
 use contract::{Angle, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
 
-use super::Source;
+use super::{CameraMotion, Source};
 use crate::catalog::{Catalog, ConeIndex};
 use crate::optics::{Projection, RadiometryConfig};
 use crate::truth::{ObjectKind, Observer, StarMotion};
@@ -43,24 +43,30 @@ impl StarField {
         Self { index: ConeIndex::new(catalog.stars()), stars }
     }
 
-    /// Appends the stars whose images are centred on the detector or within `margin_px` of its border, by number.
+    /// Appends the stars that come within `margin_px` of the detector during the exposure, by number.
     pub fn look(
         &self,
         observer: &Observer,
-        camera_from_icrs: Rotation<CameraFrame, Icrs>,
+        camera: &CameraMotion,
         projection: &Projection,
         margin_px: f64,
         sources: &mut Vec<Source>,
     ) {
-        for star in self.around(camera_from_icrs, projection, margin_px) {
-            let apparent = camera_from_icrs * observer.apparent(&star.motion);
-            if let Some(position) = projection.project(&apparent)
+        let (x_px_per_rad, y_px_per_rad) = projection.plate_scale_px_per_rad();
+        // Towards the corners of a wide field a turn moves a star by more than the plate scale on the axis says.
+        let widening = 1.0 / libm::cos(projection.half_diagonal().radians()).max(0.1);
+        let reach_px = camera.reach().radians() * x_px_per_rad.max(y_px_per_rad) * widening * widening;
+        let margin_px = margin_px + reach_px;
+        for star in self.around(camera.middle, projection, margin_px) {
+            let apparent = observer.apparent(&star.motion);
+            if let Some(position) = projection.project(&(camera.middle * apparent))
                 && is_within(position, projection, margin_px)
             {
                 sources.push(Source {
                     kind: ObjectKind::Star,
                     id: star.id,
                     position,
+                    ends: camera.ends.map(|end| projection.project(&(end * apparent)).unwrap_or(position)),
                     astrometric: Some(observer.astrometric(&star.motion)),
                     magnitude: Some(star.magnitude),
                     electrons_per_s: star.electrons_per_s,
@@ -151,7 +157,13 @@ mod tests {
 
     fn seen(field: &StarField, camera_from_icrs: Rotation<CameraFrame, Icrs>, margin_px: f64) -> Vec<Source> {
         let mut sources = Vec::new();
-        field.look(&observer(), camera_from_icrs, &projection(), margin_px, &mut sources);
+        field.look(
+            &observer(),
+            &CameraMotion::still(camera_from_icrs),
+            &projection(),
+            margin_px,
+            &mut sources,
+        );
         sources
     }
 

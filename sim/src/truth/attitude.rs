@@ -12,6 +12,7 @@ use super::trajectory::States;
 use crate::SimError;
 use crate::error::require;
 use crate::randomness::{Effect, Seed};
+use crate::sensor::Switch;
 
 /// How the chaser is pointed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -22,6 +23,10 @@ pub struct AttitudeConfig {
     /// How far from there it really looks.
     #[serde(default)]
     pub control: ControlConfig,
+    /// Whether images are smeared by its motion, and the target's, during the exposure; off: every image is that of the
+    /// middle of its exposure.
+    #[serde(default)]
+    pub motion_smear: Switch,
 }
 
 /// Error of the attitude control, about the body axes. A positive error: the body is turned by the right-hand rule from
@@ -63,6 +68,7 @@ pub struct Attitude {
     body_from_camera: Rotation<Body, CameraFrame>,
     drift: Drift,
     jitter_rad: Vector3<f64>,
+    motion_smear: Switch,
     seed: Seed,
 }
 
@@ -79,8 +85,14 @@ impl Attitude {
             body_from_camera: mounting.nominal.camera_from_body().inverse(),
             drift: Drift::new(&config.control.drift, seed, Effect::AttitudeControl),
             jitter_rad: radians(config.control.jitter_arcsec),
+            motion_smear: config.motion_smear,
             seed,
         })
+    }
+
+    /// Whether images are smeared by motion.
+    pub fn motion_smear(&self) -> Switch {
+        self.motion_smear
     }
 
     /// The true attitude in `frame`, taken when chaser and target are at `states`.
@@ -127,6 +139,7 @@ pub(crate) mod tests {
         AttitudeConfig {
             guidance: Guidance::LocalOrbital { phi_deg: 0.0, theta_deg: 0.0, psi_deg: 0.0 },
             control: ControlConfig::default(),
+            motion_smear: Switch::On,
         }
     }
 

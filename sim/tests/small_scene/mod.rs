@@ -6,7 +6,7 @@ use boresight_sim::catalog::CatalogConfig;
 use boresight_sim::onboard::{RoiConfig, ShutterConfig};
 use boresight_sim::optics::{PsfConfig, RadiometryConfig};
 use boresight_sim::scene::TargetConfig;
-use boresight_sim::sensor::{HotPixelConfig, NoiseConfig, SensorConfig};
+use boresight_sim::sensor::{HotPixelConfig, NoiseConfig, SensorConfig, Switch};
 use boresight_sim::truth::{
     AttitudeConfig, ControlConfig, DriftConfig, ElementsConfig, GroupConfig, Guidance, KnowledgeConfig,
     ManoeuvreConfig, MountingConfig, OrbitConfig, RelativeElements, Trajectory, clock,
@@ -82,6 +82,7 @@ pub(crate) fn restless() -> Simulation {
     simulation.attitude = AttitudeConfig {
         guidance: Guidance::LocalOrbital { phi_deg: 0.1, theta_deg: -0.2, psi_deg: 3.0 },
         control: ControlConfig { drift: slow(60.0), jitter_arcsec: [3.0, 5.0, 7.0] },
+        motion_smear: Switch::On,
     };
     simulation.knowledge = KnowledgeConfig {
         bias_arcsec: [15.0, -10.0, 20.0],
@@ -114,6 +115,7 @@ pub(crate) fn looking_at(ra_deg: f64, dec_deg: f64) -> AttitudeConfig {
     AttitudeConfig {
         guidance: Guidance::Inertial { ra_deg, dec_deg, roll_deg: 20.0 },
         control: ControlConfig::default(),
+        motion_smear: Switch::On,
     }
 }
 
