@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::blooming::BloomingConfig;
 use crate::SimError;
 use crate::error::require;
 
@@ -67,7 +68,7 @@ pub struct SensorConfig {
     pub gain_e_per_dn: f64,
     /// Digital number of a pixel without electrons, 0 to less than 2^bit_depth − 1; fractions are allowed.
     pub bias_dn: f64,
-    /// Electrons that a pixel holds, 1 to 1e9; more are lost (no blooming).
+    /// Electrons that a pixel holds, 1 to 1e9; more are lost, or spill along the column with `blooming`.
     pub full_well_e: f64,
     /// Standard deviation of the read noise, electrons, 0 to 500.
     pub read_noise_e: f64,
@@ -81,6 +82,28 @@ pub struct SensorConfig {
     /// Pixels with a high dark current.
     #[serde(default)]
     pub hot_pixels: HotPixelConfig,
+    /// Spilling of full wells along columns; without the table it is off.
+    #[serde(default)]
+    pub blooming: Option<BloomingConfig>,
+}
+
+/// An ideal detector to build upon: 16 bits, an electron a digital number, nothing collected but light, no noise of
+/// the readout, every defect off.
+impl Default for SensorConfig {
+    fn default() -> Self {
+        Self {
+            bit_depth: 16,
+            gain_e_per_dn: 1.0,
+            bias_dn: 0.0,
+            full_well_e: 65_535.0,
+            read_noise_e: 0.0,
+            dark_current_e_per_s: 0.0,
+            background_e_per_s: 0.0,
+            noise: NoiseConfig::default(),
+            hot_pixels: HotPixelConfig::default(),
+            blooming: None,
+        }
+    }
 }
 
 impl SensorConfig {
@@ -101,7 +124,8 @@ impl SensorConfig {
         require("sensor.background_e_per_s", self.background_e_per_s, "0 to 1e6", within(0.0, 1e6))?;
         let hot = &self.hot_pixels;
         require("sensor.hot_pixels.median_e_per_s", hot.median_e_per_s, "0 to 1e9", within(0.0, 1e9))?;
-        require("sensor.hot_pixels.spread", hot.spread, "0 to 5", within(0.0, 5.0))
+        require("sensor.hot_pixels.spread", hot.spread, "0 to 5", within(0.0, 5.0))?;
+        self.blooming.map_or(Ok(()), |blooming| blooming.check())
     }
 
     /// The largest digital number, 2^bits − 1.
@@ -131,6 +155,7 @@ pub(super) mod tests {
             background_e_per_s: 30.0,
             noise: NoiseConfig::default(),
             hot_pixels: HotPixelConfig { count: 5, seed: 3, median_e_per_s: 2000.0, spread: 1.0 },
+            ..SensorConfig::default()
         }
     }
 

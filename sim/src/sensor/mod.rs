@@ -23,6 +23,7 @@
 //! ```
 
 mod alias;
+mod blooming;
 mod config;
 mod flat_laws;
 mod hot_pixels;
@@ -30,6 +31,7 @@ mod pixel_law;
 mod poisson;
 mod readout;
 
+pub use blooming::BloomingConfig;
 pub use config::{HotPixelConfig, NoiseConfig, SensorConfig, Switch};
 pub use flat_laws::FlatLaws;
 pub use hot_pixels::HotPixel;

@@ -45,12 +45,42 @@ impl PixelLaw {
         // Twelve standard deviations above a full well the well is full but once in 10^32; a mean without bound
         // would leave the range of the sampler.
         let surely_full = self.full_well_e + 12.0 * self.full_well_e.sqrt() + 144.0;
-        let collected_e = match self.shot {
-            Switch::On if mean_e < surely_full => poisson(mean_e, stream),
+        let collected_e = if mean_e < surely_full { self.collect(mean_e, stream) } else { mean_e };
+        self.convert(collected_e.min(self.full_well_e), stream)
+    }
+
+    /// The electrons that a pixel collects, before its well is full: the first half of [`PixelLaw::sample`].
+    pub(super) fn collect(&self, mean_e: f64, stream: &mut Stream) -> f64 {
+        // Beyond the range of the sampler the shot noise is less than 3e-8 of the mean.
+        const SAMPLER_RANGE_E: f64 = 1e15;
+        match self.shot {
+            Switch::On if mean_e < SAMPLER_RANGE_E => poisson(mean_e, stream),
             Switch::On | Switch::Off => mean_e,
-        };
+        }
+    }
+
+    /// The digital number of a pixel that holds `held_e` electrons: the second half of [`PixelLaw::sample`].
+    pub(super) fn convert(&self, held_e: f64, stream: &mut Stream) -> u16 {
         let noise_e = if self.read_noise_e > 0.0 { self.read_noise_e * normal(stream) } else { 0.0 };
-        self.digitise(collected_e.min(self.full_well_e) + noise_e)
+        self.digitise(held_e + noise_e)
+    }
+
+    /// Electrons that a pixel holds.
+    pub(super) fn full_well_e(&self) -> f64 {
+        self.full_well_e
+    }
+
+    /// The mean from which on a pixel may collect more than its well holds; below, the probability is less than 2^-40
+    /// (the bound of [`PoissonReach`], solved for the mean).
+    pub(super) fn may_overflow_from_e(&self) -> f64 {
+        match self.shot {
+            Switch::On => {
+                let shift = 2.0 * PoissonReach::EXPONENT / 3.0;
+                let root = (3.0 * shift * self.full_well_e + shift * shift).sqrt();
+                (self.full_well_e + shift - root).max(0.0)
+            }
+            Switch::Off => self.full_well_e,
+        }
     }
 
     /// The converter: floor(e/gain + bias + ½), clipped.
@@ -151,13 +181,14 @@ struct PoissonReach {
 }
 
 impl PoissonReach {
+    /// exp(−28) < 2^-40.
+    const EXPONENT: f64 = 28.0;
+
     fn new(mean: f64) -> Self {
-        // exp(−28) < 2^-40.
-        const EXPONENT: f64 = 28.0;
-        let third = EXPONENT / 3.0;
+        let third = Self::EXPONENT / 3.0;
         Self {
-            low: (mean - (2.0 * EXPONENT * mean).sqrt()).floor().max(0.0),
-            high: (mean + third + (third * third + 2.0 * EXPONENT * mean).sqrt()).ceil(),
+            low: (mean - (2.0 * Self::EXPONENT * mean).sqrt()).floor().max(0.0),
+            high: (mean + third + (third * third + 2.0 * Self::EXPONENT * mean).sqrt()).ceil(),
         }
     }
 }

@@ -2,13 +2,14 @@
 
 use rand::Rng;
 
+use super::blooming::BloomingConfig;
 use super::config::{SensorConfig, Switch};
 use super::flat_laws::{FlatLaw, FlatLaws};
 use super::hot_pixels::{HotPixel, hot_pixels};
 use super::pixel_law::PixelLaw;
 use crate::SimError;
 use crate::draw::ExpectedImage;
-use crate::randomness::{Effect, Seed};
+use crate::randomness::{Effect, Seed, Streams};
 
 /// A detector with its readout. What is fixed for its life, hot pixels included, is made once.
 #[derive(Debug, Clone, PartialEq)]
@@ -183,7 +184,47 @@ impl Sensor {
                 self.law.sample(expected.flat_e() + signal_e, &mut streams.at(place))
             };
         }
+        if let Some(blooming) = &self.config.blooming {
+            self.bloom(blooming, expected, &streams, raw);
+        }
         Ok(())
+    }
+
+    /// Draws anew the columns that have pixels above the full well.
+    ///
+    /// Electrons are drawn first, then they spill, then they are read. A pixel is drawn at its own address, place =
+    /// rows + index, where a pixel with signal was drawn already: what neither overflows nor receives is left as it is.
+    fn bloom(
+        &self,
+        blooming: &BloomingConfig,
+        expected: &ExpectedImage,
+        streams: &Streams,
+        raw: &mut RawImage,
+    ) {
+        let threshold_e = self.law.may_overflow_from_e();
+        let mut overflows = vec![expected.flat_e() > threshold_e; self.columns];
+        for (index, signal_e) in expected.drawn() {
+            if expected.flat_e() + signal_e > threshold_e {
+                overflows[index % self.columns] = true;
+            }
+        }
+        let (mut collected, mut held) = (Vec::with_capacity(self.rows), Vec::with_capacity(self.rows));
+        for x in (0..self.columns).filter(|&x| overflows[x]) {
+            let stream = |y: usize| streams.at((self.rows + y * self.columns + x) as u64);
+            collected.clear();
+            collected.extend((0..self.rows).map(|y| self.law.collect(expected.at(x, y), &mut stream(y))));
+            held.clone_from(&collected);
+            blooming.spill(&mut held, self.law.full_well_e());
+            for y in 0..self.rows {
+                // Those that may overflow were drawn before with a well of their own, perhaps from a table.
+                if held[y] != collected[y] || expected.at(x, y) > threshold_e {
+                    let mut stream = stream(y);
+                    // What was collected is drawn again only to leave the stream where the read noise begins.
+                    self.law.collect(expected.at(x, y), &mut stream);
+                    raw.dn[y * self.columns + x] = self.law.convert(held[y], &mut stream);
+                }
+            }
+        }
     }
 }
 
@@ -315,6 +356,66 @@ mod tests {
         let raw = frame(&config, 3, &[]);
         // 20 e⁻ (sky 15, dark 5) at 10 e⁻/DN over a bias of 50.3, rounded.
         assert!(raw.dn.iter().all(|dn| *dn == 52));
+    }
+
+    fn blooming(config: SensorConfig, spill_fraction: f64) -> SensorConfig {
+        SensorConfig { blooming: Some(BloomingConfig { spill_fraction }), ..config }
+    }
+
+    #[test]
+    fn blooming_changes_nothing_but_columns_that_overflow_and_keeps_their_charge() {
+        // Without read noise and with a digital number an electron, the pixels are the electrons.
+        let config = SensorConfig {
+            bit_depth: 16,
+            gain_e_per_dn: 1.0,
+            bias_dn: 0.0,
+            full_well_e: 5000.0,
+            read_noise_e: 0.0,
+            ..twelve_bit()
+        };
+        let stars_e = [1e3, 1e4, 6e4];
+        let deep = SensorConfig { full_well_e: 60_000.0, ..config.clone() };
+        let (without, bloomed) = (frame(&deep, 1, &stars_e), frame(&blooming(config, 1.0), 1, &stars_e));
+        let mut changed = vec![];
+        for x in 0..65 {
+            let column =
+                |raw: &RawImage| -> Vec<u16> { raw.dn.iter().skip(x).step_by(65).copied().collect() };
+            let (before, after) = (column(&without), column(&bloomed));
+            assert!(after.iter().all(|&e| e <= 5000));
+            if before != after {
+                changed.push(x);
+                let full = after.iter().filter(|&&e| e == 5000).count();
+                let over = before.iter().filter(|&&e| e > 5000).count();
+                assert!(over > 0 && full > over);
+                // A flat pixel that receives charge is drawn at its own address: at most as many as are full, each with a
+                // variance of its 20 electrons twice.
+                let sum = |column: &[u16]| column.iter().map(|&e| f64::from(e)).sum::<f64>();
+                let tolerance = 5.0 * (2.0 * 20.0 * (full + 2) as f64).sqrt();
+                assert!((sum(&before) - sum(&after)).abs() < tolerance, "column {x}");
+            }
+        }
+        // The brightest star, at x = 32.3.
+        assert_eq!(changed, [32, 33]);
+    }
+
+    #[test]
+    fn an_overflowing_flat_frame_is_full_with_drains_and_without() {
+        let config =
+            SensorConfig { full_well_e: 10.0, gain_e_per_dn: 1.0, read_noise_e: 0.0, ..twelve_bit() };
+        // 20 e⁻ a pixel in a well of 10: once in 200 pixels fewer than 10 are collected, and a neighbour fills them.
+        let raw = frame(&blooming(config.clone(), 1.0), 1, &[]);
+        assert!(raw.dn.iter().all(|&dn| dn == 60));
+        let drained = frame(&blooming(config.clone(), 0.0), 1, &[]);
+        let lacking = drained.dn.iter().filter(|&&dn| dn < 60).count() as f64 / drained.dn.len() as f64;
+        // P(N < 10) at a mean of 20 is 0.0050; 3120 pixels know it to 0.0013.
+        assert!((lacking - 0.005).abs() < 0.005, "{lacking}");
+        assert!(drained.dn.iter().all(|&dn| dn <= 60));
+    }
+
+    #[test]
+    fn a_frame_that_does_not_overflow_is_the_same_with_blooming() {
+        let stars_e = [500.0, 5e3, 5e4];
+        assert_eq!(frame(&twelve_bit(), 4, &stars_e), frame(&blooming(twelve_bit(), 1.0), 4, &stars_e));
     }
 
     #[test]

@@ -63,6 +63,7 @@ pub(crate) fn still() -> Simulation {
             background_e_per_s: 60.0,
             noise: NoiseConfig::default(),
             hot_pixels: HotPixelConfig { count: 12, seed: 7, median_e_per_s: 4000.0, spread: 0.8 },
+            ..SensorConfig::default()
         },
         shutter: ShutterConfig::Fixed { exposure_s: 0.25 },
         roi: None,
