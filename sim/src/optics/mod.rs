@@ -7,5 +7,5 @@ mod stamp;
 
 pub use projection::Projection;
 pub use psf::{Psf, PsfConfig};
-pub use radiometry::RadiometryConfig;
+pub use radiometry::{KnownDetector, QuantumEfficiency, Radiometry, RadiometryConfig, SUN_V_MAG_AT_1_AU};
 pub use stamp::{Stamp, StampTruth};
