@@ -179,7 +179,7 @@ impl<'a> SimulatedCamera<'a> {
             astrometric: Some(line_of_sight),
             // In the umbra there is no light, and no magnitude.
             magnitude: magnitude.is_finite().then_some(magnitude),
-            electrons_per_s: simulator.radiometry.electrons_per_s(magnitude),
+            electrons_per_s: simulator.radiometry.sunlit(magnitude),
         };
         Ok(Moment {
             states,

@@ -7,7 +7,7 @@ use hifitime::Unit;
 
 use crate::catalog::{Catalog, CatalogConfig};
 use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
-use crate::optics::{Projection, Psf, PsfConfig, RadiometryConfig};
+use crate::optics::{Projection, Psf, PsfConfig, Radiometry, RadiometryConfig};
 use crate::randomness::Seed;
 use crate::scene::{StarField, TargetConfig};
 use crate::sensor::{Sensor, SensorConfig};
@@ -67,7 +67,7 @@ pub struct Simulator {
     pub(crate) roi: Option<RoiConfig>,
     pub(crate) seed: Seed,
     pub(crate) target: TargetConfig,
-    pub(crate) radiometry: RadiometryConfig,
+    pub(crate) radiometry: Radiometry,
 }
 
 impl Simulator {
@@ -77,7 +77,7 @@ impl Simulator {
     /// [`SimError`] for the first value that is not allowed, or a catalogue that cannot be read.
     pub fn new(simulation: &Simulation, folder: &Path) -> Result<Self, SimError> {
         let seed = Seed { seed: simulation.seed, case: 0 };
-        simulation.radiometry.check()?;
+        let radiometry = Radiometry::new(&simulation.radiometry)?;
         simulation.target.check()?;
         // Before the shutter, which takes the sensor's saturation for granted.
         simulation.sensor.check()?;
@@ -93,7 +93,7 @@ impl Simulator {
         simulation.catalog.check()?;
         let catalog = Catalog::load(&simulation.catalog, folder)?;
         Ok(Self {
-            stars: StarField::new(&catalog, &simulation.radiometry),
+            stars: StarField::new(&catalog, &radiometry),
             catalog,
             trajectory,
             schedule,
@@ -107,7 +107,7 @@ impl Simulator {
             roi: simulation.roi.clone(),
             seed,
             target: simulation.target.clone(),
-            radiometry: simulation.radiometry.clone(),
+            radiometry,
         })
     }
 

@@ -8,6 +8,6 @@ mod trail;
 
 pub use projection::Projection;
 pub use psf::{Psf, PsfConfig};
-pub use radiometry::RadiometryConfig;
+pub use radiometry::{KnownDetector, QuantumEfficiency, Radiometry, RadiometryConfig, SUN_V_MAG_AT_1_AU};
 pub use stamp::{Stamp, StampTruth};
 pub use trail::{ImagePoint, trail};

@@ -5,9 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::SimError;
 use crate::error::require;
-
-/// V magnitude of the Sun at 1 au (Willmer 2018, ApJS 236, 47: −26.76, Vega system, Johnson V).
-const SUN_V_MAG_AT_1_AU: f64 = -26.76;
+use crate::optics::SUN_V_MAG_AT_1_AU;
 
 /// Kilometres in an astronomical unit (IAU 2012 Resolution B2, exact).
 const AU_KM: f64 = 149_597_870.7;

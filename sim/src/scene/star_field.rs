@@ -4,7 +4,7 @@ use contract::{Angle, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
 
 use super::{CameraMotion, Source};
 use crate::catalog::{Catalog, ConeIndex};
-use crate::optics::{Projection, RadiometryConfig};
+use crate::optics::{Projection, Radiometry};
 use crate::truth::{ObjectKind, Observer, StarMotion};
 
 /// How far a star may stand from its catalogued place: proper motion (Barnard's star, 10.4″ a year, over 60
@@ -30,13 +30,13 @@ struct PreparedStar {
 
 impl StarField {
     /// Prepares the stars of a catalogue.
-    pub fn new(catalog: &Catalog, radiometry: &RadiometryConfig) -> Self {
+    pub fn new(catalog: &Catalog, radiometry: &Radiometry) -> Self {
         let stars = catalog
             .stars()
             .iter()
             .map(|star| {
                 let magnitude = star.v_mag();
-                let electrons_per_s = radiometry.electrons_per_s(magnitude);
+                let electrons_per_s = radiometry.star(magnitude, star.b_v, star.v_i);
                 PreparedStar { id: star.id, motion: StarMotion::new(star), magnitude, electrons_per_s }
             })
             .collect();
@@ -122,11 +122,14 @@ fn is_within(position: PixelPoint, projection: &Projection, margin_px: f64) -> b
 mod tests {
     use super::*;
     use crate::catalog::CatalogStar;
+    use crate::optics::RadiometryConfig;
     use crate::truth::clock;
     use contract::Camera;
     use nalgebra::Vector3;
 
-    const RADIOMETRY: RadiometryConfig = RadiometryConfig { zero_point_e_per_s: 1e6 };
+    fn radiometry() -> Radiometry {
+        Radiometry::new(&RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6 }).unwrap()
+    }
 
     fn projection() -> Projection {
         Projection::new(&Camera {
@@ -170,7 +173,7 @@ mod tests {
     /// What the shutter control follows must be what is drawn.
     #[test]
     fn the_brightest_is_the_brightest_of_those_on_the_detector() {
-        let field = StarField::new(&Catalog::hipparcos2(), &RADIOMETRY);
+        let field = StarField::new(&Catalog::hipparcos2(), &radiometry());
         for (ra_deg, dec_deg) in [(84.0, -1.0), (101.0, -16.0), (266.4, -29.0), (0.0, 90.0), (180.0, 0.0)] {
             let camera_from_icrs = looking_at(ra_deg, dec_deg);
             let stars = seen(&field, camera_from_icrs, 0.0);
@@ -185,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_margin_adds_stars_around_the_detector_and_keeps_the_others() {
-        let field = StarField::new(&Catalog::hipparcos2(), &RADIOMETRY);
+        let field = StarField::new(&Catalog::hipparcos2(), &radiometry());
         let (inside, around) =
             (seen(&field, looking_at(84.0, -1.0), 0.0), seen(&field, looking_at(84.0, -1.0), 20.0));
         assert!(inside.iter().all(|star| around.contains(star) && star.position.is_on_detector(300, 200)));

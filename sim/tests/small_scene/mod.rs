@@ -52,7 +52,7 @@ pub(crate) fn still() -> Simulation {
             tangential: [1e-7, -2e-7],
         },
         psf: PsfConfig::GaussianHalo { sigma_px: 0.8, halo_sigma_px: 4.0, halo_fraction: 0.03 },
-        radiometry: RadiometryConfig { zero_point_e_per_s: 1.5e6 },
+        radiometry: RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1.5e6 },
         sensor: SensorConfig {
             bit_depth: 12,
             gain_e_per_dn: 10.0,
