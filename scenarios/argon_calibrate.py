@@ -54,7 +54,7 @@ PARAMETERS = [
     ("roi.threshold_dn", 45, 120, "int"),
     ("knowledge.noise_arcsec", 30.0, 90.0, "lin"),
     ("sensor.hot_pixels.count", 5, 80, "int"),
-    ("far_range.identification.radius_px", 2.0, 8.0, "lin"),
+    ("far_range.identification.radius_px", 2.0, 12.0, "lin"),
 ]
 
 

@@ -3,7 +3,7 @@
 use comfy_table::{Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use indexmap::IndexMap;
 
-use crate::score::{Cause, Figure, Score, Table2, names};
+use crate::score::{Cause, Figure, Score, Table2, Table2Distance, names};
 
 /// How to print a score.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +36,12 @@ pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
         "Rates in percent with their 95 % intervals; RMS in seconds of arc, over the correct.\n\
          The cause of a wrong answer is what kept the target itself from being taken.\n",
     );
+    if let Some(distance) = style.reference.and_then(|table| table.distance(score)) {
+        let Table2Distance { mean_points, worst_points } = distance;
+        text.push_str(&format!(
+            "The 30 cells differ from the published ones by {mean_points:.1} points in the mean, {worst_points:.1} at worst.\n"
+        ));
+    }
     for (title, pick) in [
         ("Misses by cause", (|column: &Column<'_>| column.misses) as Counts),
         ("Wrong answers by cause", |column| column.wrong),
@@ -284,6 +290,29 @@ mod tests {
         let style = TableStyle { reference: Some(&ARGON_TABLE_2), ..TableStyle::default() };
         assert!(line(&far_range(&score(5, 300), style), "published").contains("93.9"));
         assert!(!far_range(&score(4, 300), style).contains("published"));
+    }
+
+    #[test]
+    fn the_distance_from_the_published_cells_is_that_of_a_sum_by_hand() {
+        let score = score(5, 3000);
+        let style = TableStyle { reference: Some(&ARGON_TABLE_2), ..TableStyle::default() };
+        let ours: Vec<f64> = ARGON_TABLE_2
+            .rates()
+            .iter()
+            .map(|(name, _)| 100.0 * score.figures[*name].value.unwrap())
+            .collect();
+        // The groups of this score are alike, and like the whole.
+        let differences: Vec<f64> = ARGON_TABLE_2
+            .rates()
+            .iter()
+            .zip(&ours)
+            .flat_map(|((_, rates), ours)| rates.map(|rate| (rate - ours).abs()))
+            .collect();
+        let mean = differences.iter().sum::<f64>() / 30.0;
+        let worst = differences.iter().copied().fold(0.0, f64::max);
+        let expected = format!("by {mean:.1} points in the mean, {worst:.1} at worst");
+        let text = far_range(&score, style);
+        assert!(text.contains(&expected), "{expected}\n{text}");
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! The figures that the far-range paper reports.
 
+use super::{Score, names};
+
 /// The rows of the paper's Table 2, in percent: the days 1 to 5, then all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Table2 {
@@ -27,6 +29,47 @@ pub const ARGON_TABLE_2: Table2 = Table2 {
     dec_within_1px: [85.36, 85.54, 64.62, 16.79, 7.93, 44.88],
     dec_within_2px: [91.94, 93.21, 81.80, 40.65, 34.49, 63.05],
 };
+
+impl Table2 {
+    /// The rates of Table 2 by the names of their figures, in percent.
+    pub fn rates(&self) -> [(&'static str, [f64; 6]); 5] {
+        [
+            (names::HIT_RATE, self.hit_rate),
+            (names::RA_WITHIN_1PX, self.ra_within_1px),
+            (names::RA_WITHIN_2PX, self.ra_within_2px),
+            (names::DEC_WITHIN_1PX, self.dec_within_1px),
+            (names::DEC_WITHIN_2PX, self.dec_within_2px),
+        ]
+    }
+
+    /// How far the 30 cells of a score are from these, in points; `None` unless it has five groups and a value in
+    /// every cell.
+    pub fn distance(&self, score: &Score) -> Option<Table2Distance> {
+        if score.groups.len() != 5 {
+            return None;
+        }
+        let groups = score.groups.values().map(|group| &group.figures);
+        let columns: Vec<_> = groups.chain([&score.figures]).collect();
+        let mut distance = Table2Distance { mean_points: 0.0, worst_points: 0.0 };
+        for (name, rates) in self.rates() {
+            for (column, rate) in columns.iter().zip(rates) {
+                let points = (100.0 * column.get(name)?.value? - rate).abs();
+                distance.mean_points += points / 30.0;
+                distance.worst_points = distance.worst_points.max(points);
+            }
+        }
+        Some(distance)
+    }
+}
+
+/// How far a score is from a published table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Table2Distance {
+    /// Mean absolute difference of the cells, points of percent.
+    pub mean_points: f64,
+    /// Greatest absolute difference, points of percent.
+    pub worst_points: f64,
+}
 
 #[cfg(test)]
 mod tests {
