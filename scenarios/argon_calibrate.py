@@ -157,7 +157,7 @@ def main():
     parser.add_argument("--blocks", type=int, default=4, help="blocks of frames a day")
     parser.add_argument("--length", type=int, default=100, help="frames a block")
     parser.add_argument("--evaluations", type=int, default=300)
-    parser.add_argument("--step", type=float, default=0.15, help="first step, as a part of each range")
+    parser.add_argument("--step", type=float, default=0.08, help="first step, as a part of each range")
     parser.add_argument("--leave-out", type=int, choices=range(1, 6), help="a day that the fit does not see")
     options = parser.parse_args()
     scenario = tomllib.loads(options.scenario.read_text())
@@ -195,6 +195,7 @@ def main():
                 print(f"    {path} = {lookup(trial, path):.6g}", flush=True)
         return value
 
+    evaluate(start)
     settings = {"maxfevals": options.evaluations, "seed": 1, "verbose": -9}
     cma.fmin2(evaluate, start, options.step, settings)
 

@@ -92,4 +92,18 @@ mod tests {
             assert!(all(detected, rates) < 0.01, "{rates:?}");
         }
     }
+
+    /// The script that fits the scenario has the table too, without its last column.
+    #[test]
+    fn the_calibration_has_the_same_table_and_at_most_twelve_free_parameters() {
+        let script = include_str!("../../scenarios/argon_calibrate.py");
+        for (name, rates) in ARGON_TABLE_2.rates() {
+            let cells = rates[..5].iter().map(|rate| format!("{rate:.2}")).collect::<Vec<_>>().join(", ");
+            assert!(script.contains(&format!("\"{name}\": [{cells}]")), "{name}: {cells}");
+        }
+        let parameters =
+            script.split("PARAMETERS = [").nth(1).and_then(|rest| rest.split("\n]").next()).unwrap();
+        let count = parameters.lines().filter(|line| line.trim_start().starts_with('(')).count();
+        assert!((1..=12).contains(&count), "{count} parameters");
+    }
 }
