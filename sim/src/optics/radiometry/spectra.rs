@@ -16,8 +16,6 @@ pub(super) const STARS: usize = 36;
 /// M giants turn B−V back, and only V−I tells them apart.
 const BLUE: usize = 27;
 
-/// From this V−I on (K5III) a star is taken by its V−I, mag.
-const COOL_V_I: f64 = 1.6;
 /// B−V of a star whose colour is unknown, mag: the mean of the embedded catalogue.
 const MEAN_B_V: f64 = 0.70;
 
@@ -63,14 +61,12 @@ pub(super) fn v_i(number: usize) -> f64 {
 /// The place on the sequence of a star with these colours: the number of the star before it, and how far it is on the way to
 /// the next, 0 to 1.
 ///
-/// V−I decides when it is 1.6 or more, or when B−V is unknown; otherwise B−V. Colours beyond the ends of the sequence are those
-/// of the ends.
+/// V−I decides when it is known, because it lies where silicon is sensitive: dwarfs and giants, reddened or not, agree better by
+/// it. Otherwise B−V. Colours beyond the ends of the sequence are those of the ends.
 pub(super) fn place(b_v_mag: Option<f64>, v_i_mag: Option<f64>) -> (usize, f64) {
-    match (b_v_mag, v_i_mag) {
-        (_, Some(colour)) if colour >= COOL_V_I => between(colour, STARS, v_i),
-        (Some(colour), _) => between(colour, BLUE, b_v),
-        (None, Some(colour)) => between(colour, STARS, v_i),
-        (None, None) => between(MEAN_B_V, BLUE, b_v),
+    match (v_i_mag, b_v_mag) {
+        (Some(colour), _) => between(colour, STARS, v_i),
+        (None, b_v_mag) => between(b_v_mag.unwrap_or(MEAN_B_V), BLUE, b_v),
     }
 }
 
@@ -155,19 +151,19 @@ mod tests {
     #[test]
     fn a_star_of_the_sequence_is_at_its_own_place() {
         for number in 0..STARS {
-            let (before, part) = if number < BLUE {
-                place(Some(b_v(number)), None)
-            } else {
-                place(Some(b_v(number)), Some(v_i(number)))
-            };
+            let (before, part) = place(Some(0.5), Some(v_i(number)));
             assert!((before as f64 + part - number as f64).abs() < 1e-9, "{number}: {before} + {part}");
+            if number < BLUE {
+                let (before, part) = place(Some(b_v(number)), None);
+                assert!((before as f64 + part - number as f64).abs() < 1e-9, "{number}: {before} + {part}");
+            }
         }
     }
 
     #[test]
     fn colours_beyond_the_ends_are_those_of_the_ends() {
         assert_eq!(place(Some(-2.0), None), (0, 0.0));
-        assert_eq!(place(Some(5.0), Some(1.2)), (BLUE - 2, 1.0));
+        assert_eq!(place(Some(5.0), None), (BLUE - 2, 1.0));
         assert_eq!(place(None, Some(9.0)), (STARS - 2, 1.0));
     }
 
