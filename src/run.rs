@@ -93,6 +93,7 @@ impl Prepared {
             camera: scenario.camera.clone(),
             camera_from_body: scenario.mounting.nominal.camera_from_body(),
             bit_depth: scenario.sensor.bit_depth,
+            readout: Some(scenario.readout()),
             stars: self.stars.iter().map(StarRow::listed).collect(),
         }
     }

@@ -1,14 +1,15 @@
 //! The far-range pipeline: its steps in order, and what it remembers from frame to frame.
 
 use contract::{
-    AttitudeSource, Body, CameraFrame, Cluster, ContractError, Direction, Frame, Icrs, Label, Measurement,
-    NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution, Telemetry,
+    AttitudeSource, Body, Cluster, ContractError, Frame, Icrs, Label, Measurement, NoSolution, Outcome,
+    Pipeline, PipelineFactory, Rotation, Setup, Solution, Telemetry,
 };
 use hifitime::Epoch;
 
 use super::aberration::aberration_correction;
-use super::attitude::{MountingFilter, solve_q_method};
+use super::attitude::{MountingFilter, StarPair, solve_q_method};
 use super::background::BackgroundEstimator;
+use super::centroid::{CentroidConfig, CentroidFitter};
 use super::config::{AberrationConfig, FarRangeConfig};
 use super::detect::{Blob, Detector, Weights, saturated_pixels, transmitted_pixels};
 use super::hotspots::Hotspots;
@@ -32,6 +33,8 @@ pub struct FarRange {
     previous: Option<Previous>,
     background: BackgroundEstimator,
     detector: Detector,
+    /// Only with fitted centres.
+    fitter: Option<CentroidFitter>,
 }
 
 /// What is remembered of the previous frame.
@@ -46,10 +49,25 @@ impl FarRange {
     /// A pipeline that has seen no frame.
     ///
     /// # Errors
-    /// Those of [`FarRangeConfig::check`] and of the camera's check.
+    /// Those of [`FarRangeConfig::check`], of the camera's check and of [`contract::Readout::check`];
+    /// [`PipelineError::Parameter`] for fitted centres with a camera whose readout is not known.
     pub fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
         config.check()?;
         let model = CameraModel::new(&setup.camera)?;
+        let fitter = match (&config.centroid, setup.readout) {
+            (CentroidConfig::Brightness, _) => None,
+            (CentroidConfig::Fit { psf_sigma_px }, Some(readout)) => {
+                readout.check()?;
+                Some(CentroidFitter::new(*psf_sigma_px, readout))
+            }
+            (CentroidConfig::Fit { .. }, None) => {
+                return Err(PipelineError::Parameter {
+                    field: "centroid.mode",
+                    value: "fit".to_owned(),
+                    expected: "brightness, for a camera whose readout (gain, bias, read noise, saturation) is not known",
+                });
+            }
+        };
         Ok(Self {
             stars: StarList::new(&setup.stars, config.identification.max_magnitude, &model),
             mounting: MountingFilter::new(setup.camera_from_body, config.attitude.filter_lambda),
@@ -57,6 +75,7 @@ impl FarRange {
             previous: None,
             background: BackgroundEstimator::default(),
             detector: Detector::default(),
+            fitter,
             model,
             config,
         })
@@ -75,8 +94,12 @@ impl FarRange {
         };
         let thresholds = self.config.thresholds.of(frame, background);
         let base_dn = background.filter(|_| above_background).map_or(0.0, |b| b.median_dn);
-        let blobs = self.detector.detect(frame, thresholds, base_dn, self.config.max_clusters as usize);
-        if blobs.is_empty() { Err(NoSolution::EmptyFrame) } else { Ok(blobs.to_vec()) }
+        let mut blobs =
+            self.detector.detect(frame, thresholds, base_dn, self.config.max_clusters as usize).to_vec();
+        if let Some(fitter) = &mut self.fitter {
+            fitter.refine(frame, &self.detector, &mut blobs);
+        }
+        if blobs.is_empty() { Err(NoSolution::EmptyFrame) } else { Ok(blobs) }
     }
 
     /// Takes the stars of a frame into the mounting (section 2.4) if there are enough of them.
@@ -84,10 +107,14 @@ impl FarRange {
         if seen.is_empty() {
             return AttitudeSource::NoStars;
         }
-        let pairs: Vec<(Direction<CameraFrame>, Direction<Icrs>)> = seen
+        let pairs: Vec<StarPair> = seen
             .iter()
             .filter_map(|(blob, predicted)| {
-                Some((self.model.back_project(blob.centre)?, predicted.star.direction))
+                Some(StarPair {
+                    camera: self.model.back_project(blob.centre)?,
+                    icrs: predicted.star.direction,
+                    weight: self.config.attitude.weight(blob.sigma_px),
+                })
             })
             .collect();
         let enough = pairs.len() >= self.config.attitude.min_stars as usize;
