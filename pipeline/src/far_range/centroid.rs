@@ -4,7 +4,7 @@ use contract::{Frame, PixelPoint, Readout};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::detect::{Blob, Detector};
+use super::detect::{Blob, Detector, FittedCentre};
 use super::profile_fit::{MAX_COMPONENTS, ProfileFit, Sample, Shape, Start};
 use crate::PipelineError;
 use crate::error::require;
@@ -18,7 +18,8 @@ pub enum CentroidConfig {
     Brightness,
     /// A circular image fitted to the pixels about the cluster by maximum likelihood, which knows the noise of each and
     /// leaves out those that are saturated, not transmitted or another cluster's. Needs the camera's readout. Where no fit
-    /// is found, the brightness centre stays.
+    /// is found, the brightness centre stays. Detection, identification, tracking and motion segmentation keep the
+    /// brightness centre; the attitude (Eq. 14), the line of sight (Eq. 17) and the reported places take the fitted one.
     Fit {
         /// Width of the image of a point, standard deviation, px, 0.3 to 10; without it the width of every cluster is fitted
         /// with it, which costs faint stars some accuracy.
@@ -61,7 +62,7 @@ const MAX_SIGMA_PX: f64 = 1.0;
 pub(super) struct CentroidFitter {
     psf_sigma_px: Option<f64>,
     readout: Readout,
-    fit: ProfileFit,
+    profile: ProfileFit,
     samples: Vec<Sample>,
     own: Vec<bool>,
 }
@@ -87,27 +88,23 @@ struct Extent {
 
 impl CentroidFitter {
     pub(super) fn new(psf_sigma_px: Option<f64>, readout: Readout) -> Self {
-        Self { psf_sigma_px, readout, fit: ProfileFit::default(), samples: Vec::new(), own: Vec::new() }
+        Self { psf_sigma_px, readout, profile: ProfileFit::default(), samples: Vec::new(), own: Vec::new() }
     }
 
-    /// Replaces the centre of every cluster of the last frame detected by the fitted one, with its standard deviation, where
-    /// there is one.
-    pub(super) fn refine(&mut self, frame: &Frame, detector: &Detector, blobs: &mut [Blob]) {
+    /// Fits the centre of every cluster of the last frame detected.
+    pub(super) fn fit(&mut self, frame: &Frame, detector: &Detector, blobs: &mut [Blob]) {
         for (i, blob) in blobs.iter_mut().enumerate() {
-            if let Some((centre, sigma_px)) = self.centre(frame, detector, detector.members(i), blob) {
-                blob.centre = centre;
-                blob.sigma_px = Some(sigma_px);
-            }
+            blob.fitted = self.fitted(frame, detector, detector.members(i), blob);
         }
     }
 
-    fn centre(
+    fn fitted(
         &mut self,
         frame: &Frame,
         detector: &Detector,
         members: &[u32],
         blob: &Blob,
-    ) -> Option<(PixelPoint, f64)> {
+    ) -> Option<FittedCentre> {
         let extent = self.extent(frame, members)?;
         let sigma = self.psf_sigma_px.unwrap_or(TYPICAL_SIGMA_PX);
         let reach = (REACH_SIGMAS * sigma).ceil() as usize;
@@ -144,13 +141,14 @@ impl CentroidFitter {
         };
         let noise_e2 = self.readout.read_noise_e * self.readout.read_noise_e
             + self.readout.gain_e_per_dn * self.readout.gain_e_per_dn / 12.0;
-        let fitted = self.fit.fit(&self.samples, (window.columns, window.rows), noise_e2, &shape, start)?;
+        let fitted =
+            self.profile.fit(&self.samples, (window.columns, window.rows), noise_e2, &shape, start)?;
         // A form that is not the image's is believed less; noise alone must not change weights much.
         let misfit = fitted.misfit.max(1.0).sqrt();
         let variance = fitted.sigma_x_px * fitted.sigma_x_px + fitted.sigma_y_px * fitted.sigma_y_px;
         let sigma_px = misfit * (0.5 * variance).sqrt();
-        let centre = PixelPoint::new(window.x as f64 + fitted.x_px, window.y as f64 + fitted.y_px);
-        (sigma_px <= MAX_SIGMA_PX).then_some((centre, sigma_px))
+        let position = PixelPoint::new(window.x as f64 + fitted.x_px, window.y as f64 + fitted.y_px);
+        (sigma_px <= MAX_SIGMA_PX).then_some(FittedCentre { position, sigma_px })
     }
 
     fn extent(&self, frame: &Frame, members: &[u32]) -> Option<Extent> {

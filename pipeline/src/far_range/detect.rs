@@ -21,14 +21,29 @@ pub enum Weights {
 /// A cluster: connected pixels (8 neighbours), each above I1 and at least one above I2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Blob {
-    /// Centre c: the brightness centre (Eq. 1), or a fitted one.
+    /// Brightness centre c (Eq. 1).
     pub(super) centre: PixelPoint,
-    /// Standard deviation of a fitted centre, px, along either axis; `None` for the brightness centre.
-    pub(super) sigma_px: Option<f64>,
+    /// The fitted centre, if there is one.
+    pub(super) fitted: Option<FittedCentre>,
     /// Weighted size s (Eq. 2), in units of full scale.
     pub(super) size: f64,
     /// Number of pixels.
     pub(super) pixels: u32,
+}
+
+/// A centre and its error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FittedCentre {
+    pub(super) position: PixelPoint,
+    /// Standard deviation along either axis, px, the root mean square of both.
+    pub(super) sigma_px: f64,
+}
+
+impl Blob {
+    /// Where directions are taken from: the fitted centre if there is one, or the brightness centre.
+    pub(super) fn measured(&self) -> PixelPoint {
+        self.fitted.map_or(self.centre, |fitted| fitted.position)
+    }
 }
 
 /// Finds clusters. Owns its buffers: a frame of the same size as the last one allocates nothing.
@@ -149,7 +164,7 @@ fn measure(frame: &Frame, members: &[u32], base_dn: f64) -> Option<Blob> {
     }
     (sum > 0.0).then(|| Blob {
         centre: PixelPoint::new(sum_x / sum, sum_y / sum),
-        sigma_px: None,
+        fitted: None,
         size: sum / f64::from(full_scale),
         pixels: members.len() as u32,
     })
