@@ -40,6 +40,7 @@ impl DatasetWriter {
             bit_depth: scenario.sensor.bit_depth,
             magnitude_limit: scenario.star_list.magnitude_limit,
             star_epoch_utc: Some(format_utc(star_epoch)),
+            readout: Some(scenario.readout()),
             camera: scenario.camera.clone(),
             mounting: scenario.mounting.nominal,
             far_range: scenario.far_range.clone(),

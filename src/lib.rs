@@ -6,6 +6,7 @@ pub mod dataset_writer;
 pub mod failure;
 pub mod files;
 pub mod flight;
+pub mod inject;
 pub mod pipeline_choice;
 pub mod run;
 pub mod run_file;

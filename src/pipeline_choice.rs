@@ -24,6 +24,11 @@ pub struct PipelineChoice {
 }
 
 impl PipelineChoice {
+    /// Whether it is the built-in one.
+    pub fn is_built_in(&self) -> bool {
+        self.word == FAR_RANGE
+    }
+
     /// The factory. A program finds the images of its frames in `scratch`.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use contract::{NoSolution, Pipeline, PipelineFactory, Setup, Solution};
+use contract::{NoSolution, Outcome, Pipeline, PipelineFactory, Setup, Solution};
 use hifitime::Epoch;
 use sim::Simulator;
 use sim::truth::{FrameTruth, ObjectTruth};
@@ -15,6 +15,7 @@ use crate::files::{
     StarRow, TableReader, TableWriter, read_measurements, write_expected,
 };
 use crate::flight::fly;
+use crate::inject::{InjectedPipeline, Stage};
 use crate::run_file::RunFile;
 use crate::scenario::{Scenario, ScenarioSource};
 use crate::score::{Score, ScoreContext, Scored, Scorer};
@@ -65,9 +66,24 @@ impl Prepared {
     /// # Errors
     /// A [`Failure`] with the place of the first value that is not allowed.
     pub fn new(source: &ScenarioSource) -> Result<Self, Failure> {
+        Self::with_truth_for(source, None)
+    }
+
+    /// [`Prepared::new`], for a run of the built-in pipeline in which the truth stands in the place of a stage's result.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`]; [`Failure::Usage`] for the regions of interest of a scenario that has none.
+    pub fn with_truth_for(source: &ScenarioSource, inject: Option<Stage>) -> Result<Self, Failure> {
+        let mut source = source.clone();
+        if inject == Some(Stage::Roi) && source.scenario.roi.take().is_none() {
+            return Err(Failure::Usage(format!(
+                "--inject is roi, expected a scenario with regions of interest: `{}` has no [roi]",
+                source.name
+            )));
+        }
         let simulator = source.simulator()?;
         let scenario = &source.scenario;
-        let run_file = RunFile::new(&source.name, scenario, simulator.catalog().sha256())?;
+        let run_file = RunFile::new(&source.name, scenario, simulator.catalog().sha256(), inject)?;
         let (_, star_epoch) = simulator
             .schedule()
             .frame(0)
@@ -93,6 +109,7 @@ impl Prepared {
             camera: scenario.camera.clone(),
             camera_from_body: scenario.mounting.nominal.camera_from_body(),
             bit_depth: scenario.sensor.bit_depth,
+            readout: Some(scenario.readout()),
             stars: self.stars.iter().map(StarRow::listed).collect(),
         }
     }
@@ -112,7 +129,8 @@ impl Prepared {
     }
 
     /// Makes frames, has the pipeline process them and scores its answers; writes all of it; `done` is told of each
-    /// frame. A scenario is one sequence: the pipeline is built once.
+    /// frame. A scenario is one sequence: the pipeline is built once. With the truth for a stage, the pipeline is the
+    /// built-in one, whatever `factory` builds.
     ///
     /// # Errors
     /// A [`Failure`] when a file cannot be written or the pipeline cannot be built.
@@ -124,12 +142,22 @@ impl Prepared {
         done: impl Fn(),
     ) -> Result<Ran, Failure> {
         let mut dataset = self.dataset(directory, flight)?;
-        let mut answers =
-            Answers::create(&directory.measurements(), &directory.clusters(), factory.build(&self.setup())?)?;
+        let setup = self.setup();
+        let mut pipeline = match self.run_file.inject {
+            None => RunningPipeline::Own(factory.build(&setup)?),
+            Some(stage) => {
+                RunningPipeline::Injected(InjectedPipeline::new(stage, &self.scenario().far_range, &setup)?)
+            }
+        };
+        let mut answers = Answers::create(&directory.measurements(), &directory.clusters())?;
         let unproject = |point| self.simulator.projection().unproject(point);
         let mut scorer = Scorer::new(context(&self.run_file, &unproject));
         self.fly(directory, flight, |exposure| {
-            let outcome = answers.answer(&exposure.frame, &exposure.telemetry)?;
+            let outcome = match &mut pipeline {
+                RunningPipeline::Own(pipeline) => pipeline.process(&exposure.frame, &exposure.telemetry),
+                RunningPipeline::Injected(pipeline) => pipeline.answer(&exposure)?,
+            };
+            answers.add(exposure.frame.number(), &outcome)?;
             scorer.add(&exposure.truth, &exposure.objects, Some(&outcome)).map_err(unscorable)?;
             dataset.add(exposure)?;
             done();
@@ -187,9 +215,11 @@ pub fn process(
 ) -> Result<Processed, Failure> {
     // Under other names until all is done, so that a run that fails leaves nothing in the way of the next one.
     let partial = PartialFiles::of(&[measurements, clusters])?;
-    let mut answers = Answers::create(partial.path(0), partial.path(1), factory.build(setup)?)?;
+    let mut pipeline = factory.build(setup)?;
+    let mut answers = Answers::create(partial.path(0), partial.path(1))?;
     for frame in dataset.frames() {
-        answers.answer(&dataset.read(frame)?, frame.telemetry())?;
+        let image = dataset.read(frame)?;
+        answers.add(image.number(), &pipeline.process(&image, frame.telemetry()))?;
         done();
     }
     let first_failure = answers.finish()?;
@@ -268,39 +298,38 @@ fn unscorable(error: crate::score::ScoreError) -> Failure {
     Failure::Usage(format!("the truth cannot be scored: {error}"))
 }
 
-/// A pipeline and the files of its answers.
+/// The pipeline of a run.
+enum RunningPipeline {
+    /// It answers by itself.
+    Own(Box<dyn Pipeline>),
+    /// It is told the truth for one stage.
+    Injected(InjectedPipeline),
+}
+
+/// The files of a pipeline's answers.
 struct Answers {
-    pipeline: Box<dyn Pipeline>,
     measurements: MeasurementWriter,
     clusters: TableWriter<FrameCluster>,
     first_failure: Option<FirstFailure>,
 }
 
 impl Answers {
-    fn create(measurements: &Path, clusters: &Path, pipeline: Box<dyn Pipeline>) -> Result<Self, FileError> {
+    fn create(measurements: &Path, clusters: &Path) -> Result<Self, FileError> {
         Ok(Self {
-            pipeline,
             measurements: MeasurementWriter::create(measurements)?,
             clusters: TableWriter::create(clusters)?,
             first_failure: None,
         })
     }
 
-    fn answer(
-        &mut self,
-        frame: &contract::Frame,
-        telemetry: &contract::Telemetry,
-    ) -> Result<contract::Outcome, FileError> {
-        let outcome = self.pipeline.process(frame, telemetry);
+    fn add(&mut self, frame: u64, outcome: &Outcome) -> Result<(), FileError> {
         if let Solution::NoSolution(NoSolution::Failed(reason)) = &outcome.solution
             && self.first_failure.is_none()
         {
-            self.first_failure = Some(FirstFailure { frame: frame.number(), reason: reason.clone() });
+            self.first_failure = Some(FirstFailure { frame, reason: reason.clone() });
         }
-        self.measurements.write(frame.number(), &outcome)?;
-        let rows = outcome.clusters.iter().map(|&cluster| FrameCluster { frame: frame.number(), cluster });
-        self.clusters.write(rows)?;
-        Ok(outcome)
+        self.measurements.write(frame, outcome)?;
+        self.clusters.write(outcome.clusters.iter().map(|&cluster| FrameCluster { frame, cluster }))
     }
 
     fn finish(self) -> Result<Option<FirstFailure>, FileError> {
@@ -315,6 +344,7 @@ fn context<'a>(run_file: &RunFile, unproject: crate::score::Unproject<'a>) -> Sc
         scenario: run_file.name.clone(),
         seed: run_file.scenario.seed,
         version: run_file.version.clone(),
+        inject: run_file.inject.map(|stage| stage.to_string()),
         columns: run_file.scenario.camera.columns,
         rows: run_file.scenario.camera.rows,
         unproject,

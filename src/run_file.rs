@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::dataset_writer::sha256_hex;
 use crate::failure::Failure;
 use crate::files::FileError;
+use crate::inject::Stage;
 use crate::scenario::Scenario;
 use crate::toml_file;
 
@@ -22,6 +23,9 @@ pub struct RunFile {
     pub catalog_sha256: String,
     /// SHA-256 of the resolved scenario as it stands below, hexadecimal.
     pub hash: String,
+    /// The stage whose result was replaced by the truth; absent in an honest run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inject: Option<Stage>,
     /// The scenario.
     pub scenario: Scenario,
 }
@@ -31,12 +35,18 @@ impl RunFile {
     ///
     /// # Errors
     /// [`Failure::Usage`] when the scenario cannot be written as TOML.
-    pub fn new(name: &str, scenario: &Scenario, catalog_sha256: &str) -> Result<Self, Failure> {
+    pub fn new(
+        name: &str,
+        scenario: &Scenario,
+        catalog_sha256: &str,
+        inject: Option<Stage>,
+    ) -> Result<Self, Failure> {
         Ok(Self {
             name: name.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             catalog_sha256: catalog_sha256.to_owned(),
             hash: sha256_hex(&to_toml(scenario)?),
+            inject,
             scenario: scenario.clone(),
         })
     }

@@ -245,6 +245,7 @@ mod tests {
             scenario: "argon".to_owned(),
             seed: 1,
             version: "0.1.0".to_owned(),
+            inject: None,
             frames: frames * groups as u64,
             figures: figures(frames * groups as u64),
             groups: (1..=groups).map(|day| (format!("day {day}"), group.clone())).collect(),

@@ -9,7 +9,7 @@ use boresight::files::{
     CameraFile, Dataset, FrameHeader, ImageFormat, RunDirectory, TelemetryRow, TelemetryWriter, parse_utc,
     write_frame,
 };
-use contract::{Camera, Frame, Mounting, Rotation, Telemetry, Window};
+use contract::{Camera, Frame, Mounting, Readout, Rotation, Telemetry, Window};
 use hifitime::Unit;
 use nalgebra::Vector3;
 use tempfile::{TempDir, tempdir};
@@ -19,6 +19,12 @@ fn camera_file() -> CameraFile {
         bit_depth: 10,
         magnitude_limit: 7.0,
         star_epoch_utc: None,
+        readout: Some(Readout {
+            gain_e_per_dn: 10.0,
+            bias_dn: 40.3,
+            read_noise_e: 15.0,
+            saturation_dn: 1020,
+        }),
         camera: Camera {
             columns: 24,
             rows: 16,

@@ -128,7 +128,7 @@ impl Label {
 /// A cluster of bright pixels, and what the pipeline took it for: evidence for the cause of a miss.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cluster {
-    /// Brightness centre.
+    /// Its centre, however the pipeline measures it.
     pub position: PixelPoint,
     /// Weighted size: the sum of the intensities, each in [0, 1].
     pub size: f64,

@@ -1,6 +1,8 @@
 //! The one interface that outsiders implement.
 
-use crate::{Body, Camera, CameraFrame, ContractError, Frame, ListedStar, Outcome, Rotation, Telemetry};
+use crate::{
+    Body, Camera, CameraFrame, ContractError, Frame, ListedStar, Outcome, Readout, Rotation, Telemetry,
+};
 
 /// An image-processing pipeline under test.
 ///
@@ -21,6 +23,8 @@ pub struct Setup {
     pub camera_from_body: Rotation<CameraFrame, Body>,
     /// Bits of the analogue-digital converter.
     pub bit_depth: u8,
+    /// Gain, bias, read noise and saturation as calibrated; `None` when they are not known.
+    pub readout: Option<Readout>,
     /// The uploaded star list, ordered by `id`.
     pub stars: Vec<ListedStar>,
 }

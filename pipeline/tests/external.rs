@@ -31,6 +31,7 @@ fn setup() -> Setup {
         },
         camera_from_body: Rotation::identity(),
         bit_depth: 12,
+        readout: None,
         stars: Vec::new(),
     }
 }

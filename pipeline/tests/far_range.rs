@@ -122,7 +122,7 @@ fn flat(i: u64, level: u16) -> Frame {
 }
 
 fn setup() -> Setup {
-    Setup { camera: camera(), camera_from_body: nominal(), bit_depth: 12, stars: stars() }
+    Setup { camera: camera(), camera_from_body: nominal(), bit_depth: 12, readout: None, stars: stars() }
 }
 
 /// The hotspot is known; the sequence has no aberration.

@@ -105,6 +105,7 @@ fn setup(arguments: &ProcessArguments, dataset: &Dataset) -> Result<Setup, Failu
         camera: camera.camera.clone(),
         camera_from_body: camera.mounting.camera_from_body(),
         bit_depth: camera.bit_depth,
+        readout: camera.readout,
         stars: stars.iter().map(StarRow::listed).collect(),
     })
 }

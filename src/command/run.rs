@@ -9,6 +9,7 @@ use super::options::{PipelineOptions, Selection};
 use super::output::Output;
 use crate::failure::Failure;
 use crate::files::{ImageFormat, RunDirectory};
+use crate::inject::Stage;
 use crate::run::{Expectation, Flight, Prepared};
 use crate::score::ARGON_TABLE_2;
 use crate::table::{TableStyle, far_range};
@@ -25,6 +26,9 @@ pub(super) struct RunArguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineOptions,
+    /// Give the built-in pipeline the truth in the place of this stage's result, to see what the stage costs
+    #[arg(long, value_name = "STAGE")]
+    inject: Option<Stage>,
     /// Keep the images as well (about 1 MB a frame)
     #[arg(long, value_name = "fits|png|exr")]
     save_frames: Option<ImageFormat>,
@@ -37,6 +41,7 @@ impl RunArguments {
             selection: Selection::of("argon"),
             out: None,
             pipeline: PipelineOptions::default(),
+            inject: None,
             save_frames: None,
         }
     }
@@ -44,7 +49,15 @@ impl RunArguments {
 
 pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     let source = arguments.selection.scenario()?;
-    let prepared = Prepared::new(&source)?;
+    if let Some(stage) = arguments.inject
+        && !arguments.pipeline.choice().is_built_in()
+    {
+        return Err(Failure::Usage(format!(
+            "--inject is {stage}, expected with the built-in pipeline `far_range` alone: another one has no place to put the \
+             truth in"
+        )));
+    }
+    let prepared = Prepared::with_truth_for(&source, arguments.inject)?;
     let flight = Flight {
         frames: arguments.selection.frames(prepared.frame_count())?,
         jobs: arguments.selection.jobs(),
@@ -71,7 +84,10 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         reference: source.is_argon().then_some(&ARGON_TABLE_2),
         ..TableStyle::default()
     };
-    let table = far_range(&score, style);
-    output.answer(&score, format!("{table}\n\nresults in {}", directory.path().display()))?;
+    let mut text = far_range(&score, style);
+    if let Some(stage) = arguments.inject {
+        text += &format!("\n\nthe truth was injected for {stage}: this is no result of the pipeline");
+    }
+    output.answer(&score, format!("{text}\n\nresults in {}", directory.path().display()))?;
     Ok(Answer::Yes)
 }

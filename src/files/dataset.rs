@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use contract::{Camera, Frame, Mounting, Telemetry};
+use contract::{Camera, Frame, Mounting, Readout, Telemetry};
 use hifitime::Epoch;
 use pipeline::PipelineError;
 use pipeline::far_range::FarRangeConfig;
@@ -31,6 +31,9 @@ pub struct CameraFile {
     /// the first frame.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub star_epoch_utc: Option<String>,
+    /// Gain, bias, read noise and saturation as calibrated; without it, the built-in pipeline cannot fit centroids.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub readout: Option<Readout>,
     /// Nominal camera.
     pub camera: Camera,
     /// Nominal mounting; without it, the camera's axes are those of the body.
@@ -74,6 +77,9 @@ impl CameraFile {
     fn check(&self, path: &Path) -> Result<(), FileError> {
         self.camera.check().map_err(|source| FileError::contract(path, source))?;
         self.mounting.check().map_err(|source| FileError::contract(path, source))?;
+        if let Some(readout) = &self.readout {
+            readout.check().map_err(|source| FileError::contract(path, source))?;
+        }
         let error = |field: &str, value: String, expected: &str| {
             Err(FileError::value(path, Place::Header, field, value, expected))
         };

@@ -6,7 +6,7 @@ mod source;
 pub use builtin::{BUILT_IN, BuiltIn, STARTING_POINT, is_argon};
 pub use source::ScenarioSource;
 
-use contract::Camera;
+use contract::{Camera, Readout};
 use pipeline::far_range::FarRangeConfig;
 use schemars::{JsonSchema, Schema, schema_for};
 use serde::{Deserialize, Serialize};
@@ -86,6 +86,20 @@ impl Scenario {
             shutter: self.shutter.clone(),
             roi: self.roi.clone(),
             target: self.target.clone(),
+        }
+    }
+
+    /// How the detector's electrons become digital numbers, as its calibration tells a pipeline.
+    pub fn readout(&self) -> Readout {
+        let sensor = &self.sensor;
+        // At the full well the read noise still moves a pixel: it counts as full from five standard deviations below.
+        let full_dn =
+            sensor.bias_dn + (sensor.full_well_e - 5.0 * sensor.read_noise_e) / sensor.gain_e_per_dn;
+        Readout {
+            gain_e_per_dn: sensor.gain_e_per_dn,
+            bias_dn: sensor.bias_dn,
+            read_noise_e: sensor.read_noise_e,
+            saturation_dn: full_dn.floor().clamp(1.0, f64::from(sensor.full_scale_dn())) as u16,
         }
     }
 

@@ -24,6 +24,8 @@ pub struct ScoreContext<'a> {
     pub seed: u64,
     /// Version of Boresight.
     pub version: String,
+    /// The stage whose result was replaced by the truth, if one was.
+    pub inject: Option<String>,
     /// Columns of the detector.
     pub columns: usize,
     /// Rows of the detector.
@@ -71,6 +73,7 @@ pub enum ScoreError {
 ///     scenario: "argon".to_owned(),
 ///     seed: 1,
 ///     version: "0.1.0".to_owned(),
+///     inject: None,
 ///     columns: 752,
 ///     rows: 580,
 ///     unproject: &unproject,
@@ -140,6 +143,7 @@ impl<'a> Scorer<'a> {
             scenario: self.context.scenario,
             seed: self.context.seed,
             version: self.context.version,
+            inject: self.context.inject,
             frames: all.frames,
             figures: all.figures,
             groups,
@@ -249,6 +253,7 @@ mod tests {
             scenario: "hand-made".to_owned(),
             seed: 42,
             version: "0.1.0".to_owned(),
+            inject: None,
             columns: COLUMNS,
             rows: ROWS,
             unproject: &unproject,

@@ -27,6 +27,12 @@ pub(super) fn holds(position: PixelPoint, object: &ObjectTruth) -> bool {
     position.distance(object.position) <= (CENTRE_SHARE * object.radius_px).max(MIN_REACH_PX)
 }
 
+/// The object that a cluster with its centre at `position` belongs to: of those that it holds, the one with the most
+/// transmitted electrons; `None` when it holds none.
+pub fn belonging_to(position: PixelPoint, objects: &[ObjectTruth]) -> Option<&ObjectTruth> {
+    brightest(objects.iter().filter(|object| holds(position, object) && transmitted_electrons(object) > 0.0))
+}
+
 /// Whether the images of two objects touch, so that they may be one cluster.
 pub(super) fn touch(a: &ObjectTruth, b: &ObjectTruth) -> bool {
     a.position.distance(b.position) <= reach_px(a) + reach_px(b)

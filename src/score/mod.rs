@@ -23,6 +23,7 @@ mod verdict;
 pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, Unproject};
 pub use angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
 pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
+pub use belonging::belonging_to;
 pub use cause::Cause;
 pub use report::{Figure, GroupScore, Score, names};
 pub use verdict::{FrameVerdict, Taken, Verdict, VerdictRow};

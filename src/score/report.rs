@@ -130,6 +130,9 @@ pub struct Score {
     pub seed: u64,
     /// Version of Boresight that made the score.
     pub version: String,
+    /// The stage whose result was replaced by the truth: with one, this is no score of the pipeline. Absent without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inject: Option<String>,
     /// Number of frames: detected and missed, each counted once.
     pub frames: u64,
     /// Figures over all frames, by name (see [`names`] for far range).

@@ -55,7 +55,7 @@ pub fn aberration_correction(
 
 #[cfg(test)]
 mod tests {
-    use super::super::attitude::solve_q_method;
+    use super::super::attitude::{StarPair, solve_q_method};
     use super::*;
     use contract::{Angle, Direction};
 
@@ -125,7 +125,8 @@ mod tests {
                     let listed: Direction<Icrs> =
                         truth.inverse() * Direction::from_vector(Vector3::new(x, y, 1.0)).unwrap();
                     let seen = apparent(listed.vector(), &(velocity / LIGHT_KM_S));
-                    (truth * Direction::from_vector(seen).unwrap(), listed)
+                    let camera = truth * Direction::from_vector(seen).unwrap();
+                    StarPair { camera, icrs: listed, weight: 1.0 }
                 })
                 .collect();
             let solved = solve_q_method(&stars).unwrap();

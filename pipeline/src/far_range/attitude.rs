@@ -17,11 +17,27 @@ pub struct AttitudeConfig {
     /// λ of Eq. 16, the weight of the old estimate, 0 to below 1. Near 1 it smooths over about 1/(1 − λ) solutions;
     /// 0 takes each solution as it is. (The paper's text says the opposite of its equation.)
     pub filter_lambda: f64,
+    /// The weights ω of the stars in Eq. 14.
+    pub weights: StarWeights,
+    /// Error of a star's place that its fitted centre does not know of (star list, distortion, what the correction of
+    /// aberration leaves), px, 0 to 10: added in square to σ of inverse-variance weights, so that no bright star takes all.
+    pub weight_floor_px: f64,
+}
+
+/// How much a star counts in Eq. 14.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum StarWeights {
+    /// All alike, as in the paper.
+    #[default]
+    Equal,
+    /// ω = 1/σ², σ that of the fitted centre; needs fitted centres.
+    InverseVariance,
 }
 
 impl Default for AttitudeConfig {
     fn default() -> Self {
-        Self { min_stars: 10, filter_lambda: 0.9 }
+        Self { min_stars: 10, filter_lambda: 0.9, weights: StarWeights::Equal, weight_floor_px: 0.02 }
     }
 }
 
@@ -34,26 +50,49 @@ impl AttitudeConfig {
         require("attitude.min_stars", f64::from(self.min_stars), "2 to 1000000", |v| {
             (2.0..=1e6).contains(&v)
         })?;
-        require("attitude.filter_lambda", self.filter_lambda, "0 to below 1", |v| (0.0..1.0).contains(&v))
+        require("attitude.filter_lambda", self.filter_lambda, "0 to below 1", |v| (0.0..1.0).contains(&v))?;
+        require("attitude.weight_floor_px", self.weight_floor_px, "0 to 10", |v| (0.0..=10.0).contains(&v))
+    }
+
+    /// The weight ω of a star whose centre has the standard deviation `sigma_px`; `None` for a brightness centre.
+    pub(super) fn weight(&self, sigma_px: Option<f64>) -> f64 {
+        match self.weights {
+            StarWeights::Equal => 1.0,
+            StarWeights::InverseVariance => {
+                let sigma_px = sigma_px.unwrap_or(BRIGHTNESS_CENTRE_SIGMA_PX).max(LEAST_SIGMA_PX);
+                1.0 / (sigma_px * sigma_px + self.weight_floor_px * self.weight_floor_px)
+            }
+        }
     }
 }
 
-/// A star as seen by the camera and as listed.
-pub(super) type StarPair = (Direction<CameraFrame>, Direction<Icrs>);
+/// Standard deviation that a brightness centre among fitted ones is given, px: known no better than its pixel, 1/√12.
+const BRIGHTNESS_CENTRE_SIGMA_PX: f64 = 0.29;
 
-/// Least gap between the two largest eigenvalues, a star: below it the directions are all one direction, and
+/// No centre is known better than this, px; keeps weights finite.
+const LEAST_SIGMA_PX: f64 = 1e-4;
+
+/// A star as seen by the camera and as listed, with its weight ω, above 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct StarPair {
+    pub(super) camera: Direction<CameraFrame>,
+    pub(super) icrs: Direction<Icrs>,
+    pub(super) weight: f64,
+}
+
+/// Least gap between the two largest eigenvalues, a unit of weight: below it the directions are all one direction, and
 /// the turn about it is free. Stars one pixel apart (4e-4 rad) give about 1e-7.
 const LEAST_GAP: f64 = 1e-10;
 
-/// The rotation A that minimises J(A) = Σ ‖r_cam − A r_icrs‖² (Eq. 14, all weights 1), by Davenport's q-method;
+/// The rotation A that minimises J(A) = Σ ω ‖r_cam − A r_icrs‖² (Eq. 14), by Davenport's q-method;
 /// `None` when the stars do not determine it.
 ///
-/// Σ r_cam · (q r_icrs q*) is the quadratic form qᵀ K q; its greatest value on unit quaternions is at the
+/// Σ ω r_cam · (q r_icrs q*) is the quadratic form qᵀ K q; its greatest value on unit quaternions is at the
 /// eigenvector of K's largest eigenvalue.
 pub(super) fn solve_q_method(stars: &[StarPair]) -> Option<Rotation<CameraFrame, Icrs>> {
     let b: Matrix3<f64> =
-        stars.iter().map(|(camera, icrs)| camera.vector() * icrs.vector().transpose()).sum();
-    // z = Σ r_icrs × r_cam.
+        stars.iter().map(|star| star.camera.vector() * star.weight * star.icrs.vector().transpose()).sum();
+    // z = Σ ω r_icrs × r_cam.
     let z = [b[(2, 1)] - b[(1, 2)], b[(0, 2)] - b[(2, 0)], b[(1, 0)] - b[(0, 1)]];
     let trace = b.trace();
     // Scalar first.
@@ -67,7 +106,7 @@ pub(super) fn solve_q_method(stars: &[StarPair]) -> Option<Rotation<CameraFrame,
     let mut order = [0, 1, 2, 3];
     order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
     let gap = eigen.eigenvalues[order[0]] - eigen.eigenvalues[order[1]];
-    if gap.is_nan() || gap <= LEAST_GAP * stars.len() as f64 {
+    if gap.is_nan() || gap <= LEAST_GAP * stars.iter().map(|star| star.weight).sum::<f64>() {
         return None;
     }
     let q = eigen.eigenvectors.column(order[0]);
@@ -141,7 +180,7 @@ mod tests {
         seen.iter()
             .map(|&[x, y]| {
                 let camera: Direction<CameraFrame> = direction(x, y, 1.0);
-                (camera, attitude.inverse() * camera)
+                StarPair { camera, icrs: attitude.inverse() * camera, weight: 1.0 }
             })
             .collect()
     }
@@ -174,14 +213,31 @@ mod tests {
         // Opposite errors at opposite stars are a roll, equal ones a tilt: the tilt is their mean.
         let truth = Rotation::identity();
         let mut stars = pairs(truth, &[[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1]]);
-        for (camera, _) in &mut stars {
-            let v = *camera.vector();
-            *camera = direction(v.x + 1e-4, v.y, v.z);
+        for star in &mut stars {
+            let v = *star.camera.vector();
+            star.camera = direction(v.x + 1e-4, v.y, v.z);
         }
         let got = solve_q_method(&stars).unwrap();
         // A tilt about +y moves z towards x.
         let tilt = got.rotate(&Vector3::z()).x;
         assert!((tilt - 1e-4).abs() < 3e-6, "{tilt}");
+    }
+
+    #[test]
+    fn a_star_counts_as_much_as_its_weight() {
+        // Four stars, one of which is off: the tilt is the weighted mean.
+        let mut stars = pairs(Rotation::identity(), &[[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1], [0.0, -0.1]]);
+        for (star, weight) in stars.iter_mut().zip([3.0, 3.0, 1.0, 1.0]) {
+            star.weight = weight;
+        }
+        // The heavy pair agrees on a tilt of 1e-4 towards x, the light one on none.
+        for star in &mut stars[..2] {
+            let v = *star.camera.vector();
+            star.camera = direction(v.x + 1e-4, v.y, v.z);
+        }
+        let tilt = solve_q_method(&stars).unwrap().rotate(&Vector3::z()).x;
+        // Weighted mean 0.75e-4; the curvature of the field (1 %) is left out.
+        assert!((tilt - 0.75e-4).abs() < 2e-6, "{tilt}");
     }
 
     #[test]

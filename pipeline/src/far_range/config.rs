@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::attitude::AttitudeConfig;
+use super::attitude::{AttitudeConfig, StarWeights};
+use super::centroid::CentroidConfig;
 use super::detect::Weights;
 use super::hotspots::HotspotConfig;
 use super::identify::IdentificationConfig;
@@ -20,6 +21,8 @@ pub struct FarRangeConfig {
     pub thresholds: ThresholdConfig,
     /// What weights the pixels of a cluster: `intensity` as in the paper, or `above_background`.
     pub weights: Weights,
+    /// How the centre of a cluster is measured: `brightness` as in the paper, or `fit`.
+    pub centroid: CentroidConfig,
     /// Most clusters kept in a frame, those of the largest weighted size, 1 to 2000. Bounds the time of linking, which
     /// grows with the cube of the clusters that could all be linked with each other.
     pub max_clusters: u32,
@@ -54,6 +57,7 @@ impl Default for FarRangeConfig {
         Self {
             thresholds: ThresholdConfig::default(),
             weights: Weights::default(),
+            centroid: CentroidConfig::default(),
             max_clusters: 500,
             identification: IdentificationConfig::default(),
             tracking: TrackingConfig::default(),
@@ -72,11 +76,21 @@ impl FarRangeConfig {
     /// [`PipelineError::Parameter`] for the first one outside its range, by its path.
     pub fn check(&self) -> Result<(), PipelineError> {
         self.thresholds.check()?;
+        self.centroid.check()?;
         require("max_clusters", f64::from(self.max_clusters), "1 to 2000", |v| (1.0..=2000.0).contains(&v))?;
         self.identification.check()?;
         self.tracking.check()?;
         self.hotspots.check()?;
         self.attitude.check()?;
+        if self.attitude.weights == StarWeights::InverseVariance
+            && self.centroid == CentroidConfig::Brightness
+        {
+            return Err(PipelineError::Parameter {
+                field: "attitude.weights",
+                value: "inverse_variance".to_owned(),
+                expected: "equal, unless centroid.mode is fit: a brightness centre does not know its error",
+            });
+        }
         require("max_gap_s", self.max_gap_s, "above 0 to 1e9", |v| v > 0.0 && v <= 1e9)
     }
 }

@@ -23,20 +23,39 @@ pub enum Weights {
 pub(super) struct Blob {
     /// Brightness centre c (Eq. 1).
     pub(super) centre: PixelPoint,
+    /// The fitted centre, if there is one.
+    pub(super) fitted: Option<FittedCentre>,
     /// Weighted size s (Eq. 2), in units of full scale.
     pub(super) size: f64,
     /// Number of pixels.
     pub(super) pixels: u32,
 }
 
+/// A centre and its error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FittedCentre {
+    pub(super) position: PixelPoint,
+    /// Standard deviation along either axis, px, the root mean square of both.
+    pub(super) sigma_px: f64,
+}
+
+impl Blob {
+    /// Where directions are taken from: the fitted centre if there is one, or the brightness centre.
+    pub(super) fn measured(&self) -> PixelPoint {
+        self.fitted.map_or(self.centre, |fitted| fitted.position)
+    }
+}
+
 /// Finds clusters. Owns its buffers: a frame of the same size as the last one allocates nothing.
 #[derive(Debug, Default)]
 pub(super) struct Detector {
-    /// One bit a pixel: already in a cluster. All zero between frames.
+    /// One bit a pixel: in a cluster of this frame.
     marked: Vec<u64>,
     /// Pixels of all clusters of the frame, one cluster after the other; the queue of the fill as well.
     members: Vec<u32>,
     blobs: Vec<Blob>,
+    /// Where the pixels of each cluster begin among the members.
+    first_members: Vec<usize>,
 }
 
 /// Pixels compared at once while looking for one above I2; a multiple of any vector's length.
@@ -57,6 +76,10 @@ impl Detector {
         max_clusters: usize,
     ) -> &[Blob] {
         self.blobs.clear();
+        self.first_members.clear();
+        for &index in &self.members {
+            self.marked[index as usize / 64] = 0;
+        }
         self.members.clear();
         self.marked.resize(frame.dn().len().div_ceil(64), 0);
         for (block, chunk) in frame.dn().chunks(CHUNK).enumerate() {
@@ -69,15 +92,30 @@ impl Detector {
                 if dn > thresholds.high_dn && !self.is_marked(index) {
                     let first = self.members.len();
                     self.fill(frame, index, thresholds.low_dn);
-                    self.blobs.extend(measure(frame, &self.members[first..], base_dn));
+                    if let Some(blob) = measure(frame, &self.members[first..], base_dn) {
+                        self.blobs.push(blob);
+                        self.first_members.push(first);
+                    }
                 }
             }
         }
-        for &index in &self.members {
-            self.marked[index as usize / 64] = 0;
+        if self.blobs.len() > max_clusters {
+            let kept = largest(&self.blobs, max_clusters);
+            self.first_members = kept.iter().map(|&i| self.first_members[i]).collect();
+            self.blobs = kept.iter().map(|&i| self.blobs[i]).collect();
         }
-        keep_largest(&mut self.blobs, max_clusters);
         &self.blobs
+    }
+
+    /// The pixels of cluster `i` of the last frame, as indices into its image.
+    pub(super) fn members(&self, i: usize) -> &[u32] {
+        let first = self.first_members[i];
+        &self.members[first..first + self.blobs[i].pixels as usize]
+    }
+
+    /// Whether a pixel of the last frame belongs to any cluster, those dropped included.
+    pub(super) fn is_in_cluster(&self, index: usize) -> bool {
+        self.is_marked(index)
     }
 
     /// Collects the pixels connected to `seed` through pixels above `low_dn`, without recursion: the list of
@@ -126,22 +164,20 @@ fn measure(frame: &Frame, members: &[u32], base_dn: f64) -> Option<Blob> {
     }
     (sum > 0.0).then(|| Blob {
         centre: PixelPoint::new(sum_x / sum, sum_y / sum),
+        fitted: None,
         size: sum / f64::from(full_scale),
         pixels: members.len() as u32,
     })
 }
 
-/// Drops the smallest clusters beyond `max_clusters`, keeping the order of the rest.
-fn keep_largest(blobs: &mut Vec<Blob>, max_clusters: usize) {
-    if blobs.len() <= max_clusters {
-        return;
-    }
+/// The `max_clusters` largest clusters, in the order of the frame.
+fn largest(blobs: &[Blob], max_clusters: usize) -> Vec<usize> {
     let mut by_size: Vec<usize> = (0..blobs.len()).collect();
     // Equal sizes: the first one in the frame stays.
     by_size.sort_by(|&a, &b| blobs[b].size.total_cmp(&blobs[a].size).then(a.cmp(&b)));
     by_size.truncate(max_clusters);
     by_size.sort_unstable();
-    *blobs = by_size.into_iter().map(|i| blobs[i]).collect();
+    by_size
 }
 
 /// Number of pixels at full scale.

@@ -64,6 +64,11 @@ impl StarList {
         }
     }
 
+    /// The listed star of this number.
+    pub(super) fn by_id(&self, id: u32) -> Option<ListedStar> {
+        self.stars.iter().find(|star| star.id == id).copied()
+    }
+
     /// Eq. 4: the listed stars in front of the camera and inside Ω, with their pixels. Aberration is left out:
     /// at 0.3 px it is a fraction of any sensible radius.
     pub(super) fn predict(
@@ -148,7 +153,7 @@ mod tests {
     }
 
     fn blob(x: f64, y: f64) -> Blob {
-        Blob { centre: PixelPoint::new(x, y), size: 1.0, pixels: 1 }
+        Blob { centre: PixelPoint::new(x, y), fitted: None, size: 1.0, pixels: 1 }
     }
 
     fn predicted(id: u32, x: f64, y: f64, magnitude: f64) -> PredictedStar {

@@ -1,20 +1,22 @@
 //! The far-range pipeline: its steps in order, and what it remembers from frame to frame.
 
 use contract::{
-    AttitudeSource, Body, CameraFrame, Cluster, ContractError, Direction, Frame, Icrs, Label, Measurement,
+    AttitudeSource, Body, CameraFrame, Cluster, ContractError, Frame, Icrs, Label, ListedStar, Measurement,
     NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution, Telemetry,
 };
 use hifitime::Epoch;
 
 use super::aberration::aberration_correction;
-use super::attitude::{MountingFilter, solve_q_method};
+use super::attitude::{MountingFilter, StarPair, solve_q_method};
 use super::background::BackgroundEstimator;
+use super::centroid::{CentroidConfig, CentroidFitter};
 use super::config::{AberrationConfig, FarRangeConfig};
 use super::detect::{Blob, Detector, Weights, saturated_pixels, transmitted_pixels};
 use super::hotspots::Hotspots;
-use super::identify::{PredictedStar, StarList, identify};
+use super::identify::{StarList, identify};
 use super::line_of_sight::line_of_sight;
 use super::motion::{Mover, select_target};
+use super::overrides::{Identity, Overrides};
 use super::track::{Track, expected_position, link};
 use crate::{CameraModel, PipelineError};
 
@@ -32,6 +34,8 @@ pub struct FarRange {
     previous: Option<Previous>,
     background: BackgroundEstimator,
     detector: Detector,
+    /// Only with fitted centres.
+    fitter: Option<CentroidFitter>,
 }
 
 /// What is remembered of the previous frame.
@@ -39,6 +43,8 @@ pub struct FarRange {
 struct Previous {
     time: Epoch,
     body_from_icrs: Rotation<Body, Icrs>,
+    /// The camera's attitude where it was given from outside.
+    camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
     tracks: Vec<Track>,
 }
 
@@ -46,10 +52,25 @@ impl FarRange {
     /// A pipeline that has seen no frame.
     ///
     /// # Errors
-    /// Those of [`FarRangeConfig::check`] and of the camera's check.
+    /// Those of [`FarRangeConfig::check`], of the camera's check and of [`contract::Readout::check`];
+    /// [`PipelineError::Parameter`] for fitted centres with a camera whose readout is not known.
     pub fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
         config.check()?;
         let model = CameraModel::new(&setup.camera)?;
+        let fitter = match (&config.centroid, setup.readout) {
+            (CentroidConfig::Brightness, _) => None,
+            (CentroidConfig::Fit { psf_sigma_px }, Some(readout)) => {
+                readout.check()?;
+                Some(CentroidFitter::new(*psf_sigma_px, readout))
+            }
+            (CentroidConfig::Fit { .. }, None) => {
+                return Err(PipelineError::Parameter {
+                    field: "centroid.mode",
+                    value: "fit".to_owned(),
+                    expected: "brightness, for a camera whose readout (gain, bias, read noise, saturation) is not known",
+                });
+            }
+        };
         Ok(Self {
             stars: StarList::new(&setup.stars, config.identification.max_magnitude, &model),
             mounting: MountingFilter::new(setup.camera_from_body, config.attitude.filter_lambda),
@@ -57,6 +78,7 @@ impl FarRange {
             previous: None,
             background: BackgroundEstimator::default(),
             detector: Detector::default(),
+            fitter,
             model,
             config,
         })
@@ -75,19 +97,32 @@ impl FarRange {
         };
         let thresholds = self.config.thresholds.of(frame, background);
         let base_dn = background.filter(|_| above_background).map_or(0.0, |b| b.median_dn);
-        let blobs = self.detector.detect(frame, thresholds, base_dn, self.config.max_clusters as usize);
-        if blobs.is_empty() { Err(NoSolution::EmptyFrame) } else { Ok(blobs.to_vec()) }
+        let mut blobs =
+            self.detector.detect(frame, thresholds, base_dn, self.config.max_clusters as usize).to_vec();
+        if let Some(fitter) = &mut self.fitter {
+            fitter.fit(frame, &self.detector, &mut blobs);
+        }
+        if blobs.is_empty() { Err(NoSolution::EmptyFrame) } else { Ok(blobs) }
     }
 
     /// Takes the stars of a frame into the mounting (section 2.4) if there are enough of them.
-    fn calibrate(&mut self, seen: &[(Blob, PredictedStar)], telemetry: &Telemetry) -> AttitudeSource {
+    fn calibrate(
+        &mut self,
+        seen: &[(Blob, ListedStar)],
+        telemetry: &Telemetry,
+        overrides: &Overrides<'_>,
+    ) -> AttitudeSource {
         if seen.is_empty() {
             return AttitudeSource::NoStars;
         }
-        let pairs: Vec<(Direction<CameraFrame>, Direction<Icrs>)> = seen
+        let pairs: Vec<StarPair> = seen
             .iter()
-            .filter_map(|(blob, predicted)| {
-                Some((self.model.back_project(blob.centre)?, predicted.star.direction))
+            .filter_map(|(blob, star)| {
+                Some(StarPair {
+                    camera: self.model.back_project(blob.measured())?,
+                    icrs: overrides.apparent.map_or(star.direction, |apparent| apparent(star)),
+                    weight: self.config.attitude.weight(blob.fitted.map(|fitted| fitted.sigma_px)),
+                })
             })
             .collect();
         let enough = pairs.len() >= self.config.attitude.min_stars as usize;
@@ -95,34 +130,69 @@ impl FarRange {
             return AttitudeSource::TooFewStars;
         };
         let solved = match self.config.aberration {
-            AberrationConfig::Ignore => apparent,
-            AberrationConfig::Correct => {
+            AberrationConfig::Correct if overrides.apparent.is_none() => {
                 // A velocity that cannot be is one that is not known: the annual part is corrected.
                 aberration_correction(telemetry.time, telemetry.velocity_km_s, &apparent)
                     .or_else(|| aberration_correction(telemetry.time, None, &apparent))
                     .map_or(apparent, |correction| correction * apparent)
             }
+            AberrationConfig::Correct | AberrationConfig::Ignore => apparent,
         };
         self.mounting.update(solved, telemetry.body_from_icrs);
         AttitudeSource::Stars
     }
 
+    /// What each cluster is known to be before its motion is looked at (section 2.1).
+    fn identify(
+        &self,
+        blobs: &[Blob],
+        camera_from_icrs: &Rotation<CameraFrame, Icrs>,
+        overrides: &Overrides<'_>,
+    ) -> Vec<Known> {
+        if let Some(identity) = overrides.identity {
+            let known = |blob: &Blob| match identity(blob.centre) {
+                Identity::Star(id) => Known::Star { id, listed: self.stars.by_id(id) },
+                Identity::Hotspot => Known::Hotspot,
+                Identity::Neither => Known::NoStarNorHotspot,
+            };
+            return blobs.iter().map(known).collect();
+        }
+        // A marked hotspot near a star would be taken for it and spoil the attitude.
+        let is_marked: Vec<bool> = blobs.iter().map(|blob| self.hotspots.is_marked(blob)).collect();
+        let predicted = self.stars.predict(camera_from_icrs, &self.model);
+        identify(blobs, &is_marked, &predicted, self.config.identification.radius_px)
+            .into_iter()
+            .zip(is_marked)
+            .map(|(star, is_marked)| match star.map(|i| predicted[i].star) {
+                Some(star) => Known::Star { id: star.id, listed: Some(star) },
+                None if is_marked => Known::Hotspot,
+                None => Known::Nothing,
+            })
+            .collect()
+    }
+
     /// Links clusters to the previous frame (section 2.2). `None` when there is none to link to: at the first
     /// frame, after a gap, and when time does not advance.
-    fn link(&self, blobs: &[Blob], telemetry: &Telemetry) -> Option<Linked<'_>> {
+    fn link(
+        &self,
+        blobs: &[Blob],
+        telemetry: &Telemetry,
+        camera_from_icrs_now: &Rotation<CameraFrame, Icrs>,
+    ) -> Option<Linked<'_>> {
         let previous = self.previous.as_ref()?;
         let dt_s = (telemetry.time - previous.time).to_seconds();
         if !(dt_s > 0.0 && dt_s <= self.config.max_gap_s) {
             return None;
         }
-        let camera_from_body = self.mounting.camera_from_body();
-        let icrs_from_camera_before = (camera_from_body * previous.body_from_icrs).inverse();
-        let camera_from_icrs_now = camera_from_body * telemetry.body_from_icrs;
+        let icrs_from_camera_before = previous
+            .camera_from_icrs
+            .unwrap_or_else(|| self.mounting.camera_from_body() * previous.body_from_icrs)
+            .inverse();
         let expected: Vec<_> = previous
             .tracks
             .iter()
             .map(|track| {
-                expected_position(track, &icrs_from_camera_before, &camera_from_icrs_now, &self.model)
+                expected_position(track, &icrs_from_camera_before, camera_from_icrs_now, &self.model)
             })
             .collect();
         let links = link(blobs, &previous.tracks, &expected, &self.config.tracking);
@@ -137,43 +207,73 @@ struct Linked<'a> {
     before: Vec<Option<&'a Track>>,
 }
 
-impl Pipeline for FarRange {
-    fn process(&mut self, frame: &Frame, telemetry: &Telemetry) -> Outcome {
+/// What a cluster is known to be before its motion is looked at.
+#[derive(Debug, Clone, Copy)]
+enum Known {
+    /// A star; `listed` unless the list does not hold it.
+    Star { id: u32, listed: Option<ListedStar> },
+    /// A hotspot.
+    Hotspot,
+    /// No star and no hotspot, on somebody's word.
+    NoStarNorHotspot,
+    /// Nothing: its motion may show it to be a hotspot.
+    Nothing,
+}
+
+impl FarRange {
+    /// [`Pipeline::process`] with results of single steps given from outside; for an error budget.
+    pub fn process_with(
+        &mut self,
+        frame: &Frame,
+        telemetry: &Telemetry,
+        overrides: &Overrides<'_>,
+    ) -> Outcome {
         if let Some(reason) = unusable(frame, telemetry, &self.model) {
             return Outcome::none(NoSolution::Failed(reason));
         }
-        let blobs = match self.detect(frame) {
+        let attitude = |mounting: &MountingFilter| {
+            overrides
+                .camera_from_icrs
+                .unwrap_or_else(|| mounting.camera_from_body() * telemetry.body_from_icrs)
+        };
+        let mut blobs = match self.detect(frame) {
             Ok(blobs) => blobs,
             Err(reason) => {
                 return Outcome {
-                    camera_from_icrs: Some(self.mounting.camera_from_body() * telemetry.body_from_icrs),
+                    camera_from_icrs: Some(attitude(&self.mounting)),
                     attitude_source: Some(AttitudeSource::NoStars),
                     ..Outcome::none(reason)
                 };
             }
         };
+        if let Some(centroid) = overrides.centroid {
+            for blob in &mut blobs {
+                if let Some(centre) = centroid(blob.centre) {
+                    *blob = Blob { centre, fitted: None, ..*blob };
+                }
+            }
+        }
 
-        // A marked hotspot near a star would be taken for it and spoil the attitude.
-        let is_marked: Vec<bool> = blobs.iter().map(|blob| self.hotspots.is_marked(blob)).collect();
-        let estimate = self.mounting.camera_from_body() * telemetry.body_from_icrs;
-        let predicted = self.stars.predict(&estimate, &self.model);
-        let star_of_blob = identify(&blobs, &is_marked, &predicted, self.config.identification.radius_px);
-        let seen: Vec<(Blob, PredictedStar)> = blobs
+        let known = self.identify(&blobs, &attitude(&self.mounting), overrides);
+        let seen: Vec<(Blob, ListedStar)> = blobs
             .iter()
-            .zip(&star_of_blob)
-            .filter_map(|(blob, star)| Some((*blob, predicted[(*star)?])))
+            .zip(&known)
+            .filter_map(|(blob, known)| match *known {
+                Known::Star { listed: Some(star), .. } => Some((*blob, star)),
+                _ => None,
+            })
             .collect();
-        let attitude_source = self.calibrate(&seen, telemetry);
-        let camera_from_icrs = self.mounting.camera_from_body() * telemetry.body_from_icrs;
+        let attitude_source = self.calibrate(&seen, telemetry, overrides);
+        let camera_from_icrs = attitude(&self.mounting);
 
-        let linked = self.link(&blobs, telemetry);
+        let linked = self.link(&blobs, telemetry, &camera_from_icrs);
         let n_max = self.config.hotspots.n_max();
         let before = |i: usize| linked.as_ref().and_then(|linked| Some((linked.before[i]?, linked.dt_s)));
         let tracks: Vec<Track> = blobs
             .iter()
             .enumerate()
             .map(|(i, blob)| {
-                let is_star = star_of_blob[i].is_some();
+                let is_star = matches!(known[i], Known::Star { .. });
                 before(i).map_or(Track::new(blob, is_star), |(track, dt_s)| {
                     track.extended(blob, is_star, dt_s, n_max)
                 })
@@ -183,11 +283,12 @@ impl Pipeline for FarRange {
         let has_previous = linked.is_some();
 
         let labels: Vec<Label> = (0..blobs.len())
-            .map(|i| match star_of_blob[i] {
-                Some(star) => Label::Star(predicted[star].star.id),
-                None if is_marked[i] || self.hotspots.judge(&tracks[i]) => Label::Hotspot,
-                None if centres_before[i].is_some() => Label::Candidate,
-                None => Label::Unlinked,
+            .map(|i| match known[i] {
+                Known::Star { id, .. } => Label::Star(id),
+                Known::Hotspot => Label::Hotspot,
+                Known::Nothing if self.hotspots.judge(&tracks[i]) => Label::Hotspot,
+                _ if centres_before[i].is_some() => Label::Candidate,
+                _ => Label::Unlinked,
             })
             .collect();
         let movers: Vec<Mover> = blobs
@@ -204,8 +305,8 @@ impl Pipeline for FarRange {
 
         let solution = match target {
             Some(i) => Solution::Detected(Measurement {
-                position: blobs[i].centre,
-                line_of_sight: line_of_sight(blobs[i].centre, &camera_from_icrs, &self.model),
+                position: blobs[i].measured(),
+                line_of_sight: line_of_sight(blobs[i].measured(), &camera_from_icrs, &self.model),
             }),
             None if has_previous => Solution::NoSolution(NoSolution::NoTarget),
             None => Solution::NoSolution(NoSolution::NoPreviousFrame),
@@ -215,14 +316,18 @@ impl Pipeline for FarRange {
             .zip(labels)
             .enumerate()
             .map(|(i, (blob, label))| Cluster {
-                position: blob.centre,
+                position: blob.measured(),
                 size: blob.size,
                 pixels: blob.pixels,
                 label: if target == Some(i) { Label::Target } else { label },
             })
             .collect();
-        self.previous =
-            Some(Previous { time: telemetry.time, body_from_icrs: telemetry.body_from_icrs, tracks });
+        self.previous = Some(Previous {
+            time: telemetry.time,
+            body_from_icrs: telemetry.body_from_icrs,
+            camera_from_icrs: overrides.camera_from_icrs,
+            tracks,
+        });
         Outcome {
             solution,
             camera_from_icrs: Some(camera_from_icrs),
@@ -230,6 +335,12 @@ impl Pipeline for FarRange {
             n_stars: Some(seen.len() as u32),
             clusters,
         }
+    }
+}
+
+impl Pipeline for FarRange {
+    fn process(&mut self, frame: &Frame, telemetry: &Telemetry) -> Outcome {
+        self.process_with(frame, telemetry, &Overrides::default())
     }
 }
 
