@@ -15,7 +15,7 @@ use pipeline::far_range::{
 use sim::onboard::{RoiConfig, RoiExtractor, downlink};
 use sim::optics::{Psf, PsfConfig, Stamp};
 use sim::randomness::Seed;
-use sim::sensor::{FlatLaws, HotPixelConfig, NoiseConfig, RawImage, Sensor, SensorConfig};
+use sim::sensor::{FlatLaws, RawImage, Sensor, SensorConfig};
 
 const SIGMA_PX: f64 = 0.8;
 const BACKGROUND_E: f64 = 20.0;
@@ -38,10 +38,7 @@ fn sensor(columns: usize, rows: usize) -> Sensor {
         bias_dn: BIAS_DN,
         full_well_e: 60_000.0,
         read_noise_e: READ_NOISE_E,
-        dark_current_e_per_s: 0.0,
-        background_e_per_s: 0.0,
-        noise: NoiseConfig::default(),
-        hot_pixels: HotPixelConfig { count: 0, seed: 1, median_e_per_s: 0.0, spread: 0.0 },
+        ..SensorConfig::default()
     };
     Sensor::new(&config, columns, rows).unwrap()
 }
