@@ -145,9 +145,11 @@ impl Prepared {
         let setup = self.setup();
         let mut pipeline = match self.run_file.inject {
             None => RunningPipeline::Own(factory.build(&setup)?),
-            Some(stage) => {
-                RunningPipeline::Injected(InjectedPipeline::new(stage, &self.scenario().far_range, &setup)?)
-            }
+            Some(stage) => RunningPipeline::Injected(Box::new(InjectedPipeline::new(
+                stage,
+                &self.scenario().far_range,
+                &setup,
+            )?)),
         };
         let mut answers = Answers::create(&directory.measurements(), &directory.clusters())?;
         let unproject = |point| self.simulator.projection().unproject(point);
@@ -303,7 +305,7 @@ enum RunningPipeline {
     /// It answers by itself.
     Own(Box<dyn Pipeline>),
     /// It is told the truth for one stage.
-    Injected(InjectedPipeline),
+    Injected(Box<InjectedPipeline>),
 }
 
 /// The files of a pipeline's answers.

@@ -29,7 +29,7 @@ pub use config::{AberrationConfig, FarRangeConfig};
 pub use detect::Weights;
 pub use hotspots::HotspotConfig;
 pub use identify::IdentificationConfig;
-pub use overrides::{Identity, Overrides};
+pub use overrides::{ApparentPlace, Identity, Overrides};
 pub use pipeline::{FarRange, FarRangeFactory};
 pub use threshold::ThresholdConfig;
 pub use track::TrackingConfig;

@@ -15,8 +15,11 @@ pub struct Overrides<'a> {
     /// The camera's attitude, in the prediction of stars (Eq. 4), in tracking (Eq. 5) and in the line of sight (Eq. 17).
     pub camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
     /// Where a listed star is seen, aberration included, in Eq. 14; the attitude is then not corrected for aberration.
-    pub apparent: Option<&'a dyn Fn(&ListedStar) -> Direction<Icrs>>,
+    pub apparent: Option<ApparentPlace<'a>>,
 }
+
+/// Where a listed star is seen.
+pub type ApparentPlace<'a> = &'a dyn Fn(&ListedStar) -> Direction<Icrs>;
 
 /// What a cluster is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
