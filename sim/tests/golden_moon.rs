@@ -18,7 +18,7 @@ fn the_moon_is_where_de421_has_it() {
         let numbers: Vec<f64> = line.split(',').map(|number| number.parse().unwrap()).collect();
         let theirs = Vector3::new(numbers[1], numbers[2], numbers[3]);
         let ours = moon_position_km(numbers[0]);
-        worst_deg = worst_deg.max(ours.cross(&theirs).norm().atan2(ours.dot(&theirs)).to_degrees());
+        worst_deg = worst_deg.max(libm::atan2(ours.cross(&theirs).norm(), ours.dot(&theirs)).to_degrees());
         worst_km = worst_km.max((ours.norm() - theirs.norm()).abs());
         rows += 1;
     }
