@@ -75,6 +75,7 @@ fn frame_truth(row: &TelemetryRow, camera_from_icrs: Rotation<CameraFrame, Icrs>
         phase_deg: 90.0,
         shadow: Shadow::Sunlit,
         sunlit_fraction: 1.0,
+        background_e_per_s: 0.0,
         target_position: None,
         target_visibility: Visibility::Invisible,
     }

@@ -95,7 +95,11 @@ impl<'a> SimulatedCamera<'a> {
             self.psf.margin_px(),
             &mut self.sources,
         );
-        let mut objects = self.draw(number, exposure_s);
+        let background_e_per_s = simulator.background.as_ref().map_or(0.0, |background| {
+            let (position_km, sun_km) = (&moment.states.chaser.position_km, &moment.observer.sun_km());
+            background.field(time, position_km, sun_km, moment.camera_from_icrs).mean_e_per_s()
+        });
+        let mut objects = self.draw(number, exposure_s, background_e_per_s);
         let charge = simulator.sensor.collect(&mut self.image, exposure_s);
         simulator.sensor.read_out(&charge, &simulator.seed, number, &mut self.laws, &mut self.raw)?;
         let windows = self.regions.as_mut().map(|regions| regions.extract(&self.raw));
@@ -120,6 +124,7 @@ impl<'a> SimulatedCamera<'a> {
             phase_deg: moment.phase_rad.to_degrees(),
             shadow: shadow::classify(moment.sunlit_fraction),
             sunlit_fraction: moment.sunlit_fraction,
+            background_e_per_s,
             target_position: moment.target_position,
             target_visibility: Visibility::of_snr(
                 objects
@@ -235,12 +240,14 @@ impl<'a> SimulatedCamera<'a> {
     }
 
     /// Draws the expected image, keeps a stamp of every object that has light on the detector, and tells its truth.
-    fn draw(&mut self, number: u64, exposure_s: f64) -> Vec<ObjectTruth> {
+    fn draw(&mut self, number: u64, exposure_s: f64, background_e_per_s: f64) -> Vec<ObjectTruth> {
         let simulator = self.simulator;
         let sensor = &simulator.sensor;
-        let flat_e = sensor.flat_electrons(exposure_s);
+        let background_e = background_e_per_s * exposure_s;
+        let flat_e = sensor.flat_electrons(exposure_s) + background_e;
         let detector = self.image.size();
-        self.image.clear(sensor.sky_electrons(exposure_s));
+        // The background enters by its mean over the detector.
+        self.image.clear(sensor.sky_electrons(exposure_s) + background_e);
         let hot_pixels = sensor.hot_pixels().iter().map(|hot| {
             let position = PixelPoint::new(hot.x as f64, hot.y as f64);
             Source {

@@ -9,7 +9,7 @@ use crate::catalog::{Catalog, CatalogConfig};
 use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
 use crate::optics::{Projection, Psf, PsfConfig, Radiometry, RadiometryConfig};
 use crate::randomness::Seed;
-use crate::scene::{StarField, TargetConfig};
+use crate::scene::{Background, BackgroundConfig, StarField, TargetConfig};
 use crate::sensor::{Sensor, SensorConfig};
 use crate::truth::{
     Attitude, AttitudeConfig, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig, Observer, OrbitConfig,
@@ -40,6 +40,8 @@ pub struct Simulation {
     pub psf: PsfConfig,
     /// From magnitudes to photoelectrons.
     pub radiometry: RadiometryConfig,
+    /// Light without a source in the field.
+    pub background: BackgroundConfig,
     /// The detector.
     pub sensor: SensorConfig,
     /// The law of the exposure time.
@@ -68,6 +70,7 @@ pub struct Simulator {
     pub(crate) seed: Seed,
     pub(crate) target: TargetConfig,
     pub(crate) radiometry: Radiometry,
+    pub(crate) background: Option<Background>,
 }
 
 impl Simulator {
@@ -93,6 +96,12 @@ impl Simulator {
         simulation.catalog.check()?;
         let catalog = Catalog::load(&simulation.catalog, folder)?;
         Ok(Self {
+            background: Background::new(
+                &simulation.background,
+                &simulation.camera,
+                &projection,
+                &radiometry,
+            )?,
             stars: StarField::new(&catalog, &radiometry),
             catalog,
             trajectory,

@@ -67,7 +67,7 @@ fn electrons_agree_with_those_of_another_library_of_spectra() {
 fn the_zero_point_of_gaia_comes_out() {
     let gaia = radiometry(7278.0, gaia_g());
     // An A0 star of V = 0 has G = 0.
-    let zero_point = 2.5 * gaia.zero_point_e_per_s(Some(0.0), None).log10();
+    let zero_point = 2.5 * libm::log10(gaia.zero_point_e_per_s(Some(0.0), None));
     assert!((zero_point - 25.688).abs() < 0.03, "{zero_point}");
 }
 
@@ -91,7 +91,7 @@ fn the_colour_term_of_gaia_is_the_published_one() {
         (1.55, 2.20),
         (1.60, 2.80),
     ] {
-        let g_minus_v = 25.688 - 2.5 * gaia.zero_point_e_per_s(Some(b_v), Some(v_i)).log10();
+        let g_minus_v = 25.688 - 2.5 * libm::log10(gaia.zero_point_e_per_s(Some(b_v), Some(v_i)));
         let published = -0.01597 + v_i * (-0.02809 + v_i * (-0.2483 + v_i * (0.03656 + v_i * -0.002939)));
         let tolerance = if v_i > 1.5 { 0.08 } else { 0.04 };
         assert!((g_minus_v - published).abs() < tolerance, "V−I {v_i}: {g_minus_v} for {published}");

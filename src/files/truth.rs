@@ -82,6 +82,7 @@ impl Row for FrameTruth {
             numbers(rows, "phase_deg", |row| row.phase_deg),
             words(rows, "shadow", |row| row.shadow.code()),
             numbers(rows, "sunlit_fraction", |row| row.sunlit_fraction),
+            numbers(rows, "background_e_per_s", |row| row.background_e_per_s),
             optional_numbers(rows, "target_x_px", |row| row.target_position.map(|p| p.x)),
             optional_numbers(rows, "target_y_px", |row| row.target_position.map(|p| p.y)),
             words(rows, "target_visibility", |row| row.target_visibility.code()),
@@ -92,8 +93,10 @@ impl Row for FrameTruth {
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
         let (frame, group) = (columns.u64("frame")?, columns.text("group")?);
         let time: &Timestamps = columns.every("time_utc")?;
-        let [exposure_s, range_km, phase_deg, sunlit_fraction] =
-            columns_f64(columns, ["exposure_s", "range_km", "phase_deg", "sunlit_fraction"])?;
+        let [exposure_s, range_km, phase_deg, sunlit_fraction, background_e_per_s] = columns_f64(
+            columns,
+            ["exposure_s", "range_km", "phase_deg", "sunlit_fraction", "background_e_per_s"],
+        )?;
         let (body, camera) = (columns_f64(columns, BODY)?, columns_f64(columns, CAMERA)?);
         let (position, velocity) = (columns_f64(columns, POSITION)?, columns_f64(columns, VELOCITY)?);
         let (line_of_sight, sun) = (columns_f64(columns, LINE_OF_SIGHT)?, columns_f64(columns, SUN)?);
@@ -123,6 +126,7 @@ impl Row for FrameTruth {
                     phase_deg: phase_deg[row],
                     shadow: columns.word("shadow", row, Shadow::parse)?,
                     sunlit_fraction: sunlit_fraction[row],
+                    background_e_per_s: background_e_per_s[row],
                     target_position: x_and_y.map(|(x, y)| PixelPoint::new(x, y)),
                     target_visibility: columns.word("target_visibility", row, Visibility::parse)?,
                 })

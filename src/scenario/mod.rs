@@ -14,7 +14,7 @@ use sim::Simulation;
 use sim::catalog::CatalogConfig;
 use sim::onboard::{RoiConfig, ShutterConfig};
 use sim::optics::{PsfConfig, RadiometryConfig};
-use sim::scene::TargetConfig;
+use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::SensorConfig;
 use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
 
@@ -47,6 +47,9 @@ pub struct Scenario {
     pub psf: PsfConfig,
     /// From magnitudes to photoelectrons.
     pub radiometry: RadiometryConfig,
+    /// Light without a source in the field: zodiacal light, faint stars, stray light; absent: none.
+    #[serde(default)]
+    pub background: BackgroundConfig,
     /// The detector.
     pub sensor: SensorConfig,
     /// The law of the exposure time.
@@ -82,6 +85,7 @@ impl Scenario {
             camera: self.camera.clone(),
             psf: self.psf.clone(),
             radiometry: self.radiometry.clone(),
+            background: self.background.clone(),
             sensor: self.sensor.clone(),
             shutter: self.shutter.clone(),
             roi: self.roi.clone(),

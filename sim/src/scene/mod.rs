@@ -1,8 +1,10 @@
 //! What is in the field: stars and the target, as sources with a place and a rate of electrons.
 
+mod background;
 mod spacecraft;
 mod star_field;
 
+pub use background::{Background, BackgroundConfig, BackgroundField, EarthLightConfig, StrayLightConfig};
 pub use spacecraft::TargetConfig;
 pub use star_field::StarField;
 

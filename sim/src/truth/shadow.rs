@@ -21,15 +21,21 @@ pub const SUN_RADIUS_KM: f64 = 695_700.0;
 /// limb more curved in the plane than on the sphere: the fraction errs by less than 0.001.
 /// A position inside the Earth sees nothing.
 pub fn sunlit_fraction(position_km: &Vector3<f64>, sun_km: &Vector3<f64>) -> f64 {
-    let to_sun = sun_km - position_km;
-    let sun = libm::asin((SUN_RADIUS_KM / to_sun.norm()).min(1.0));
+    visible_fraction(position_km, sun_km, SUN_RADIUS_KM)
+}
+
+/// The fraction of the disk of a body of radius `radius_km` at `body_km` that the Earth does not hide; else as
+/// [`sunlit_fraction`].
+pub(crate) fn visible_fraction(position_km: &Vector3<f64>, body_km: &Vector3<f64>, radius_km: f64) -> f64 {
+    let to_body = body_km - position_km;
+    let body = libm::asin((radius_km / to_body.norm()).min(1.0));
     let distance = position_km.norm();
     if distance <= EARTH_RADIUS_KM {
         return 0.0;
     }
     let earth = libm::asin(EARTH_RADIUS_KM / distance);
-    let separation = libm::atan2(position_km.cross(&to_sun).norm(), -position_km.dot(&to_sun));
-    1.0 - covered_fraction(sun, earth, separation)
+    let separation = libm::atan2(position_km.cross(&to_body).norm(), -position_km.dot(&to_body));
+    1.0 - covered_fraction(body, earth, separation)
 }
 
 /// The class of a sunlit fraction.

@@ -98,6 +98,9 @@ pub struct FrameTruth {
     pub shadow: Shadow,
     /// Fraction of the Sun's disk seen from the target, in [0, 1].
     pub sunlit_fraction: f64,
+    /// Photo-electrons a second and pixel of zodiacal light, faint stars and stray light, the mean over the detector; without
+    /// the constant of the sensor.
+    pub background_e_per_s: f64,
     /// Where the target's image is; `None` behind the camera. It may lie off the detector.
     pub target_position: Option<PixelPoint>,
     /// Visibility class of the target.

@@ -5,7 +5,7 @@ use std::path::Path;
 use boresight_sim::catalog::CatalogConfig;
 use boresight_sim::onboard::{RoiConfig, ShutterConfig};
 use boresight_sim::optics::{PsfConfig, RadiometryConfig};
-use boresight_sim::scene::TargetConfig;
+use boresight_sim::scene::{BackgroundConfig, TargetConfig};
 use boresight_sim::sensor::{HotPixelConfig, NoiseConfig, SensorConfig, Switch};
 use boresight_sim::truth::{
     AttitudeConfig, ControlConfig, DriftConfig, ElementsConfig, GroupConfig, Guidance, KnowledgeConfig,
@@ -53,6 +53,7 @@ pub(crate) fn still() -> Simulation {
         },
         psf: PsfConfig::GaussianHalo { sigma_px: 0.8, halo_sigma_px: 4.0, halo_fraction: 0.03 },
         radiometry: RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1.5e6 },
+        background: BackgroundConfig::default(),
         sensor: SensorConfig {
             bit_depth: 12,
             gain_e_per_dn: 10.0,

@@ -97,6 +97,8 @@ pub struct Radiometry {
     stars: [f64; spectra::STARS],
     /// Electrons a second of sunlight of V = 0.
     sunlight: f64,
+    /// Area of the aperture times transmission, m²; `None` when only a zero point is known.
+    collecting_area_m2: Option<f64>,
 }
 
 impl Radiometry {
@@ -107,9 +109,11 @@ impl Radiometry {
     pub fn new(config: &RadiometryConfig) -> Result<Self, SimError> {
         config.check()?;
         let prepared = match config {
-            RadiometryConfig::ZeroPoint { zero_point_e_per_s } => {
-                Self { stars: [*zero_point_e_per_s; spectra::STARS], sunlight: *zero_point_e_per_s }
-            }
+            RadiometryConfig::ZeroPoint { zero_point_e_per_s } => Self {
+                stars: [*zero_point_e_per_s; spectra::STARS],
+                sunlight: *zero_point_e_per_s,
+                collecting_area_m2: None,
+            },
             RadiometryConfig::Spectral {
                 aperture_diameter_mm,
                 transmission,
@@ -137,6 +141,7 @@ impl Radiometry {
                 Self {
                     stars: std::array::from_fn(|number| rate(&spectra::star(number))),
                     sunlight: rate(&spectra::sun()) * to_v_zero,
+                    collecting_area_m2: Some(area_m2),
                 }
             }
         };
@@ -160,6 +165,12 @@ impl Radiometry {
     /// Photo-electrons a second from a body in sunlight of V = 0, grey: its light has the spectrum of the Sun.
     pub fn solar_zero_point_e_per_s(&self) -> f64 {
         self.sunlight
+    }
+
+    /// Photo-electrons a second and square metre of a detector on which sunlight of V = 0 falls without optics; `None` when
+    /// the aperture is unknown, because only a zero point was given.
+    pub fn bare_sunlight_e_per_s_m2(&self) -> Option<f64> {
+        self.collecting_area_m2.map(|area_m2| self.sunlight / area_m2)
     }
 
     /// Photo-electrons a second from a star: zero point of its colour times 10^(−0.4 V) (Pogson 1856).

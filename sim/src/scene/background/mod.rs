@@ -1,0 +1,332 @@
+//! Light without a source in the field: zodiacal light, faint stars, and what the optics scatter of Sun, Earth and Moon.
+//!
+//! All of it is smooth: it is evaluated at the nodes of a grid over the detector and interpolated between them.
+
+mod stray;
+mod zodiacal;
+
+pub use stray::StrayLightConfig;
+
+use contract::{Camera, CameraFrame, Icrs, PixelPoint, Rotation};
+use hifitime::Epoch;
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::optics::{Projection, Radiometry, SUN_V_MAG_AT_1_AU};
+use crate::truth::{clock, moon, shadow};
+use stray::Ray;
+
+/// Kilometres in an astronomical unit (IAU 2012 Resolution B2, exact).
+const AU_KM: f64 = 149_597_870.7;
+/// Mean radius of the Moon, km (IAU Working Group on Cartographic Coordinates 2015).
+const MOON_RADIUS_KM: f64 = 1_737.4;
+/// Mean distance of the Moon for which its magnitude holds, km.
+const MOON_MEAN_DISTANCE_KM: f64 = 384_400.0;
+/// Square degrees in a steradian.
+const SQUARE_DEGREES_PER_SR: f64 = (180.0 / std::f64::consts::PI) * (180.0 / std::f64::consts::PI);
+
+/// Which parts of the background are simulated; all are off where they are not named.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct BackgroundConfig {
+    /// Zodiacal light, by ecliptic latitude and longitude from the Sun.
+    pub zodiacal: bool,
+    /// Stars that are too faint to be drawn, the same everywhere: S10 (stars like the Sun of V = 10 to a square degree), 0 to 1000.
+    pub faint_stars_s10: f64,
+    /// Scattered light of the Sun; needs radiometry of kind "spectral".
+    pub sun: Option<StrayLightConfig>,
+    /// Scattered light of the sunlit Earth; needs radiometry of kind "spectral".
+    pub earth: Option<EarthLightConfig>,
+    /// Scattered light of the Moon; needs radiometry of kind "spectral".
+    pub moon: Option<StrayLightConfig>,
+}
+
+/// The Earth as a source of scattered light: a diffuse sphere, sunlit, each part of its disk by its own angle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct EarthLightConfig {
+    /// Diffuse reflectance (Lambert albedo), clouds included, 0 to 1; 0.3 on the average.
+    pub albedo: f64,
+    /// How its light is scattered.
+    pub scatter: StrayLightConfig,
+}
+
+impl BackgroundConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        require("background.faint_stars_s10", self.faint_stars_s10, "0 to 1000", |s| {
+            (0.0..=1000.0).contains(&s)
+        })?;
+        if let Some(sun) = &self.sun {
+            sun.check([
+                "background.sun.exclusion_deg",
+                "background.sun.transmittance",
+                "background.sun.power",
+                "background.sun.power_inside",
+            ])?;
+        }
+        if let Some(EarthLightConfig { albedo, scatter }) = &self.earth {
+            require("background.earth.albedo", *albedo, "0 to 1", |a| (0.0..=1.0).contains(&a))?;
+            scatter.check([
+                "background.earth.scatter.exclusion_deg",
+                "background.earth.scatter.transmittance",
+                "background.earth.scatter.power",
+                "background.earth.scatter.power_inside",
+            ])?;
+        }
+        if let Some(moon) = &self.moon {
+            moon.check([
+                "background.moon.exclusion_deg",
+                "background.moon.transmittance",
+                "background.moon.power",
+                "background.moon.power_inside",
+            ])?;
+        }
+        Ok(())
+    }
+
+    /// Whether every part is off.
+    fn is_off(&self) -> bool {
+        !self.zodiacal
+            && self.faint_stars_s10 == 0.0
+            && self.sun.is_none()
+            && self.earth.is_none()
+            && self.moon.is_none()
+    }
+}
+
+/// Nodes along each side of the detector.
+const NODES: usize = 17;
+
+/// The background of a camera, prepared.
+#[derive(Debug, Clone)]
+pub struct Background {
+    config: BackgroundConfig,
+    columns: usize,
+    rows: usize,
+    nodes: Vec<Node>,
+    /// Share of each node, along columns and along rows, in the mean over all pixels.
+    column_weights: [f64; NODES],
+    row_weights: [f64; NODES],
+    /// Electrons a second and pixel of 1 S10, by a steradian of the pixel.
+    s10_e_per_s_sr: f64,
+    /// Electrons a second and pixel when sunlight as at 1 au falls on the bare detector; `None` when the aperture is unknown.
+    bare_sun_e_per_s: Option<f64>,
+}
+
+/// A place on the detector and what it sees.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    /// Unit vector in the camera frame.
+    direction: Vector3<f64>,
+    /// Solid angle of a pixel there, sr.
+    pixel_sr: f64,
+}
+
+impl Background {
+    /// Prepares the background of a camera; `None` when all of it is off.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for a number outside its range, and for stray light where the aperture is unknown.
+    pub fn new(
+        config: &BackgroundConfig,
+        camera: &Camera,
+        projection: &Projection,
+        radiometry: &Radiometry,
+    ) -> Result<Option<Self>, SimError> {
+        config.check()?;
+        if config.is_off() {
+            return Ok(None);
+        }
+        let pixel_m2 = camera.pixel_width_um * camera.pixel_height_um * 1e-12;
+        let to_sun = libm::pow(10.0, -0.4 * SUN_V_MAG_AT_1_AU);
+        let bare_sun_e_per_s =
+            radiometry.bare_sunlight_e_per_s_m2().map(|e_per_s_m2| e_per_s_m2 * to_sun * pixel_m2);
+        let stray = config.sun.is_some() || config.earth.is_some() || config.moon.is_some();
+        if stray && bare_sun_e_per_s.is_none() {
+            return Err(SimError::Parameter {
+                field: "radiometry.kind",
+                value: "zero_point".to_owned(),
+                expected: "spectral, because stray light of background.sun, .earth, .moon goes by the aperture",
+            });
+        }
+        let (columns, rows) = projection.detector();
+        let nodes = (0..NODES * NODES)
+            .map(|i| {
+                let (x, y) = (place(i % NODES, columns), place(i / NODES, rows));
+                Node::new(projection, x, y).ok_or_else(|| SimError::Parameter {
+                    field: "camera",
+                    value: format!("no direction for pixel ({x}, {y})"),
+                    expected: "a camera whose every pixel has a direction",
+                })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(Some(Self {
+            config: config.clone(),
+            columns,
+            rows,
+            nodes,
+            column_weights: mean_weights(columns),
+            row_weights: mean_weights(rows),
+            s10_e_per_s_sr: radiometry.sunlit(10.0) * SQUARE_DEGREES_PER_SR,
+            bare_sun_e_per_s,
+        }))
+    }
+
+    /// The background at `time` for an observer at `position_km` from the centre of the Earth, with the Sun at `sun_km` from it,
+    /// ICRS axes.
+    ///
+    /// Directions are geometric: aberration (0.006°) is nothing to a smooth field.
+    pub fn field(
+        &self,
+        time: Epoch,
+        position_km: &Vector3<f64>,
+        sun_km: &Vector3<f64>,
+        camera_from_icrs: Rotation<CameraFrame, Icrs>,
+    ) -> BackgroundField {
+        let sun = sun_km.normalize();
+        let (sun_rays, earth_rays, moon_rays) = self.rays(time, position_km, sun_km);
+        let icrs_from_camera = camera_from_icrs.inverse();
+        let e_per_s = std::array::from_fn(|i| {
+            let Node { direction, pixel_sr } = self.nodes[i];
+            let direction = icrs_from_camera.rotate(&direction);
+            let mut s10 = self.config.faint_stars_s10;
+            if self.config.zodiacal {
+                s10 += zodiacal::zodiacal_s10(&direction, &sun);
+            }
+            let mut suns = 0.0;
+            for (law, rays) in [
+                (self.config.sun.as_ref(), &sun_rays),
+                (self.config.earth.as_ref().map(|earth| &earth.scatter), &earth_rays),
+                (self.config.moon.as_ref(), &moon_rays),
+            ] {
+                let Some(law) = law else { continue };
+                for ray in rays {
+                    suns += ray.suns * law.transmittance(&direction, &ray.direction);
+                }
+            }
+            s10 * self.s10_e_per_s_sr * pixel_sr + suns * self.bare_sun_e_per_s.unwrap_or(0.0)
+        });
+        let mut mean_e_per_s = 0.0;
+        for (i, value) in e_per_s.iter().enumerate() {
+            mean_e_per_s += self.column_weights[i % NODES] * self.row_weights[i / NODES] * value;
+        }
+        BackgroundField { columns: self.columns, rows: self.rows, e_per_s, mean_e_per_s }
+    }
+
+    /// The light that reaches the aperture from Sun, Earth and Moon; none of those that are off.
+    fn rays(
+        &self,
+        time: Epoch,
+        position_km: &Vector3<f64>,
+        sun_km: &Vector3<f64>,
+    ) -> (Vec<Ray>, Vec<Ray>, Vec<Ray>) {
+        let sun_direction = sun_km.normalize();
+        let sun_au = sun_km.norm() / AU_KM;
+        let suns = 1.0 / (sun_au * sun_au);
+        let earth_to_sun_km = position_km + sun_km;
+        let (mut sun_rays, mut earth_rays, mut moon_rays) = (Vec::new(), Vec::new(), Vec::new());
+        if self.config.sun.is_some() {
+            let seen = shadow::sunlit_fraction(position_km, &earth_to_sun_km);
+            sun_rays.push(Ray { direction: sun_direction, suns: suns * seen });
+        }
+        if let Some(earth) = &self.config.earth {
+            let sun = earth_to_sun_km.normalize();
+            stray::earth_rays(position_km, &sun, suns, earth.albedo, &mut earth_rays);
+        }
+        if self.config.moon.is_some() {
+            let moon_km = moon::moon_position_km(clock::tdb_j2000_s(time));
+            let to_moon_km = moon_km - position_km;
+            let moon_to_sun_km = earth_to_sun_km - moon_km;
+            let phase_deg =
+                libm::atan2(moon_to_sun_km.cross(&-to_moon_km).norm(), moon_to_sun_km.dot(&-to_moon_km))
+                    .to_degrees();
+            let nearness = MOON_MEAN_DISTANCE_KM / to_moon_km.norm();
+            let magnitude = stray::moon_magnitude(phase_deg) - SUN_V_MAG_AT_1_AU;
+            let seen = shadow::visible_fraction(position_km, &moon_km, MOON_RADIUS_KM);
+            moon_rays.push(Ray {
+                direction: to_moon_km.normalize(),
+                suns: suns * seen * nearness * nearness * libm::pow(10.0, -0.4 * magnitude),
+            });
+        }
+        (sun_rays, earth_rays, moon_rays)
+    }
+}
+
+impl Node {
+    /// What the pixel at (x, y) sees; `None` where no direction falls.
+    fn new(projection: &Projection, x: f64, y: f64) -> Option<Self> {
+        let at = |dx: f64, dy: f64| {
+            projection.unproject(PixelPoint::new(x + dx, y + dy)).map(|direction| *direction.vector())
+        };
+        let across = at(0.5, 0.0)? - at(-0.5, 0.0)?;
+        let down = at(0.0, 0.5)? - at(0.0, -0.5)?;
+        Some(Self { direction: at(0.0, 0.0)?, pixel_sr: across.cross(&down).norm() })
+    }
+}
+
+/// The pixel on which node `i` lies, of `n` pixels.
+fn place(i: usize, n: usize) -> f64 {
+    i as f64 * (n as f64 - 1.0) / (NODES - 1) as f64
+}
+
+/// The node before pixel `i` of `n`, and how far it is to the next, 0 to 1.
+fn between_nodes(i: usize, n: usize) -> (usize, f64) {
+    let at = i as f64 * (NODES - 1) as f64 / (n as f64 - 1.0).max(1.0);
+    let before = (at as usize).min(NODES - 2);
+    (before, at - before as f64)
+}
+
+/// Share of each node in the mean over `n` pixels in a line.
+fn mean_weights(n: usize) -> [f64; NODES] {
+    let mut weights = [0.0; NODES];
+    for i in 0..n {
+        let (before, part) = between_nodes(i, n);
+        weights[before] += (1.0 - part) / n as f64;
+        weights[before + 1] += part / n as f64;
+    }
+    weights
+}
+
+/// The background of one frame: electrons a second in each pixel, bilinear between the nodes of a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BackgroundField {
+    columns: usize,
+    rows: usize,
+    /// At the nodes, row by row.
+    e_per_s: [f64; NODES * NODES],
+    mean_e_per_s: f64,
+}
+
+impl BackgroundField {
+    /// Photo-electrons a second and pixel, the mean over the detector.
+    pub fn mean_e_per_s(&self) -> f64 {
+        self.mean_e_per_s
+    }
+
+    /// Photo-electrons a second of every pixel, row by row; what `out` held is replaced.
+    pub fn electrons_per_s(&self, out: &mut Vec<f64>) {
+        out.clear();
+        out.reserve(self.columns * self.rows);
+        for y in 0..self.rows {
+            let (row, down) = between_nodes(y, self.rows);
+            let line: [f64; NODES] = std::array::from_fn(|i| {
+                let (above, below) = (self.e_per_s[row * NODES + i], self.e_per_s[(row + 1) * NODES + i]);
+                above + down * (below - above)
+            });
+            out.extend((0..self.columns).map(|x| {
+                let (column, across) = between_nodes(x, self.columns);
+                line[column] + across * (line[column + 1] - line[column])
+            }));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,166 @@
+//! Light of bodies outside the field that the optics scatter onto the detector.
+
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::truth::shadow::EARTH_RADIUS_KM;
+
+/// How baffle and optics scatter light from outside the field: the point source transmittance (irradiance of the detector over that
+/// of the aperture facing the source) as a power law of the angle between the source and the direction of the pixel, with a bend at
+/// the exclusion angle of the baffle. Within 1° of the source it is that at 1°.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StrayLightConfig {
+    /// Angle from which on the baffle keeps the source's light off the first lens, degrees, 1 to 180.
+    pub exclusion_deg: f64,
+    /// Point source transmittance at the exclusion angle, 0 to 1.
+    pub transmittance: f64,
+    /// Exponent with which it falls beyond the exclusion angle, 0 to 20.
+    pub power: f64,
+    /// Exponent with which it grows inside the exclusion angle, 0 to 20.
+    pub power_inside: f64,
+}
+
+impl StrayLightConfig {
+    /// Angle below which the law is not followed, rad: 1°.
+    const NEAREST_RAD: f64 = std::f64::consts::PI / 180.0;
+
+    /// Checks every number; `fields` are the paths of the four in the scenario.
+    pub(super) fn check(&self, fields: [&'static str; 4]) -> Result<(), SimError> {
+        let [exclusion, transmittance, power, inside] = fields;
+        require(exclusion, self.exclusion_deg, "1 to 180", |a| (1.0..=180.0).contains(&a))?;
+        require(transmittance, self.transmittance, "0 to 1", |t| (0.0..=1.0).contains(&t))?;
+        require(power, self.power, "0 to 20", |p| (0.0..=20.0).contains(&p))?;
+        require(inside, self.power_inside, "0 to 20", |p| (0.0..=20.0).contains(&p))
+    }
+
+    /// Point source transmittance for light from the unit vector `source` in the direction `pixel`; at most 1.
+    pub(super) fn transmittance(&self, pixel: &Vector3<f64>, source: &Vector3<f64>) -> f64 {
+        let angle = libm::atan2(pixel.cross(source).norm(), pixel.dot(source)).max(Self::NEAREST_RAD);
+        let ratio = self.exclusion_deg.to_radians() / angle;
+        let power = if ratio < 1.0 { self.power } else { self.power_inside };
+        (self.transmittance * libm::pow(ratio, power)).min(1.0)
+    }
+}
+
+/// A bundle of light that reaches the aperture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Ray {
+    /// Unit vector to where it comes from, ICRS axes.
+    pub(super) direction: Vector3<f64>,
+    /// Irradiance facing it, in units of that of the Sun at 1 au.
+    pub(super) suns: f64,
+}
+
+/// V magnitude of the Moon at mean distance with the Sun at 1 au, `phase_deg` from full (Krisciunas & Schaefer 1991, PASP 103, 1033, Eq. 9,
+/// after Allen).
+pub(super) fn moon_magnitude(phase_deg: f64) -> f64 {
+    let square = phase_deg * phase_deg;
+    -12.73 + 0.026 * phase_deg.abs() + 4e-9 * square * square
+}
+
+/// Rings, and patches of a ring, into which the Earth's disk is divided: equal solid angles.
+const RINGS: usize = 10;
+const SECTORS: usize = 20;
+
+/// The lit part of the Earth's disk as seen from `position_km` (from its centre, ICRS axes): a Lambert sphere of albedo `albedo`
+/// in sunlight from `sun` (unit vector) of `suns`. Appended to `rays`; nothing from inside the Earth.
+pub(super) fn earth_rays(
+    position_km: &Vector3<f64>,
+    sun: &Vector3<f64>,
+    suns: f64,
+    albedo: f64,
+    rays: &mut Vec<Ray>,
+) {
+    let distance = position_km.norm();
+    if distance <= EARTH_RADIUS_KM {
+        return;
+    }
+    let nadir = -position_km / distance;
+    // Any two directions across: the coordinate axis that the nadir is farthest from makes the first.
+    let axis = if nadir.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
+    let across = nadir.cross(&axis).normalize();
+    let other = nadir.cross(&across);
+    let sine = EARTH_RADIUS_KM / distance;
+    // 1 − cos of the disk's radius, without loss of digits for a small disk.
+    let cap = sine * sine / (1.0 + (1.0 - sine * sine).sqrt());
+    let solid_angle = 2.0 * std::f64::consts::PI * cap / (RINGS * SECTORS) as f64;
+    for ring in 0..RINGS {
+        let cos = 1.0 - cap * (ring as f64 + 0.5) / RINGS as f64;
+        let sin = (1.0 - cos * cos).sqrt();
+        let chord = (EARTH_RADIUS_KM * EARTH_RADIUS_KM - distance * distance * sin * sin).max(0.0).sqrt();
+        let range = distance * cos - chord;
+        for sector in 0..SECTORS {
+            let turn = 2.0 * std::f64::consts::PI * (sector as f64 + 0.5) / SECTORS as f64;
+            let (sin_turn, cos_turn) = libm::sincos(turn);
+            let direction = nadir * cos + (across * cos_turn + other * sin_turn) * sin;
+            let normal = (position_km + direction * range) / EARTH_RADIUS_KM;
+            let incidence = normal.dot(sun);
+            if incidence > 0.0 {
+                let radiance_suns = suns * albedo * incidence / std::f64::consts::PI;
+                rays.push(Ray { direction, suns: radiance_suns * solid_angle });
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: StrayLightConfig =
+        StrayLightConfig { exclusion_deg: 30.0, transmittance: 1e-6, power: 3.0, power_inside: 5.0 };
+
+    fn at(degrees: f64) -> f64 {
+        let (sin, cos) = libm::sincos(degrees.to_radians());
+        LAW.transmittance(&Vector3::z(), &Vector3::new(sin, 0.0, cos))
+    }
+
+    #[test]
+    fn the_transmittance_bends_at_the_exclusion_angle_and_ends_at_one() {
+        assert!((at(30.0) - 1e-6).abs() < 1e-18);
+        assert!((at(60.0) / 1e-6 - 0.125).abs() < 1e-9);
+        assert!((at(15.0) / 1e-6 - 32.0).abs() < 1e-9);
+        assert_eq!(at(0.5), at(0.0));
+        let bright = StrayLightConfig { transmittance: 0.5, ..LAW };
+        assert_eq!(bright.transmittance(&Vector3::z(), &Vector3::z()), 1.0);
+    }
+
+    fn irradiance(distance_radii: f64, sun: Vector3<f64>) -> f64 {
+        let mut rays = Vec::new();
+        let position = Vector3::new(1.0, 2.0, -2.0).normalize() * (distance_radii * EARTH_RADIUS_KM);
+        earth_rays(&position, &sun, 1.0, 0.3, &mut rays);
+        rays.iter().map(|ray| ray.suns).sum()
+    }
+
+    /// From afar: 2/3 A Φ(α) (R/d)², Φ(0) = 1 and Φ(90°) = 1/π (Russell 1916).
+    #[test]
+    fn the_earth_from_afar_is_a_lambert_sphere() {
+        let full = Vector3::new(1.0, 2.0, -2.0).normalize();
+        let half = Vector3::new(2.0, -1.0, 0.0).normalize();
+        let sphere = 2.0 / 3.0 * 0.3 * 1e-6;
+        // Patches of 1/200 of the disk: 1 % at full phase; where the terminator runs through patches, 3 %.
+        assert!((irradiance(1000.0, full) / sphere - 1.0).abs() < 0.01);
+        assert!((irradiance(1000.0, half) / sphere * std::f64::consts::PI - 1.0).abs() < 0.03);
+        assert_eq!(irradiance(1000.0, -full), 0.0);
+    }
+
+    /// Just above the subsolar point the disk fills half of the sky with ground lit from above: π sr of radiance A S/π, seen without
+    /// a cosine: 2π A/π = 2 A.
+    #[test]
+    fn a_low_orbit_sees_half_a_sky_of_lit_ground() {
+        let zenith = Vector3::new(1.0, 2.0, -2.0).normalize();
+        assert!((irradiance(1.000_01, zenith) / 0.6 - 1.0).abs() < 0.01);
+        assert_eq!(irradiance(0.9, zenith), 0.0);
+    }
+
+    /// Allen, Astrophysical Quantities: full −12.7, quarter −10.1 (Krisciunas & Schaefer: −10.13 from the formula).
+    #[test]
+    fn the_moon_has_its_known_magnitudes() {
+        assert_eq!(moon_magnitude(0.0), -12.73);
+        assert!((moon_magnitude(90.0) + 10.13).abs() < 0.01);
+    }
+}
