@@ -102,7 +102,7 @@ impl Sensor {
         let Some(blooming) = &self.config().blooming else { return false };
         let Some(window) = stamp.window() else { return false };
         let overflows = |&electrons: &f64| electrons + background_e > full_well_e;
-        if !stamp.rows().any(|(_, _, row)| row.iter().any(|electrons| overflows(electrons))) {
+        if !stamp.rows().any(|(_, _, row)| row.iter().any(overflows)) {
             return false;
         }
         let rows = self.size().1;

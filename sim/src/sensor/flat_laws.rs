@@ -116,8 +116,8 @@ fn table(law: &PixelLaw, mean_e: f64, extra_e: u32) -> AliasTable {
 
 /// The smallest n with P(N ≤ n) ≥ u, for a Poisson number of a small mean.
 fn electrons_of(mean: f64, u: f64) -> usize {
-    // exp(−s) ≥ 1 − s: no exponential for most of the faintest.
-    if u <= 1.0 - mean {
+    // exp(−s) ≥ 1 − s + s²/2 − s³/6 from 0 to 1: no exponential for most pixels without a signal electron.
+    if mean <= 1.0 && u <= 1.0 - mean * (1.0 - mean * (0.5 - mean * (1.0 / 6.0))) {
         return 0;
     }
     let (mut n, mut left, mut probability) = (0, u, libm::exp(-mean));
