@@ -48,7 +48,7 @@ fn a_camera_can_be_pasted_into_a_scenario() {
         let camera = bench.boresight(&format!("scenario camera {name}")).done().stdout;
         let mut scenario = start.clone();
         scenario.extend(camera.parse::<toml::Table>().unwrap());
-        bench.write(&format!("{name}.toml"), &scenario.to_string());
+        bench.write(&format!("{name}.toml"), scenario.to_string());
         bench.boresight(&format!("scenario check {name}.toml")).done();
     }
     bench.boresight("scenario camera kodak").refused(&["kodak", "uasc-far-range"]);

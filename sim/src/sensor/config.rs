@@ -84,7 +84,7 @@ pub struct LineNoiseConfig {
 
 /// The law of the dark currents of hot pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum HotLaw {
     /// Log-normal, by `median_e_per_s` and `spread`.
     #[default]
@@ -216,7 +216,7 @@ impl SensorConfig {
         require("sensor.hot_pixels.median_e_per_s", hot.median_e_per_s, "0 to 1e9", within(0.0, 1e9))?;
         require("sensor.hot_pixels.spread", hot.spread, "0 to 5", within(0.0, 5.0))?;
         if let HotLaw::Pareto { index } = hot.law {
-            require("sensor.hot_pixels.law.pareto.index", index, "0.3 to 10", within(0.3, 10.0))?;
+            require("sensor.hot_pixels.law.index", index, "0.3 to 10", within(0.3, 10.0))?;
         }
         require("sensor.non_linearity", self.non_linearity, "-0.3 to 0.3", within(-0.3, 0.3))?;
         require("sensor.frame_transfer_s", self.frame_transfer_s, "0 to 10", within(0.0, 10.0))?;
