@@ -30,7 +30,7 @@ pub struct CosmicRayConfig {
     #[serde(default = "minimum_ionising")]
     pub mean_e_per_um: f64,
     /// Scale of the fluctuation of that charge, electrons a µm, 0 to 1e4: the width ξ of Landau's law. In silicon 4.9
-    /// (178 eV/µm over 10, and 3.65 eV a pair; Particle Data Group, Passage of particles through matter, Sec. 34.2.9).
+    /// (ξ of 17.8 eV/µm, and 3.65 eV a pair; Particle Data Group, Passage of particles through matter, Sec. 34.2.9).
     #[serde(default = "landau_width")]
     pub landau_e_per_um: f64,
     /// The South Atlantic Anomaly; without the table the rate is the same all along the orbit.
@@ -50,7 +50,8 @@ fn landau_width() -> f64 {
 ///
 /// The factor is 1 + (`peak_factor` − 1) exp(−(Δφ/`latitude_sigma_deg`)²/2 − (Δλ/`longitude_sigma_deg`)²/2), with φ the
 /// geocentric latitude and λ the longitude. At 540 km the peak is 1100 particles a second and cm² against about 1 outside
-/// (Miles et al., ApJ 918, 86, 2021); the anomaly drifts west by 0.3° a year.
+/// (Miles et al., ApJ 918, 86, 2021): the default of `peak_factor`. Place and widths are assumptions; the anomaly drifts west by
+/// 0.3° a year.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SouthAtlanticConfig {
