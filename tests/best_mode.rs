@@ -15,7 +15,7 @@ use pipeline::far_range::{
 use sim::onboard::{RoiConfig, RoiExtractor, downlink};
 use sim::optics::{Psf, PsfConfig, Stamp};
 use sim::randomness::Seed;
-use sim::sensor::{FlatLaws, RawImage, Sensor, SensorConfig};
+use sim::sensor::{FlatLaws, Opening, RawImage, Sensor, SensorConfig};
 
 const SIGMA_PX: f64 = 0.8;
 const BACKGROUND_E: f64 = 20.0;
@@ -54,8 +54,8 @@ fn draw(sensor: &Sensor, psf: &PsfConfig, points: &[(PixelPoint, f64)], number: 
         image.add(&stamp);
     }
     let mut raw = sensor.new_raw();
-    let charge = sensor.collect(&mut image, 0.25);
     let seed = Seed { seed: 20_120_423, case: 0 };
+    let charge = sensor.collect(&mut image, &Opening { seed, middle_s: 0.0, exposure_s: 0.25 });
     sensor.read_out(&charge, &seed, number, &mut FlatLaws::new(), &mut raw).unwrap();
     raw
 }

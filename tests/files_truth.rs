@@ -46,8 +46,8 @@ fn frame(i: u64) -> FrameTruth {
 fn object(frame: u64, i: u64) -> ObjectTruth {
     let seed = frame * 1000 + i;
     let kind =
-        [ObjectKind::Target, ObjectKind::Star, ObjectKind::HotPixel][(i as usize).min(2 - i as usize % 2)];
-    let star = kind != ObjectKind::HotPixel;
+        [ObjectKind::Target, ObjectKind::Star, ObjectKind::HotPixel, ObjectKind::CosmicRay][i as usize % 4];
+    let star = matches!(kind, ObjectKind::Target | ObjectKind::Star);
     ObjectTruth {
         frame,
         kind,

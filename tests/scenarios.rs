@@ -4,7 +4,7 @@
 
 mod support;
 
-use boresight::scenario::BUILT_IN;
+use boresight::scenario::{BUILT_IN, STARTING_POINT};
 use serde_json::{Value, json};
 use support::Bench;
 
@@ -36,6 +36,22 @@ fn the_list_names_every_built_in_scenario_with_its_frames() {
         let line = text.lines().find(|line| line.starts_with(name)).unwrap();
         assert!(line.contains(title) && line.contains(&entry["frames"].to_string()), "{line}");
     }
+}
+
+/// A printed camera takes the place of a scenario's own.
+#[test]
+fn a_camera_can_be_pasted_into_a_scenario() {
+    let bench = Bench::new();
+    let names = bench.boresight("scenario camera --json").done().json();
+    let start: toml::Table = STARTING_POINT.parse().unwrap();
+    for name in names.as_array().unwrap().iter().map(|name| name.as_str().unwrap()) {
+        let camera = bench.boresight(&format!("scenario camera {name}")).done().stdout;
+        let mut scenario = start.clone();
+        scenario.extend(camera.parse::<toml::Table>().unwrap());
+        bench.write(&format!("{name}.toml"), scenario.to_string());
+        bench.boresight(&format!("scenario check {name}.toml")).done();
+    }
+    bench.boresight("scenario camera kodak").refused(&["kodak", "uasc-far-range"]);
 }
 
 /// A JSON Schema, read by its own rules and not by the library that made it.

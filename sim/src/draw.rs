@@ -2,7 +2,8 @@
 
 use crate::optics::Stamp;
 
-/// Expected photo-electrons of a frame: a flat level, and signal where something was drawn.
+/// Expected photo-electrons of a frame: a flat level, a field where the background is not flat, and signal where
+/// something was drawn.
 ///
 /// Most pixels of a star field hold the flat level and nothing else. The image knows which ones do not, so that
 /// clearing it, and drawing the noise, cost as much as there is signal. It is reused from frame to frame.
@@ -11,7 +12,9 @@ pub struct ExpectedImage {
     columns: usize,
     rows: usize,
     flat_e: f64,
-    /// Electrons above the flat level, row by row.
+    /// Background above the flat level, row by row; empty when there is none.
+    field: Vec<f64>,
+    /// Electrons of what was drawn, above the background, row by row.
     signal: Vec<f64>,
     /// One bit a pixel, `words_per_row` words a row: whether something was drawn there.
     drawn: Vec<u64>,
@@ -26,6 +29,7 @@ impl ExpectedImage {
             columns,
             rows,
             flat_e: 0.0,
+            field: Vec::new(),
             signal: vec![0.0; columns * rows],
             drawn: vec![0; words_per_row * rows],
             words_per_row,
@@ -37,7 +41,7 @@ impl ExpectedImage {
         (self.columns, self.rows)
     }
 
-    /// Takes away everything drawn and sets the flat level, electrons a pixel.
+    /// Takes away everything drawn and the field, and sets the flat level, electrons a pixel.
     pub fn clear(&mut self, flat_e: f64) {
         for (row, words) in self
             .signal
@@ -52,6 +56,74 @@ impl ExpectedImage {
             }
         }
         self.flat_e = flat_e;
+        self.field.clear();
+    }
+
+    /// Sets a background that varies from pixel to pixel: `scale` · `field`, electrons above the flat level, row by row;
+    /// `None` takes it away. Where `field` is too short, there is none.
+    pub fn set_field(&mut self, field: Option<&[f64]>, scale: f64) {
+        self.field.clear();
+        if let Some(field) = field {
+            self.field.extend(field.iter().take(self.signal.len()).map(|electrons| scale * electrons));
+            self.field.resize(self.signal.len(), 0.0);
+        }
+    }
+
+    /// Whether the background varies from pixel to pixel.
+    pub fn has_field(&self) -> bool {
+        !self.field.is_empty()
+    }
+
+    /// The field, of zeros if there was none, for the effects of the detector.
+    fn field_mut(&mut self) -> &mut [f64] {
+        self.field.resize(self.signal.len(), 0.0);
+        &mut self.field
+    }
+
+    /// Multiplies the light of every pixel, background and signal, by its response.
+    pub(crate) fn respond(&mut self, response: &[f32]) {
+        let flat_e = self.flat_e;
+        for (field, &response) in self.field_mut().iter_mut().zip(response) {
+            *field = (flat_e + *field) * f64::from(response) - flat_e;
+        }
+        for (signal, &response) in self.signal.iter_mut().zip(response) {
+            *signal *= f64::from(response);
+        }
+    }
+
+    /// Adds `electrons` to every pixel, times a factor of its own.
+    pub(crate) fn add_pattern(&mut self, electrons: f64, factors: &[f32]) {
+        self.flat_e += electrons;
+        for (field, &factor) in self.field_mut().iter_mut().zip(factors) {
+            *field += electrons * (f64::from(factor) - 1.0);
+        }
+    }
+
+    /// Adds to every pixel `share` of the light of all other pixels of its column.
+    pub(crate) fn smear(&mut self, share: f64) {
+        let columns = self.columns.max(1);
+        let mut sums = vec![0.0; columns];
+        for (index, electrons) in self.iter().enumerate() {
+            sums[index % columns] += electrons;
+        }
+        let own: Vec<f64> = self.iter().collect();
+        for (row, own) in self.field_mut().chunks_exact_mut(columns).zip(own.chunks_exact(columns)) {
+            for ((field, own), sum) in row.iter_mut().zip(own).zip(&sums) {
+                *field += share * (sum - own);
+            }
+        }
+    }
+
+    /// Empties one pixel, background included.
+    pub(crate) fn empty_pixel(&mut self, x: usize, y: usize) {
+        let background_e = self.background_at(x, y);
+        self.signal[y * self.columns + x] = -background_e;
+        self.mark(y, x, x + 1);
+    }
+
+    /// Expected electrons of the background in a pixel: flat level and field.
+    pub fn background_at(&self, x: usize, y: usize) -> f64 {
+        self.flat_e + self.field.get(y * self.columns + x).copied().unwrap_or(0.0)
     }
 
     /// Raises the flat level of every pixel, electrons.
@@ -91,17 +163,18 @@ impl ExpectedImage {
         self.flat_e
     }
 
-    /// Expected electrons of a pixel, flat level included.
+    /// Expected electrons of a pixel, background included.
     pub fn at(&self, x: usize, y: usize) -> f64 {
-        self.flat_e + self.signal[y * self.columns + x]
+        self.background_at(x, y) + self.signal[y * self.columns + x]
     }
 
-    /// Expected electrons of all pixels, row by row, flat level included.
+    /// Expected electrons of all pixels, row by row, background included.
     pub fn iter(&self) -> impl Iterator<Item = f64> {
-        self.signal.iter().map(|signal| self.flat_e + signal)
+        let field = self.field.iter().copied().chain(std::iter::repeat(0.0));
+        self.signal.iter().zip(field).map(|(signal, field)| self.flat_e + field + signal)
     }
 
-    /// Index (row by row) and electrons above the flat level of every pixel where something was drawn, in the order
+    /// Index (row by row) and electrons above the background of every pixel where something was drawn, in the order
     /// of the image.
     pub fn drawn(&self) -> impl Iterator<Item = (usize, f64)> {
         self.drawn.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(move |(i, &word)| {
@@ -172,6 +245,31 @@ mod tests {
         image.add_pixel(149, 69, 3.0);
         image.clear(0.0);
         assert_eq!(image, ExpectedImage::new(150, 70));
+    }
+
+    #[test]
+    fn a_field_is_part_of_every_pixel_until_it_is_cleared() {
+        let mut image = ExpectedImage::new(3, 2);
+        image.clear(5.0);
+        image.set_field(Some(&[0.0, 1.0, 2.0, 3.0]), 10.0);
+        image.add_pixel(1, 1, 7.0);
+        assert_eq!(image.iter().collect::<Vec<_>>(), [5.0, 15.0, 25.0, 35.0, 12.0, 5.0]);
+        assert_eq!((image.at(0, 1), image.background_at(1, 1)), (35.0, 5.0));
+        image.set_field(None, 1.0);
+        assert_eq!(image.at(2, 0), 5.0);
+        image.set_field(Some(&[1.0; 6]), 1.0);
+        image.clear(0.0);
+        assert_eq!(image, ExpectedImage::new(3, 2));
+    }
+
+    #[test]
+    fn a_smear_gives_each_pixel_a_share_of_the_rest_of_its_column() {
+        let mut image = ExpectedImage::new(2, 3);
+        image.clear(1.0);
+        image.add_pixel(0, 2, 100.0);
+        image.smear(0.5);
+        // Column 0 holds 1, 1, 101 and column 1 three times 1.
+        assert_eq!(image.iter().collect::<Vec<_>>(), [52.0, 2.0, 52.0, 2.0, 102.0, 2.0]);
     }
 
     #[test]

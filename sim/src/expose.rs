@@ -6,8 +6,9 @@ use hifitime::{Epoch, Unit};
 use crate::draw::ExpectedImage;
 use crate::onboard::{RoiExtractor, downlink};
 use crate::optics::{ImagePoint, Psf, Stamp, trail};
-use crate::scene::{CameraMotion, Source};
-use crate::sensor::{FlatLaws, RawImage, Switch};
+use crate::scene::{BackgroundField, CameraMotion, Source};
+use crate::sensor::{FlatLaws, Opening, RawImage, Switch, Track};
+use crate::truth::clock;
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, shadow};
 use crate::{SimError, Simulator};
 
@@ -20,7 +21,8 @@ pub struct Exposure {
     pub telemetry: Telemetry,
     /// The truth about the frame.
     pub truth: FrameTruth,
-    /// The truth about every object in it: the target, then stars, then hot pixels, each by number.
+    /// The truth about every object in it: the target, then stars, then hot pixels, then tracks
+    /// of particles, each by number.
     pub objects: Vec<ObjectTruth>,
 }
 
@@ -35,7 +37,11 @@ pub struct SimulatedCamera<'a> {
     regions: Option<RoiExtractor>,
     sources: Vec<Source>,
     points: Vec<ImagePoint>,
+    /// Background of the scene, electrons a second, pixel by pixel.
+    field: Vec<f64>,
     stamps: Vec<Stamp>,
+    /// The image of an object whose wells overflow.
+    bloomed: Stamp,
 }
 
 /// Where everything is at one moment.
@@ -65,7 +71,9 @@ impl<'a> SimulatedCamera<'a> {
             regions,
             sources: Vec::new(),
             points: Vec::new(),
+            field: Vec::new(),
             stamps: Vec::new(),
+            bloomed: Stamp::new(),
         })
     }
 
@@ -95,13 +103,16 @@ impl<'a> SimulatedCamera<'a> {
             self.psf.margin_px(),
             &mut self.sources,
         );
-        let background_e_per_s = simulator.background.as_ref().map_or(0.0, |background| {
+        let background = simulator.background.as_ref().map(|background| {
             let (position_km, sun_km) = (&moment.states.chaser.position_km, &moment.observer.sun_km());
-            background.field(time, position_km, sun_km, moment.camera_from_icrs).mean_e_per_s()
+            background.field(time, position_km, sun_km, moment.camera_from_icrs)
         });
-        let mut objects = self.draw(number, exposure_s, background_e_per_s);
-        let charge = simulator.sensor.collect(&mut self.image, exposure_s);
-        simulator.sensor.read_out(&charge, &simulator.seed, number, &mut self.laws, &mut self.raw)?;
+        let opening = Opening { seed: simulator.seed, middle_s: clock::tt_j2000_s(time), exposure_s };
+        let tracks = simulator.cosmic_rays.as_ref().map_or_else(Vec::new, |rays| {
+            let rate = rays.rate_per_cm2_s(time, &moment.states.chaser.position_km);
+            rays.tracks(&simulator.seed, number, exposure_s, rate)
+        });
+        let mut objects = self.draw(number, &opening, background.as_ref(), &tracks)?;
         let windows = self.regions.as_mut().map(|regions| regions.extract(&self.raw));
         if let Some(windows) = &windows {
             for (object, stamp) in objects.iter_mut().zip(&self.stamps) {
@@ -124,7 +135,7 @@ impl<'a> SimulatedCamera<'a> {
             phase_deg: moment.phase_rad.to_degrees(),
             shadow: shadow::classify(moment.sunlit_fraction),
             sunlit_fraction: moment.sunlit_fraction,
-            background_e_per_s,
+            background_e_per_s: background.map_or(0.0, |field| field.mean_e_per_s()),
             target_position: moment.target_position,
             target_visibility: Visibility::of_snr(
                 objects
@@ -239,61 +250,98 @@ impl<'a> SimulatedCamera<'a> {
         Ok(simulator.shutter.exposure_s(peak))
     }
 
-    /// Draws the expected image, keeps a stamp of every object that has light on the detector, and tells its truth.
-    fn draw(&mut self, number: u64, exposure_s: f64, background_e_per_s: f64) -> Vec<ObjectTruth> {
-        let simulator = self.simulator;
+    /// Draws the expected image and the digital numbers, keeps a stamp of every object that has light on the detector,
+    /// and tells its truth.
+    fn draw(
+        &mut self,
+        number: u64,
+        opening: &Opening,
+        background: Option<&BackgroundField>,
+        tracks: &[Track],
+    ) -> Result<Vec<ObjectTruth>, SimError> {
+        let Self { simulator, psf, image, field, laws, raw, sources, points, stamps, bloomed, .. } = self;
         let sensor = &simulator.sensor;
-        let background_e = background_e_per_s * exposure_s;
-        let flat_e = sensor.flat_electrons(exposure_s) + background_e;
-        let detector = self.image.size();
-        // The background enters by its mean over the detector.
-        self.image.clear(sensor.sky_electrons(exposure_s) + background_e);
-        let hot_pixels = sensor.hot_pixels().iter().map(|hot| {
-            let position = PixelPoint::new(hot.x as f64, hot.y as f64);
-            Source {
-                kind: ObjectKind::HotPixel,
-                id: (hot.y * detector.0 + hot.x) as u32,
-                position,
-                ends: [position; 2],
-                astrometric: None,
-                magnitude: None,
-                electrons_per_s: hot.rate_e_per_s,
-            }
-        });
-        let mut objects = Vec::with_capacity(self.sources.len() + hot_pixels.len());
-        for source in self.sources.iter().copied().chain(hot_pixels) {
-            if objects.len() == self.stamps.len() {
-                self.stamps.push(Stamp::new());
-            }
-            let stamp = &mut self.stamps[objects.len()];
-            let electrons = source.electrons_per_s * exposure_s;
-            if source.kind == ObjectKind::HotPixel {
-                // The sensor itself collects it; here it is only described.
-                stamp.set_pixel(source.position.x as usize, source.position.y as usize, electrons);
-            } else {
-                self.points.clear();
-                let [begin, end] = source.ends;
-                trail(begin, source.position, end, &mut self.points);
-                self.psf.stamp_extended(&self.points, electrons, Psf::FLOOR_E, detector, stamp);
-                self.image.add(stamp);
-            }
-            let truth = stamp.truth(flat_e, sensor.read_noise_e());
-            if truth.electrons > 0.0 {
-                objects.push(ObjectTruth {
-                    frame: number,
-                    kind: source.kind,
-                    id: source.id,
-                    position: stamp.centre(),
-                    astrometric: source.astrometric,
-                    magnitude: source.magnitude,
-                    electrons: truth.electrons,
-                    peak_electrons: truth.peak_electrons,
-                    snr: truth.snr,
-                    radius_px: truth.radius_px,
-                    cut: 0.0,
-                });
+        let (columns, rows) = image.size();
+        let hot_pixels = sensor.hot_pixels();
+        let detected = sources.len() + hot_pixels.len() + tracks.len();
+        stamps.resize_with(stamps.len().max(detected), Stamp::new);
+        let (lit, own) = stamps.split_at_mut(sources.len());
+        let (hot, struck) = own.split_at_mut(hot_pixels.len());
+
+        image.clear(sensor.sky_electrons(opening.exposure_s));
+        if let Some(background) = background {
+            background.electrons_per_s(field);
+            image.set_field(Some(field), opening.exposure_s);
+        }
+        for (source, stamp) in sources.iter_mut().zip(lit) {
+            let electrons = source.electrons_per_s * opening.exposure_s;
+            points.clear();
+            let [begin, end] = source.ends;
+            trail(begin, source.position, end, points);
+            psf.stamp_extended(points, electrons, Psf::FLOOR_E, (columns, rows), stamp);
+            source.position = stamp.centre();
+            image.add(stamp);
+            sensor.respond(stamp);
+        }
+        let mut charge = sensor.collect(image, opening);
+        for (pixel, stamp) in hot_pixels.iter().zip(hot) {
+            // The sensor itself collects it; here it is only described.
+            stamp.set_pixel(pixel.x, pixel.y, sensor.hot_electrons(pixel, opening));
+            sources.push(of_the_detector(ObjectKind::HotPixel, pixel.y * columns + pixel.x, stamp));
+        }
+        if let Some(rays) = &simulator.cosmic_rays {
+            for (id, (track, stamp)) in tracks.iter().zip(struck).enumerate() {
+                rays.stamp(track, stamp);
+                sensor.strike(&mut charge, stamp);
+                sources.push(of_the_detector(ObjectKind::CosmicRay, id, stamp));
             }
         }
-        objects
+
+        let mut objects = Vec::with_capacity(detected);
+        for (i, source) in sources.iter().enumerate() {
+            let stamp = &mut stamps[i];
+            let pixel = |at: f64, size: usize| (at.round().max(0.0) as usize).min(size.saturating_sub(1));
+            let (x, y) = (pixel(source.position.x, columns), pixel(source.position.y, rows));
+            let background_e = charge.expected().background_at(x, y);
+            let truth = stamp.truth(background_e, sensor.read_noise_e());
+            if truth.electrons <= 0.0 {
+                continue;
+            }
+            let mut radius_px = truth.radius_px;
+            if sensor.bloom_stamp(stamp, background_e, bloomed) {
+                radius_px = bloomed.truth(background_e, sensor.read_noise_e()).radius_px;
+                std::mem::swap(stamp, bloomed);
+            }
+            // The stamps of the objects stand in the order of the objects.
+            stamps.swap(i, objects.len());
+            objects.push(ObjectTruth {
+                frame: number,
+                kind: source.kind,
+                id: source.id,
+                position: source.position,
+                astrometric: source.astrometric,
+                magnitude: source.magnitude,
+                electrons: truth.electrons,
+                peak_electrons: truth.peak_electrons,
+                snr: truth.snr,
+                radius_px,
+                cut: 0.0,
+            });
+        }
+        sensor.read_out(&charge, &simulator.seed, number, laws, raw)?;
+        Ok(objects)
+    }
+}
+
+/// What the detector makes by itself, as a source that is described by its stamp.
+fn of_the_detector(kind: ObjectKind, id: usize, stamp: &Stamp) -> Source {
+    Source {
+        kind,
+        id: id as u32,
+        position: stamp.centre(),
+        ends: [stamp.centre(); 2],
+        astrometric: None,
+        magnitude: None,
+        electrons_per_s: 0.0,
     }
 }

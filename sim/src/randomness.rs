@@ -22,6 +22,24 @@ pub enum Effect {
     AttitudeControl = 3,
     /// Error of the attitude's knowledge in telemetry.
     AttitudeKnowledge = 4,
+    /// Sensitivity of each pixel (addressed with the sensor's seed).
+    PixelResponse = 20,
+    /// Dark current of each pixel (addressed with the sensor's seed).
+    DarkPattern = 21,
+    /// Places of dead pixels (addressed with the sensor's seed).
+    DeadPixels = 22,
+    /// Places of dead columns (addressed with the sensor's seed).
+    DeadColumns = 23,
+    /// Fixed offset of each column (addressed with the sensor's seed).
+    ColumnOffset = 24,
+    /// Noise common to a row of a frame.
+    RowNoise = 25,
+    /// Noise common to a column of a frame.
+    ColumnNoise = 26,
+    /// Switching of hot pixels; addressed by cells of time, not by frames.
+    Telegraph = 27,
+    /// Hits of cosmic rays.
+    CosmicRays = 28,
 }
 
 /// The generator behind every draw.

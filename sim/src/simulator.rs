@@ -10,7 +10,7 @@ use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
 use crate::optics::{Projection, Psf, PsfConfig, Radiometry, RadiometryConfig};
 use crate::randomness::Seed;
 use crate::scene::{Background, BackgroundConfig, StarField, TargetConfig};
-use crate::sensor::{Sensor, SensorConfig};
+use crate::sensor::{CosmicRays, Sensor, SensorConfig};
 use crate::truth::{
     Attitude, AttitudeConfig, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig, Observer, OrbitConfig,
     Schedule, Trajectory,
@@ -65,6 +65,7 @@ pub struct Simulator {
     pub(crate) projection: Projection,
     pub(crate) psf: Psf,
     pub(crate) sensor: Sensor,
+    pub(crate) cosmic_rays: Option<CosmicRays>,
     pub(crate) shutter: Shutter,
     pub(crate) roi: Option<RoiConfig>,
     pub(crate) seed: Seed,
@@ -112,6 +113,12 @@ impl Simulator {
             projection,
             psf: Psf::new(&simulation.psf)?,
             sensor: Sensor::new(&simulation.sensor, columns, rows)?,
+            cosmic_rays: simulation
+                .sensor
+                .cosmic_rays
+                .as_ref()
+                .map(|config| CosmicRays::new(config, &simulation.camera))
+                .transpose()?,
             shutter,
             roi: simulation.roi.clone(),
             seed,

@@ -1,4 +1,4 @@
-//! `boresight scenario`: what scenarios there are, whether one is right, what one may contain, and a start.
+//! `boresight scenario`: what scenarios and cameras there are, whether one is right, what one may contain, and a start.
 
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -10,7 +10,7 @@ use serde_json::json;
 use super::Answer;
 use super::output::Output;
 use crate::failure::Failure;
-use crate::scenario::{BUILT_IN, STARTING_POINT, Scenario, ScenarioSource};
+use crate::scenario::{BUILT_IN, CAMERAS, STARTING_POINT, Scenario, ScenarioSource};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum ScenarioCommand {
@@ -20,6 +20,11 @@ pub(super) enum ScenarioCommand {
     Check {
         /// A built-in scenario or a TOML file
         scenario: String,
+    },
+    /// List the built-in cameras, or print one: the tables [camera] and [sensor], each value with its source
+    Camera {
+        /// A built-in camera
+        name: Option<String>,
     },
     /// Print the JSON Schema of scenario files
     Schema,
@@ -34,6 +39,11 @@ pub(super) fn scenario(command: &ScenarioCommand, output: &Output) -> Result<Ans
     match command {
         ScenarioCommand::List => list(output),
         ScenarioCommand::Check { scenario } => return check(scenario, output),
+        ScenarioCommand::Camera { name: None } => {
+            let names: Vec<_> = CAMERAS.iter().map(|camera| camera.name).collect();
+            output.answer(&names, names.join("\n"))
+        }
+        ScenarioCommand::Camera { name: Some(name) } => camera(name, output),
         ScenarioCommand::Schema => {
             let schema = Scenario::json_schema();
             let text = serde_json::to_string_pretty(&schema)
@@ -59,6 +69,17 @@ fn list(output: &Output) -> Result<(), Failure> {
     let text: Vec<_> =
         rows.iter().map(|(name, frames, title)| format!("{name:<16}{frames:>7} frames  {title}")).collect();
     output.answer(&document, text.join("\n"))
+}
+
+fn camera(name: &str, output: &Output) -> Result<(), Failure> {
+    let Some(camera) = CAMERAS.iter().find(|camera| camera.name == name) else {
+        let names: Vec<_> = CAMERAS.iter().map(|camera| camera.name).collect();
+        return Err(Failure::Usage(format!(
+            "`{name}` is no built-in camera; there are: {}",
+            names.join(", ")
+        )));
+    };
+    output.answer(&json!({ "name": name, "toml": camera.text }), camera.text.trim_end().to_owned())
 }
 
 /// A mistake in a scenario is the answer no; a file that cannot be read is none.

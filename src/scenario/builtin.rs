@@ -2,7 +2,7 @@
 
 use super::Scenario;
 
-/// A scenario of the folder `scenarios/`, embedded.
+/// A file of the folder `scenarios/`, embedded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BuiltIn {
     /// Name on the command line.

@@ -1,9 +1,11 @@
 //! Scenarios: what to run, in words.
 
 mod builtin;
+mod cameras;
 mod source;
 
 pub use builtin::{BUILT_IN, BuiltIn, STARTING_POINT, is_argon};
+pub use cameras::CAMERAS;
 pub use source::ScenarioSource;
 
 use contract::{Camera, Readout};

@@ -13,12 +13,12 @@ use super::belonging::{holds, merged_with, reach_px, target};
 /// 3. the reason that the pipeline itself gives: [`Cause::PipelineFailed`], [`Cause::SaturatedFrame`],
 ///    [`Cause::NoPreviousFrame`], and an empty frame as [`Cause::BelowThreshold`];
 /// 4. when the pipeline tells its clusters, the label of the one nearest to the target and within its reach of
-///    max(`radius_px`, 1.5) px; where there is none, a cluster at a star or hot pixel that touches the target
+///    max(`radius_px`, 1.5) px; where there is none, a cluster at a star, hot pixel or track that touches the target
 ///    (distance up to the sum of the reaches), and where that is missing too, [`Cause::BelowThreshold`];
-/// 5. by the truth alone, the visible star or hot pixel that touches the target;
+/// 5. by the truth alone, the visible star, hot pixel or track that touches the target;
 /// 6. [`Cause::Unexplained`].
 ///
-/// A wrong answer whose chosen cluster holds the target but more light of a star or hot pixel was merged with it.
+/// A wrong answer whose chosen cluster holds the target but more light of a star, hot pixel or track was merged with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Cause {
     /// The measurements have no row for the frame.
@@ -43,6 +43,8 @@ pub enum Cause {
     TakenForStar,
     /// Its cluster was labelled as a hotspot, or it touches a hot pixel.
     TakenForHotspot,
+    /// The track of a charged particle touches it.
+    MergedWithCosmicRay,
     /// Its cluster was a candidate, and another one won.
     LostMotionTest,
     /// Its cluster was not linked to the previous frame.
@@ -55,7 +57,7 @@ pub enum Cause {
 
 impl Cause {
     /// Every cause, in the order of precedence.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::NotReported,
         Self::OutsideField,
         Self::InEclipse,
@@ -67,6 +69,7 @@ impl Cause {
         Self::MergedWithStar,
         Self::TakenForStar,
         Self::TakenForHotspot,
+        Self::MergedWithCosmicRay,
         Self::LostMotionTest,
         Self::NotLinked,
         Self::BelowThreshold,
@@ -87,6 +90,7 @@ impl Cause {
             Self::MergedWithStar => "merged_with_star",
             Self::TakenForStar => "taken_for_star",
             Self::TakenForHotspot => "taken_for_hotspot",
+            Self::MergedWithCosmicRay => "merged_with_cosmic_ray",
             Self::LostMotionTest => "lost_motion_test",
             Self::NotLinked => "not_linked",
             Self::BelowThreshold => "below_threshold",
@@ -104,6 +108,7 @@ impl Cause {
         match kind {
             ObjectKind::Star => Self::MergedWithStar,
             ObjectKind::HotPixel => Self::TakenForHotspot,
+            ObjectKind::CosmicRay => Self::MergedWithCosmicRay,
             ObjectKind::Target => Self::Unexplained,
         }
     }
@@ -191,7 +196,7 @@ fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[
 mod tests {
     use super::*;
     use crate::score::hand_made::{
-        CENTRE, COLUMNS, ROWS, cluster, detected_at, frame, hot_pixel_at, star_at, target_with,
+        CENTRE, COLUMNS, ROWS, cluster, cosmic_ray_at, detected_at, frame, hot_pixel_at, star_at, target_with,
     };
     use contract::PixelPoint;
 
@@ -307,6 +312,8 @@ mod tests {
         assert_eq!(of(&no_target(), std::slice::from_ref(&star)), Cause::MergedWithStar);
         assert_eq!(of(&no_target(), std::slice::from_ref(&hot)), Cause::TakenForHotspot);
         assert_eq!(of(&no_target(), &[hot, star]), Cause::MergedWithStar);
+        let track = cosmic_ray_at(0, right_of_target(1.0), 900.0);
+        assert_eq!(of(&no_target(), &[track]), Cause::MergedWithCosmicRay);
     }
 
     #[test]

@@ -83,6 +83,10 @@ pub(crate) fn hot_pixel_at(id: u32, position: PixelPoint, electrons: f64) -> Obj
     object(ObjectKind::HotPixel, id, position, electrons)
 }
 
+pub(crate) fn cosmic_ray_at(id: u32, position: PixelPoint, electrons: f64) -> ObjectTruth {
+    object(ObjectKind::CosmicRay, id, position, electrons)
+}
+
 pub(crate) fn cluster(position: PixelPoint, label: Label) -> Cluster {
     Cluster { position, size: 2.0, pixels: 9, label }
 }

@@ -24,7 +24,7 @@ pub enum Verdict {
     ///
     /// An object belongs to the chosen cluster when its true centre lies within max(`radius_px`/2, 1.5) px of
     /// the reported position. The answer is correct when the target belongs to it and more than half of the electrons
-    /// of all that belongs to it (stars and hot pixels included) are the target's. Only transmitted electrons
+    /// of all that belongs to it (stars, hot pixels and tracks of particles included) are the target's. Only transmitted electrons
     /// count: electrons × (1 − cut).
     Correct {
         /// Error of the line of sight.
@@ -49,6 +49,8 @@ pub enum Taken {
     Star(u32),
     /// The hot pixel of this number: row × columns + column.
     HotPixel(u32),
+    /// The track of this number in the frame.
+    CosmicRay(u32),
     /// Nothing of the truth is there: noise, or a place of its own making.
     Nothing,
 }
@@ -59,14 +61,15 @@ impl Taken {
         match self {
             Self::Star(_) => "star",
             Self::HotPixel(_) => "hot_pixel",
+            Self::CosmicRay(_) => "cosmic_ray",
             Self::Nothing => "nothing",
         }
     }
 
-    /// The number of the star or hot pixel.
+    /// The number of the star, hot pixel or track.
     pub fn id(self) -> Option<u32> {
         match self {
-            Self::Star(id) | Self::HotPixel(id) => Some(id),
+            Self::Star(id) | Self::HotPixel(id) | Self::CosmicRay(id) => Some(id),
             Self::Nothing => None,
         }
     }
@@ -235,6 +238,7 @@ fn taken(object: &ObjectTruth) -> Taken {
     match object.kind {
         ObjectKind::Star => Taken::Star(object.id),
         ObjectKind::HotPixel => Taken::HotPixel(object.id),
+        ObjectKind::CosmicRay => Taken::CosmicRay(object.id),
         ObjectKind::Target => Taken::Nothing,
     }
 }
@@ -243,7 +247,8 @@ fn taken(object: &ObjectTruth) -> Taken {
 mod tests {
     use super::*;
     use crate::score::hand_made::{
-        CENTRE, COLUMNS, ROWS, detected_at, frame, hot_pixel_at, star_at, target_with, unproject,
+        CENTRE, COLUMNS, ROWS, cosmic_ray_at, detected_at, frame, hot_pixel_at, star_at, target_with,
+        unproject,
     };
 
     fn verdict(objects: &[ObjectTruth], outcome: &Outcome) -> Verdict {
@@ -294,6 +299,7 @@ mod tests {
         for (object, expected, merged) in [
             (star_at(7, far, 500.0), Taken::Star(7), false),
             (hot_pixel_at(99, far, 500.0), Taken::HotPixel(99), false),
+            (cosmic_ray_at(2, far, 500.0), Taken::CosmicRay(2), false),
             (star_at(8, right_of_target(1.0), 5000.0), Taken::Star(8), true),
         ] {
             let place = object.position;

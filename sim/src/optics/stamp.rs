@@ -45,12 +45,29 @@ impl Stamp {
     }
 
     /// Makes this a stamp of zeros over columns `x.0..x.1` and rows `y.0..y.1`; an empty range makes it empty.
-    pub(super) fn reset(&mut self, centre: PixelPoint, x: (usize, usize), y: (usize, usize)) {
+    pub(crate) fn reset(&mut self, centre: PixelPoint, x: (usize, usize), y: (usize, usize)) {
         (self.x, self.y) = (x.0, y.0);
         (self.columns, self.rows) = (x.1.saturating_sub(x.0), y.1.saturating_sub(y.0));
         self.centre = centre;
         self.electrons.clear();
         self.electrons.resize(self.columns * self.rows, 0.0);
+    }
+
+    /// Adds electrons to a pixel; outside the stamp nothing happens.
+    pub(crate) fn add(&mut self, x: usize, y: usize, electrons: f64) {
+        if (self.x..self.x + self.columns).contains(&x) && (self.y..self.y + self.rows).contains(&y) {
+            self.electrons[(y - self.y) * self.columns + x - self.x] += electrons;
+        }
+    }
+
+    /// Multiplies every pixel by a factor of its column and row.
+    pub(crate) fn scale(&mut self, factor: impl Fn(usize, usize) -> f64) {
+        let columns = self.columns.max(1);
+        for (j, row) in self.electrons.chunks_exact_mut(columns).enumerate() {
+            for (i, electrons) in row.iter_mut().enumerate() {
+                *electrons *= factor(self.x + i, self.y + j);
+            }
+        }
     }
 
     /// Where the light of the undisturbed image has its mean, off the detector included.

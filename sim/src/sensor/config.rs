@@ -4,6 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::blooming::BloomingConfig;
+use super::cosmic_rays::CosmicRayConfig;
+use super::fixed_pattern::FixedPatternConfig;
+use super::telegraph::TelegraphConfig;
 use crate::SimError;
 use crate::error::require;
 
@@ -41,6 +44,59 @@ pub struct NoiseConfig {
     pub dark: Switch,
 }
 
+/// Temperature of the detector. Its dark current, hot pixels included, is multiplied by
+/// 2^((`temperature_c` − `reference_c`)/`doubling_k`); without the table by 1.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TemperatureConfig {
+    /// Temperature of the detector, °C, −150 to 100.
+    pub temperature_c: f64,
+    /// Temperature at which the dark currents are those given, °C, −150 to 100.
+    pub reference_c: f64,
+    /// Kelvin in which the dark current doubles, 1 to 50; silicon near room temperature 6 to 9.
+    pub doubling_k: f64,
+}
+
+impl Default for TemperatureConfig {
+    fn default() -> Self {
+        Self { temperature_c: 20.0, reference_c: 20.0, doubling_k: 7.0 }
+    }
+}
+
+impl TemperatureConfig {
+    /// The factor of the dark current.
+    pub(super) fn factor(&self) -> f64 {
+        libm::exp2((self.temperature_c - self.reference_c) / self.doubling_k)
+    }
+}
+
+/// Noise that the pixels of a row or of a column share, drawn anew in every frame; off by default. It is a part of the
+/// read noise and is switched with it.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct LineNoiseConfig {
+    /// Standard deviation of the offset of a row, electrons, 0 to 500.
+    pub row_e: f64,
+    /// Standard deviation of the offset of a column, electrons, 0 to 500; offsets that stay are
+    /// `fixed_pattern.column_offset_e`.
+    pub column_e: f64,
+}
+
+/// The law of the dark currents of hot pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum HotLaw {
+    /// Log-normal, by `median_e_per_s` and `spread`.
+    #[default]
+    LogNormal,
+    /// Pareto's power law: P(I > i) = ½ (`median_e_per_s`/i)^`index` from median/2^(1/`index`) on. A heavy tail, as that of
+    /// detectors after years among protons.
+    Pareto {
+        /// The exponent, 0.3 to 10; at 1 and below there is no mean.
+        index: f64,
+    },
+}
+
 /// Pixels with a high dark current: always the same ones, whatever the frame.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -49,16 +105,23 @@ pub struct HotPixelConfig {
     pub count: usize,
     /// Seed of this piece of hardware; not the seed of the scenario.
     pub seed: u64,
-    /// Median of their log-normal distribution of dark current, electrons a second, 0 to 1e9.
+    /// Median of their dark current, electrons a second, 0 to 1e9.
     pub median_e_per_s: f64,
-    /// Standard deviation of the natural logarithm of the dark current, 0 to 5; 1 and more gives a heavy tail.
+    /// Standard deviation of the natural logarithm of the dark current in a log-normal law, 0 to 5; 1 and more gives a
+    /// heavy tail.
     pub spread: f64,
+    /// The law of the dark currents; none exceeds 1e9 electrons a second.
+    #[serde(default)]
+    pub law: HotLaw,
+    /// Random telegraph switching; without the table it is off.
+    #[serde(default)]
+    pub telegraph: Option<TelegraphConfig>,
 }
 
 /// Detector, readout and analogue-digital converter.
 ///
-/// The digital number of a pixel is floor(e/gain + bias + ½), held within 0 and 2^bits − 1, where e is the number of
-/// collected electrons, at most the full well, plus the read noise.
+/// The digital number of a pixel is floor((e (1 − β e/full well) + read noise)/gain + bias + ½), held within 0 and
+/// 2^bits − 1, where e is the number of collected electrons, at most the full well, and β is `non_linearity`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensorConfig {
@@ -76,6 +139,15 @@ pub struct SensorConfig {
     pub dark_current_e_per_s: f64,
     /// Photo-electrons of the sky, the same in every pixel, electrons a second, 0 to 1e6.
     pub background_e_per_s: f64,
+    /// Part of its signal that a full pixel lacks (or, negative, has too much), −0.3 to 0.3, growing with the square of the
+    /// charge; 0: linear.
+    #[serde(default)]
+    pub non_linearity: f64,
+    /// Time in which the image is moved under the storage of a frame-transfer CCD, with light still on it, s, 0 to 10; 0:
+    /// no smear. Each pixel is lit by all other rows of its column for 1/rows of that time each: by those it passes on its
+    /// way out, and by the rest when it came in.
+    #[serde(default)]
+    pub frame_transfer_s: f64,
     /// Parts of the noise that are on.
     #[serde(default)]
     pub noise: NoiseConfig,
@@ -85,6 +157,18 @@ pub struct SensorConfig {
     /// Spilling of full wells along columns; without the table it is off.
     #[serde(default)]
     pub blooming: Option<BloomingConfig>,
+    /// Temperature of the detector.
+    #[serde(default)]
+    pub temperature: TemperatureConfig,
+    /// Differences between pixels.
+    #[serde(default)]
+    pub fixed_pattern: FixedPatternConfig,
+    /// Noise that rows and columns share.
+    #[serde(default)]
+    pub line_noise: LineNoiseConfig,
+    /// Charged particles; without the table there are none.
+    #[serde(default)]
+    pub cosmic_rays: Option<CosmicRayConfig>,
 }
 
 /// An ideal detector to build upon: 16 bits, an electron a digital number, nothing collected but light, no noise of
@@ -102,6 +186,12 @@ impl Default for SensorConfig {
             noise: NoiseConfig::default(),
             hot_pixels: HotPixelConfig::default(),
             blooming: None,
+            non_linearity: 0.0,
+            frame_transfer_s: 0.0,
+            temperature: TemperatureConfig::default(),
+            fixed_pattern: FixedPatternConfig::default(),
+            line_noise: LineNoiseConfig::default(),
+            cosmic_rays: None,
         }
     }
 }
@@ -125,6 +215,21 @@ impl SensorConfig {
         let hot = &self.hot_pixels;
         require("sensor.hot_pixels.median_e_per_s", hot.median_e_per_s, "0 to 1e9", within(0.0, 1e9))?;
         require("sensor.hot_pixels.spread", hot.spread, "0 to 5", within(0.0, 5.0))?;
+        if let HotLaw::Pareto { index } = hot.law {
+            require("sensor.hot_pixels.law.index", index, "0.3 to 10", within(0.3, 10.0))?;
+        }
+        require("sensor.non_linearity", self.non_linearity, "-0.3 to 0.3", within(-0.3, 0.3))?;
+        require("sensor.frame_transfer_s", self.frame_transfer_s, "0 to 10", within(0.0, 10.0))?;
+        let temperature = &self.temperature;
+        let (range, celsius) = ("-150 to 100", within(-150.0, 100.0));
+        require("sensor.temperature.temperature_c", temperature.temperature_c, range, celsius)?;
+        require("sensor.temperature.reference_c", temperature.reference_c, range, celsius)?;
+        require("sensor.temperature.doubling_k", temperature.doubling_k, "1 to 50", within(1.0, 50.0))?;
+        require("sensor.line_noise.row_e", self.line_noise.row_e, "0 to 500", within(0.0, 500.0))?;
+        require("sensor.line_noise.column_e", self.line_noise.column_e, "0 to 500", within(0.0, 500.0))?;
+        self.fixed_pattern.check()?;
+        hot.telegraph.map_or(Ok(()), |telegraph| telegraph.check())?;
+        self.cosmic_rays.as_ref().map_or(Ok(()), CosmicRayConfig::check)?;
         self.blooming.map_or(Ok(()), |blooming| blooming.check())
     }
 
@@ -135,13 +240,22 @@ impl SensorConfig {
 
     /// Electrons at which a pixel saturates: the full well or the end of the converter, whichever comes first.
     pub fn saturation_e(&self) -> f64 {
-        self.full_well_e.min((f64::from(self.full_scale_dn()) - self.bias_dn) * self.gain_e_per_dn)
+        let converter_e = (f64::from(self.full_scale_dn()) - self.bias_dn) * self.gain_e_per_dn;
+        // The root of e (1 − β e/full well) = converter_e, in a form that holds for β = 0 too.
+        let root = 1.0 - 4.0 * self.non_linearity * converter_e / self.full_well_e;
+        if root < 0.0 {
+            self.full_well_e
+        } else {
+            self.full_well_e.min(2.0 * converter_e / (1.0 + root.sqrt()))
+        }
     }
 }
 
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::randomness::Seed;
+    use crate::sensor::Opening;
 
     /// A twelve-bit sensor like that of a star tracker.
     pub(in crate::sensor) fn twelve_bit() -> SensorConfig {
@@ -154,9 +268,20 @@ pub(super) mod tests {
             dark_current_e_per_s: 10.0,
             background_e_per_s: 30.0,
             noise: NoiseConfig::default(),
-            hot_pixels: HotPixelConfig { count: 5, seed: 3, median_e_per_s: 2000.0, spread: 1.0 },
+            hot_pixels: HotPixelConfig {
+                count: 5,
+                seed: 3,
+                median_e_per_s: 2000.0,
+                spread: 1.0,
+                ..HotPixelConfig::default()
+            },
             ..SensorConfig::default()
         }
+    }
+
+    /// An exposure at J2000.0.
+    pub(in crate::sensor) fn opening(exposure_s: f64) -> Opening {
+        Opening { seed: Seed { seed: 42, case: 0 }, middle_s: 0.0, exposure_s }
     }
 
     #[test]
@@ -172,6 +297,10 @@ pub(super) mod tests {
         assert_eq!(twelve_bit().saturation_e(), 40_000.0);
         let deep = SensorConfig { full_well_e: 1e6, ..twelve_bit() };
         assert!((deep.saturation_e() - 40_447.0).abs() < 1e-9);
+        // 5 % lacking at a million: e − 5e-8 e² = 40447 at 40529.
+        let bent = SensorConfig { non_linearity: 0.05, ..deep };
+        let e = bent.saturation_e();
+        assert!((e - 5e-8 * e * e - 40_447.0).abs() < 1e-6);
     }
 
     #[test]

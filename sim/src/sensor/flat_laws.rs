@@ -3,7 +3,8 @@
 //! Most pixels of a frame have the same mean, hence the same law of their digital number: one table, one word a
 //! pixel. A pixel with a little signal s above the flat mean λ follows by superposition: Poisson(λ + s) is
 //! Poisson(λ) plus an independent n from Poisson(s), and given n its law is that of the flat mean with n electrons
-//! added for certain: one table for each n.
+//! added for certain: one table for each n. Where every pixel has a mean of its own, the flat mean is the next lower
+//! one of a fixed grid, and the rest is the little signal.
 
 use std::collections::BTreeMap;
 
@@ -17,11 +18,16 @@ pub struct FlatLaws {
     law: Option<PixelLaw>,
     /// By the bits of the mean.
     means: BTreeMap<u64, FlatLaw>,
+    /// By the electrons of the grid's means, made when first met.
+    grid: Vec<Option<FlatLaw>>,
 }
 
 impl FlatLaws {
     /// Means kept at most; a shutter's ladder has fewer exposures.
     const MEANS: usize = 64;
+
+    /// Means from which on there is no grid, and pixels are drawn by the direct sampler.
+    pub(super) const GRID_END_E: f64 = 4096.0;
 
     /// Nothing kept yet.
     pub fn new() -> Self {
@@ -33,10 +39,35 @@ impl FlatLaws {
         if self.law != Some(*law)
             || (self.means.len() >= Self::MEANS && !self.means.contains_key(&mean_e.to_bits()))
         {
-            self.means.clear();
-            self.law = Some(*law);
+            self.forget(law);
         }
         self.means.entry(mean_e.to_bits()).or_insert_with(|| FlatLaw::new(*law, mean_e))
+    }
+
+    /// A digital number of a pixel with a mean of its own, from 0 to less than [`FlatLaws::GRID_END_E`] electrons, from a
+    /// uniform word.
+    pub(super) fn draw(&mut self, law: &PixelLaw, mean_e: f64, word: u64) -> u16 {
+        if self.law != Some(*law) {
+            self.forget(law);
+        }
+        // The rest is below a step, and a step is at most FAINT_E; larger steps keep the tables few where they are long.
+        let whole = mean_e as usize;
+        let node = match whole {
+            0..64 => whole,
+            64..256 => whole & !1,
+            _ => whole & !3,
+        };
+        if node >= self.grid.len() {
+            self.grid.resize(node + 1, None);
+        }
+        let flat = self.grid[node].get_or_insert_with(|| FlatLaw::new(*law, node as f64));
+        flat.draw_faint(mean_e - node as f64, word)
+    }
+
+    fn forget(&mut self, law: &PixelLaw) {
+        self.means.clear();
+        self.grid.clear();
+        self.law = Some(*law);
     }
 }
 
@@ -85,8 +116,8 @@ fn table(law: &PixelLaw, mean_e: f64, extra_e: u32) -> AliasTable {
 
 /// The smallest n with P(N ≤ n) ≥ u, for a Poisson number of a small mean.
 fn electrons_of(mean: f64, u: f64) -> usize {
-    // exp(−s) ≥ 1 − s: no exponential for most of the faintest.
-    if u <= 1.0 - mean {
+    // exp(−s) ≥ 1 − s + s²/2 − s³/6 from 0 to 1: no exponential for most pixels without a signal electron.
+    if mean <= 1.0 && u <= 1.0 - mean * (1.0 - mean * (0.5 - mean * (1.0 / 6.0))) {
         return 0;
     }
     let (mut n, mut left, mut probability) = (0, u, libm::exp(-mean));
@@ -123,7 +154,7 @@ mod tests {
             let p = chi_square_p(&drawn, &from_zero(&law.probabilities(mean_e, 0)));
             assert!(p > 1e-4, "mean {mean_e}: p = {p} against the probabilities");
             // The sampler shares nothing with the table but the parameters.
-            let sampled = counts_of((0..n).map(|_| usize::from(law.sample(mean_e, &mut stream))));
+            let sampled = counts_of((0..n).map(|_| usize::from(law.sample(mean_e, 0.0, &mut stream))));
             let (mut chi2, mut bins) = (0.0, 0.0);
             for (a, b) in drawn.iter().zip(&sampled).filter(|(a, b)| *a + *b >= 20) {
                 chi2 += (*a as f64 - *b as f64) * (*a as f64 - *b as f64) / (a + b) as f64;
@@ -147,6 +178,29 @@ mod tests {
             );
             let p = chi_square_p(&counts, &from_zero(&law.probabilities(3.0 + signal_e, 0)));
             assert!(p > 1e-4, "signal {signal_e}: p = {p}");
+        }
+    }
+
+    #[test]
+    fn pixels_of_their_own_means_follow_the_law_of_the_direct_sampler() {
+        let law = PixelLaw::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() });
+        let mut laws = FlatLaws::new();
+        for (frame, mean_e) in [0.0, 0.3, 1.0, 17.9, 63.99, 65.5, 301.7, 4095.9].into_iter().enumerate() {
+            let streams = Seed { seed: 23, case: 0 }.streams(frame as u64, Effect::PixelNoise);
+            let n = 100_000;
+            let drawn =
+                counts_of((0..n).map(|place| usize::from(laws.draw(&law, mean_e, streams.word(place)))));
+            let p = chi_square_p(&drawn, &from_zero(&law.probabilities(mean_e, 0)));
+            assert!(p > 1e-4, "mean {mean_e}: p = {p}");
+            let mut stream = streams.at(n);
+            let sampled = counts_of((0..n).map(|_| usize::from(law.sample(mean_e, 0.0, &mut stream))));
+            let (mut chi2, mut bins) = (0.0, 0.0);
+            for (a, b) in drawn.iter().zip(&sampled).filter(|(a, b)| *a + *b >= 20) {
+                chi2 += (*a as f64 - *b as f64) * (*a as f64 - *b as f64) / (a + b) as f64;
+                bins += 1.0;
+            }
+            let p = super::super::pixel_law::tests::chi_square_tail(chi2, bins);
+            assert!(p > 1e-4, "mean {mean_e}: p = {p} against the sampler");
         }
     }
 

@@ -2,9 +2,10 @@
 
 use rand::Rng;
 
-use super::config::HotPixelConfig;
+use super::config::{HotLaw, HotPixelConfig};
+use super::telegraph::switches;
 use crate::SimError;
-use crate::randomness::{Effect, Seed, normal};
+use crate::randomness::{Effect, Seed, Stream, normal, uniform};
 
 /// A pixel with a high dark current.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,12 +14,14 @@ pub struct HotPixel {
     pub x: usize,
     /// Row.
     pub y: usize,
-    /// Its dark current above that of an ordinary pixel, electrons a second.
+    /// Its dark current above that of an ordinary pixel, electrons a second; of one that switches, in its high state.
     pub rate_e_per_s: f64,
+    /// Whether it is a random telegraph.
+    pub switches: bool,
 }
 
 /// The hot pixels of a detector, in the order of the image. They depend on the sensor's seed alone; a higher count
-/// adds pixels and keeps the ones there were.
+/// adds pixels and keeps the ones there were. `warmth` multiplies the currents.
 ///
 /// # Errors
 /// [`SimError::Parameter`] when more than a tenth of all pixels would be hot.
@@ -26,6 +29,7 @@ pub(super) fn hot_pixels(
     config: &HotPixelConfig,
     columns: usize,
     rows: usize,
+    warmth: f64,
 ) -> Result<Vec<HotPixel>, SimError> {
     let pixels = columns * rows;
     // So few that a place drawn at random is free nine times in ten.
@@ -41,7 +45,7 @@ pub(super) fn hot_pixels(
     let mut hot: Vec<HotPixel> = (0..config.count)
         .map(|number| {
             let mut stream = streams.at(number as u64);
-            let rate_e_per_s = config.median_e_per_s * libm::exp(config.spread * normal(&mut stream));
+            let rate_e_per_s = warmth * current(config, &mut stream);
             let index = loop {
                 // The highest bits of a product: uniform but for pixels/2^64.
                 let index = ((u128::from(stream.next_u64()) * pixels as u128) >> 64) as usize;
@@ -49,36 +53,54 @@ pub(super) fn hot_pixels(
                     break index;
                 }
             };
-            HotPixel { x: index % columns, y: index / columns, rate_e_per_s }
+            let switches = switches(config.telegraph.as_ref(), &mut stream);
+            HotPixel { x: index % columns, y: index / columns, rate_e_per_s, switches }
         })
         .collect();
     hot.sort_by_key(|pixel| (pixel.y, pixel.x));
     Ok(hot)
 }
 
+/// A dark current, electrons a second, at the temperature of reference.
+fn current(config: &HotPixelConfig, stream: &mut Stream) -> f64 {
+    // A tail without a mean has no end.
+    const MOST_E_PER_S: f64 = 1e9;
+    let factor = match config.law {
+        HotLaw::LogNormal => libm::exp(config.spread * normal(stream)),
+        HotLaw::Pareto { index } => libm::pow(2.0 * uniform(stream), -1.0 / index),
+    };
+    (config.median_e_per_s * factor).min(MOST_E_PER_S)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sensor::TelegraphConfig;
 
     fn config(count: usize) -> HotPixelConfig {
-        HotPixelConfig { count, seed: 8, median_e_per_s: 100.0, spread: 1.5 }
+        HotPixelConfig { count, seed: 8, median_e_per_s: 100.0, spread: 1.5, ..HotPixelConfig::default() }
     }
 
     #[test]
     fn no_pixel_is_hot_twice_and_a_higher_count_keeps_the_others() {
-        let few = hot_pixels(&config(50), 40, 30).unwrap();
-        let many = hot_pixels(&config(120), 40, 30).unwrap();
+        let few = hot_pixels(&config(50), 40, 30, 1.0).unwrap();
+        let many = hot_pixels(&config(120), 40, 30, 1.0).unwrap();
         assert_eq!((few.len(), many.len()), (50, 120));
         assert!(many.windows(2).all(|pair| (pair[0].y, pair[0].x) < (pair[1].y, pair[1].x)));
         assert!(few.iter().all(|pixel| many.contains(pixel)));
     }
 
     #[test]
-    fn their_currents_are_log_normal() {
-        use statrs::distribution::{ContinuousCDF, LogNormal};
-        let law = LogNormal::new(libm::log(100.0), 1.5).unwrap();
+    fn their_currents_follow_their_law() {
+        use statrs::distribution::{LogNormal, Pareto};
+        follow(&config(10_000), &LogNormal::new(libm::log(100.0), 1.5).unwrap());
+        let pareto = HotPixelConfig { law: HotLaw::Pareto { index: 1.2 }, ..config(10_000) };
+        follow(&pareto, &Pareto::new(100.0 / libm::pow(2.0, 1.0 / 1.2), 1.2).unwrap());
+    }
+
+    fn follow(config: &HotPixelConfig, law: &impl statrs::distribution::ContinuousCDF<f64, f64>) {
         let mut rates: Vec<f64> =
-            hot_pixels(&config(10_000), 400, 400).unwrap().iter().map(|pixel| pixel.rate_e_per_s).collect();
+            hot_pixels(config, 400, 400, 1.0).unwrap().iter().map(|pixel| pixel.rate_e_per_s).collect();
         rates.sort_by(f64::total_cmp);
         let n = rates.len() as f64;
         let distance = rates
@@ -91,8 +113,20 @@ mod tests {
     }
 
     #[test]
+    fn as_many_switch_as_are_asked_for_and_nothing_else_changes() {
+        let telegraph = TelegraphConfig { fraction: 0.3, low_level: 0.1, high_s: 10.0, low_s: 10.0 };
+        let with = HotPixelConfig { telegraph: Some(telegraph), ..config(10_000) };
+        let (with, without) =
+            (hot_pixels(&with, 400, 400, 1.0).unwrap(), hot_pixels(&config(10_000), 400, 400, 1.0).unwrap());
+        let switching = with.iter().filter(|pixel| pixel.switches).count();
+        // Binomial: 3000 ± 46; four of them.
+        assert!(switching.abs_diff(3000) < 184, "{switching}");
+        assert!(with.iter().zip(&without).all(|(a, b)| HotPixel { switches: false, ..*a } == *b));
+    }
+
+    #[test]
     fn too_many_are_refused() {
-        assert!(hot_pixels(&config(121), 40, 30).is_err());
-        assert!(hot_pixels(&config(0), 0, 0).unwrap().is_empty());
+        assert!(hot_pixels(&config(121), 40, 30, 1.0).is_err());
+        assert!(hot_pixels(&config(0), 0, 0, 1.0).unwrap().is_empty());
     }
 }

@@ -1,15 +1,16 @@
 //! The sensor: expected photo-electrons → charge → digital numbers.
 //!
 //! Each stage is a type of its own: [`crate::draw::ExpectedImage`] holds photo-electrons, [`Charge`] adds what the
-//! detector itself collects (dark current, hot pixels), [`RawImage`] holds digital numbers. A charge can only be
+//! detector itself collects (dark current, hot pixels) and what each pixel makes of it, [`RawImage`] holds digital numbers. A charge can only be
 //! had from an image, and digital numbers only from a charge:
 //! ```
 //! use boresight_sim::draw::ExpectedImage;
 //! use boresight_sim::randomness::Seed;
-//! use boresight_sim::sensor::{FlatLaws, RawImage, Sensor};
+//! use boresight_sim::sensor::{FlatLaws, Opening, RawImage, Sensor};
 //! fn right(sensor: &Sensor, image: &mut ExpectedImage, laws: &mut FlatLaws, raw: &mut RawImage) {
-//!     let charge = sensor.collect(image, 0.5);
-//!     let _ = sensor.read_out(&charge, &Seed { seed: 1, case: 0 }, 0, laws, raw);
+//!     let seed = Seed { seed: 1, case: 0 };
+//!     let charge = sensor.collect(image, &Opening { seed, middle_s: 0.0, exposure_s: 0.5 });
+//!     let _ = sensor.read_out(&charge, &seed, 0, laws, raw);
 //! }
 //! ```
 //! A readout of photo-electrons does not compile:
@@ -24,16 +25,27 @@
 
 mod alias;
 mod blooming;
+mod charge;
 mod config;
+mod cosmic_rays;
+mod fixed_pattern;
 mod flat_laws;
 mod hot_pixels;
 mod pixel_law;
 mod poisson;
 mod readout;
+mod telegraph;
 
 pub use blooming::BloomingConfig;
-pub use config::{HotPixelConfig, NoiseConfig, SensorConfig, Switch};
+pub use charge::{Charge, Opening};
+pub use config::{
+    HotLaw, HotPixelConfig, LineNoiseConfig, NoiseConfig, SensorConfig, Switch, TemperatureConfig,
+};
+pub use cosmic_rays::{CosmicRayConfig, SouthAtlanticConfig};
+pub(crate) use cosmic_rays::{CosmicRays, Track};
+pub use fixed_pattern::{DarkLaw, FixedPatternConfig};
 pub use flat_laws::FlatLaws;
 pub use hot_pixels::HotPixel;
 pub use poisson::poisson;
-pub use readout::{Charge, RawImage, Sensor};
+pub use readout::{RawImage, Sensor};
+pub use telegraph::TelegraphConfig;

@@ -14,6 +14,7 @@ pub(super) struct PixelLaw {
     bias_dn: f64,
     full_well_e: f64,
     read_noise_e: f64,
+    non_linearity: f64,
     pub(super) shot: Switch,
     full_scale_dn: u16,
 }
@@ -35,18 +36,19 @@ impl PixelLaw {
             bias_dn: config.bias_dn,
             full_well_e: config.full_well_e,
             read_noise_e: config.noise.read.of(config.read_noise_e),
+            non_linearity: config.non_linearity,
             shot: config.noise.shot,
             full_scale_dn: config.full_scale_dn(),
         }
     }
 
-    /// A digital number of a pixel with a mean of `mean_e` electrons.
-    pub(super) fn sample(&self, mean_e: f64, stream: &mut Stream) -> u16 {
+    /// A digital number of a pixel with a mean of `mean_e` electrons, and `offset_e` electrons added by the readout.
+    pub(super) fn sample(&self, mean_e: f64, offset_e: f64, stream: &mut Stream) -> u16 {
         // Twelve standard deviations above a full well the well is full but once in 10^32; a mean without bound
         // would leave the range of the sampler.
         let surely_full = self.full_well_e + 12.0 * self.full_well_e.sqrt() + 144.0;
         let collected_e = if mean_e < surely_full { self.collect(mean_e, stream) } else { mean_e };
-        self.convert(collected_e.min(self.full_well_e), stream)
+        self.convert(collected_e.min(self.full_well_e), offset_e, stream)
     }
 
     /// The electrons that a pixel collects, before its well is full: the first half of [`PixelLaw::sample`].
@@ -60,9 +62,14 @@ impl PixelLaw {
     }
 
     /// The digital number of a pixel that holds `held_e` electrons: the second half of [`PixelLaw::sample`].
-    pub(super) fn convert(&self, held_e: f64, stream: &mut Stream) -> u16 {
+    pub(super) fn convert(&self, held_e: f64, offset_e: f64, stream: &mut Stream) -> u16 {
         let noise_e = if self.read_noise_e > 0.0 { self.read_noise_e * normal(stream) } else { 0.0 };
-        self.digitise(held_e + noise_e)
+        self.digitise(self.amplified(held_e) + noise_e + offset_e)
+    }
+
+    /// Electrons as a linear amplifier would have to see them: e (1 − β e/full well).
+    fn amplified(&self, held_e: f64) -> f64 {
+        held_e * (1.0 - self.non_linearity * held_e / self.full_well_e)
     }
 
     /// Electrons that a pixel holds.
@@ -94,7 +101,8 @@ impl PixelLaw {
     pub(super) fn probabilities(&self, mean_e: f64, extra_e: u32) -> DnLaw {
         let extra_e = f64::from(extra_e);
         let reach = PoissonReach::new(mean_e);
-        let smooth = self.read_noise_e >= 1.0 && reach.high + extra_e < self.full_well_e;
+        let linear = self.non_linearity == 0.0;
+        let smooth = linear && self.read_noise_e >= 1.0 && reach.high + extra_e < self.full_well_e;
         match self.shot {
             Switch::On if smooth => self.by_characteristic_function(mean_e, extra_e, reach),
             Switch::On => self.by_sum(&poisson_atoms(mean_e, reach), extra_e),
@@ -104,7 +112,7 @@ impl PixelLaw {
 
     /// The plain sum over numbers of electrons (value, probability): each gives a normal law cut into digital numbers.
     fn by_sum(&self, atoms: &[(f64, f64)], extra_e: f64) -> DnLaw {
-        let collected = |value: f64| (value + extra_e).min(self.full_well_e);
+        let collected = |value: f64| self.amplified((value + extra_e).min(self.full_well_e));
         let reach_e = NORMAL_REACH * self.read_noise_e;
         let ends = |ends: (f64, f64)| (self.digitise(ends.0 - reach_e), self.digitise(ends.1 + reach_e));
         let values = || atoms.iter().map(|&(value, _)| collected(value));
@@ -315,7 +323,7 @@ pub(super) mod tests {
     fn the_sampler_follows_the_probabilities() {
         let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 0);
         for (law, mean_e) in laws() {
-            let counts = counts_of((0..50_000).map(|_| usize::from(law.sample(mean_e, &mut stream))));
+            let counts = counts_of((0..50_000).map(|_| usize::from(law.sample(mean_e, 0.0, &mut stream))));
             let p = chi_square_p(&counts, &from_zero(&law.probabilities(mean_e, 0)));
             // Thirty tests: one in 3,000 runs would fail by chance, and the seed is fixed.
             assert!(p > 1e-5, "{law:?}, mean {mean_e}: p = {p}");
@@ -328,17 +336,34 @@ pub(super) mod tests {
         for bit_depth in 8..=16 {
             let config = SensorConfig { bit_depth, full_well_e: 1e9, ..twelve_bit() };
             for mean_e in [1e8, 1e12, 1e300] {
-                assert_eq!(PixelLaw::new(&config).sample(mean_e, &mut stream), config.full_scale_dn());
+                assert_eq!(PixelLaw::new(&config).sample(mean_e, 0.0, &mut stream), config.full_scale_dn());
             }
         }
         let config = SensorConfig { full_well_e: 5000.0, ..twelve_bit() };
         let law = PixelLaw::new(&config);
-        let counts = counts_of((0..20_000).map(|_| usize::from(law.sample(1e6, &mut stream))));
+        let counts = counts_of((0..20_000).map(|_| usize::from(law.sample(1e6, 0.0, &mut stream))));
         // Five thousand electrons for certain, and the read noise.
         let full = PixelLaw { shot: Switch::Off, ..law }.probabilities(5000.0, 0);
         assert!(chi_square_p(&counts, &from_zero(&full)) > 1e-4);
-        let half_full = counts_of((0..20_000).map(|_| usize::from(law.sample(5000.0, &mut stream))));
+        let half_full = counts_of((0..20_000).map(|_| usize::from(law.sample(5000.0, 0.0, &mut stream))));
         assert!(chi_square_p(&half_full, &from_zero(&law.probabilities(5000.0, 0))) > 1e-4);
+    }
+
+    #[test]
+    fn a_bent_amplifier_has_its_law() {
+        let config =
+            SensorConfig { non_linearity: 0.2, full_well_e: 2000.0, gain_e_per_dn: 3.0, ..twelve_bit() };
+        let law = PixelLaw::new(&config);
+        let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 3);
+        for mean_e in [50.0, 1000.0, 2000.0] {
+            let counts = counts_of((0..50_000).map(|_| usize::from(law.sample(mean_e, 0.0, &mut stream))));
+            let probabilities = from_zero(&law.probabilities(mean_e, 0));
+            assert!(chi_square_p(&counts, &probabilities) > 1e-4, "mean {mean_e}");
+            // e − 1e-4 e² of a Poisson number: ⟨e²⟩ = λ² + λ. The well cuts the last one.
+            let mean_dn: f64 = probabilities.iter().enumerate().map(|(dn, p)| dn as f64 * p).sum();
+            let expected_dn = 50.3 + (mean_e - 1e-4 * (mean_e * mean_e + mean_e)) / 3.0;
+            assert!(mean_e == 2000.0 || (mean_dn - expected_dn).abs() < 1e-6, "{mean_dn}");
+        }
     }
 
     #[test]
@@ -348,7 +373,7 @@ pub(super) mod tests {
         let law = PixelLaw::new(&config);
         let mut stream = Seed { seed: 5, case: 0 }.stream(0, Effect::PixelNoise, 2);
         // 1234.5/10 + 50.3 + 0.5 = 174.25.
-        assert_eq!(law.sample(1234.5, &mut stream), 174);
+        assert_eq!(law.sample(1234.5, 0.0, &mut stream), 174);
         assert_eq!(law.probabilities(1234.5, 0), DnLaw { first_dn: 174, probabilities: vec![1.0] });
     }
 }

@@ -3,13 +3,15 @@
 use rand::Rng;
 
 use super::blooming::BloomingConfig;
+use super::charge::Charge;
 use super::config::{SensorConfig, Switch};
+use super::fixed_pattern::FixedPattern;
 use super::flat_laws::{FlatLaw, FlatLaws};
 use super::hot_pixels::{HotPixel, hot_pixels};
 use super::pixel_law::PixelLaw;
 use crate::SimError;
 use crate::draw::ExpectedImage;
-use crate::randomness::{Effect, Seed, Streams};
+use crate::randomness::{Effect, Seed, Streams, normal};
 
 /// A detector with its readout. What is fixed for its life, hot pixels included, is made once.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,20 +20,21 @@ pub struct Sensor {
     law: PixelLaw,
     columns: usize,
     rows: usize,
+    /// Factor of all dark currents by the temperature.
+    warmth: f64,
     hot_pixels: Vec<HotPixel>,
+    pattern: FixedPattern,
 }
 
-/// The expected charge of every pixel at the end of an exposure: photo-electrons, dark current and hot pixels. Made
-/// by [`Sensor::collect`] alone.
-#[derive(Debug)]
-pub struct Charge<'a> {
-    expected: &'a ExpectedImage,
+/// Electrons that the readout adds to each row and each column of a frame.
+struct LineOffsets {
+    rows: Vec<f64>,
+    columns: Vec<f64>,
 }
 
-impl Charge<'_> {
-    /// Expected electrons, before saturation and noise.
-    pub fn expected(&self) -> &ExpectedImage {
-        self.expected
+impl LineOffsets {
+    fn at(&self, x: usize, y: usize) -> f64 {
+        self.rows[y] + self.columns[x]
     }
 }
 
@@ -75,9 +78,12 @@ impl Sensor {
     /// [`SimError::Parameter`] for a number out of range.
     pub fn new(config: &SensorConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
         config.check()?;
+        let warmth = config.temperature.factor();
         Ok(Self {
             law: PixelLaw::new(config),
-            hot_pixels: hot_pixels(&config.hot_pixels, columns, rows)?,
+            warmth,
+            hot_pixels: hot_pixels(&config.hot_pixels, columns, rows, warmth)?,
+            pattern: FixedPattern::new(&config.fixed_pattern, columns, rows)?,
             config: config.clone(),
             columns,
             rows,
@@ -87,6 +93,16 @@ impl Sensor {
     /// The configuration it was made of.
     pub fn config(&self) -> &SensorConfig {
         &self.config
+    }
+
+    /// Columns and rows.
+    pub(crate) fn size(&self) -> (usize, usize) {
+        (self.columns, self.rows)
+    }
+
+    /// What is different from pixel to pixel.
+    pub(super) fn pattern(&self) -> &FixedPattern {
+        &self.pattern
     }
 
     /// Its hot pixels, in the order of the image.
@@ -99,15 +115,18 @@ impl Sensor {
         self.config.background_e_per_s * exposure_s
     }
 
-    /// Expected electrons of a pixel without signal: sky and dark current.
-    pub fn flat_electrons(&self, exposure_s: f64) -> f64 {
-        self.sky_electrons(exposure_s)
-            + self.config.noise.dark.of(self.config.dark_current_e_per_s) * exposure_s
+    /// Dark current of an ordinary pixel in an exposure, electrons; 0 when it is off.
+    pub fn dark_electrons(&self, exposure_s: f64) -> f64 {
+        self.config.noise.dark.of(self.config.dark_current_e_per_s * self.warmth) * exposure_s
     }
 
-    /// Standard deviation of the read noise that is simulated, electrons; 0 when it is off.
+    /// Standard deviation of the read noise that is simulated, electrons, with what rows and columns share; 0 when it is
+    /// off.
     pub fn read_noise_e(&self) -> f64 {
-        self.config.noise.read.of(self.config.read_noise_e)
+        let (pixel_e, lines) = (self.config.read_noise_e, self.config.line_noise);
+        let lines_e2 = lines.row_e * lines.row_e + lines.column_e * lines.column_e;
+        let all_e = if lines_e2 > 0.0 { (pixel_e * pixel_e + lines_e2).sqrt() } else { pixel_e };
+        self.config.noise.read.of(all_e)
     }
 
     /// An image that [`Sensor::collect`] and [`Sensor::read_out`] take.
@@ -125,20 +144,12 @@ impl Sensor {
         }
     }
 
-    /// Adds to the photo-electrons what the detector collects by itself in an exposure: dark current and hot pixels.
-    pub fn collect<'a>(&self, photo_electrons: &'a mut ExpectedImage, exposure_s: f64) -> Charge<'a> {
-        photo_electrons.add_flat(self.config.noise.dark.of(self.config.dark_current_e_per_s) * exposure_s);
-        for pixel in &self.hot_pixels {
-            photo_electrons.add_pixel(pixel.x, pixel.y, pixel.rate_e_per_s * exposure_s);
-        }
-        Charge { expected: photo_electrons }
-    }
-
     /// Draws the digital number of every pixel.
     ///
-    /// A row has one stream, at place = row, of which every pixel takes 32 bits: from them comes the number of a
-    /// pixel without signal. A pixel with signal is drawn anew from an address of its own, place = rows + index, so
-    /// that what is in one pixel never changes the draw of another.
+    /// A row has one stream, at place = row, of which every pixel takes 32 bits, or 64 where each has a mean of its own:
+    /// from them comes the number of a pixel with little signal or none. A pixel with much is drawn anew from an
+    /// address of its own, place = rows + index, so that what is in one pixel never changes the draw of another; so is
+    /// every pixel where rows and columns have offsets or where shot noise is off.
     ///
     /// # Errors
     /// [`SimError::Parameter`] when the image is not of the sensor's size.
@@ -150,7 +161,7 @@ impl Sensor {
         laws: &mut FlatLaws,
         raw: &mut RawImage,
     ) -> Result<(), SimError> {
-        let expected = charge.expected;
+        let expected = charge.expected();
         if expected.size() != (self.columns, self.rows) {
             return Err(SimError::Parameter {
                 field: "size of the expected image",
@@ -161,6 +172,26 @@ impl Sensor {
         (raw.columns, raw.rows, raw.bit_depth) = (self.columns, self.rows, self.config.bit_depth);
         raw.dn.resize(self.columns * self.rows, 0);
         let streams = seed.streams(frame, Effect::PixelNoise);
+        let offsets = self.line_offsets(seed, frame);
+        match &offsets {
+            None if !expected.has_field() => self.draw_flat(expected, &streams, laws, raw),
+            None if self.law.shot == Switch::On => self.draw_own_means(expected, &streams, laws, raw),
+            _ => self.draw_directly(expected, offsets.as_ref(), &streams, raw),
+        }
+        if let Some(blooming) = &self.config.blooming {
+            self.bloom(blooming, expected, offsets.as_ref(), &streams, raw);
+        }
+        Ok(())
+    }
+
+    /// The frame of a flat background: one table for nearly all pixels.
+    fn draw_flat(
+        &self,
+        expected: &ExpectedImage,
+        streams: &Streams,
+        laws: &mut FlatLaws,
+        raw: &mut RawImage,
+    ) {
         let flat = laws.of(&self.law, expected.flat_e());
         let table = flat.flat();
         for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
@@ -177,17 +208,70 @@ impl Sensor {
         }
         for (index, signal_e) in expected.drawn() {
             let place = (self.rows + index) as u64;
-            // Without shot noise electrons are not counted, and there is nothing to superpose.
-            raw.dn[index] = if signal_e <= FlatLaw::FAINT_E && self.law.shot == Switch::On {
+            // Without shot noise electrons are not counted, and there is nothing to superpose. A dead pixel has less than
+            // the flat level.
+            let faint = (0.0..=FlatLaw::FAINT_E).contains(&signal_e) && self.law.shot == Switch::On;
+            raw.dn[index] = if faint {
                 flat.draw_faint(signal_e, streams.word(place))
             } else {
-                self.law.sample(expected.flat_e() + signal_e, &mut streams.at(place))
+                self.law.sample(expected.flat_e() + signal_e, 0.0, &mut streams.at(place))
             };
         }
-        if let Some(blooming) = &self.config.blooming {
-            self.bloom(blooming, expected, &streams, raw);
+    }
+
+    /// The frame in which every pixel has a mean of its own.
+    fn draw_own_means(
+        &self,
+        expected: &ExpectedImage,
+        streams: &Streams,
+        laws: &mut FlatLaws,
+        raw: &mut RawImage,
+    ) {
+        let mut means = expected.iter().enumerate();
+        for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            let mut stream = streams.at(y as u64);
+            for (dn, (index, mean_e)) in row.iter_mut().zip(&mut means) {
+                let word = stream.next_u64();
+                *dn = if mean_e < FlatLaws::GRID_END_E {
+                    laws.draw(&self.law, mean_e.max(0.0), word)
+                } else {
+                    self.law.sample(mean_e, 0.0, &mut streams.at((self.rows + index) as u64))
+                };
+            }
         }
-        Ok(())
+    }
+
+    /// Every pixel by the direct sampler, at its own address.
+    fn draw_directly(
+        &self,
+        expected: &ExpectedImage,
+        offsets: Option<&LineOffsets>,
+        streams: &Streams,
+        raw: &mut RawImage,
+    ) {
+        for (index, (dn, mean_e)) in raw.dn.iter_mut().zip(expected.iter()).enumerate() {
+            let offset_e =
+                offsets.map_or(0.0, |offsets| offsets.at(index % self.columns, index / self.columns));
+            *dn = self.law.sample(mean_e.max(0.0), offset_e, &mut streams.at((self.rows + index) as u64));
+        }
+    }
+
+    /// What the readout adds to rows and columns: noise of this frame, and the fixed offsets. `None` when there is none of
+    /// it.
+    fn line_offsets(&self, seed: &Seed, frame: u64) -> Option<LineOffsets> {
+        let read = self.config.noise.read;
+        let (row_e, column_e) =
+            (read.of(self.config.line_noise.row_e), read.of(self.config.line_noise.column_e));
+        let fixed_e = &self.pattern.column_offsets_e;
+        let noise = |sigma_e: f64, effect: Effect, place: usize| {
+            if sigma_e > 0.0 { sigma_e * normal(&mut seed.stream(frame, effect, place as u64)) } else { 0.0 }
+        };
+        (row_e > 0.0 || column_e > 0.0 || !fixed_e.is_empty()).then(|| LineOffsets {
+            rows: (0..self.rows).map(|y| noise(row_e, Effect::RowNoise, y)).collect(),
+            columns: (0..self.columns)
+                .map(|x| noise(column_e, Effect::ColumnNoise, x) + fixed_e.get(x).copied().unwrap_or(0.0))
+                .collect(),
+        })
     }
 
     /// Draws anew the columns that have pixels above the full well.
@@ -198,30 +282,39 @@ impl Sensor {
         &self,
         blooming: &BloomingConfig,
         expected: &ExpectedImage,
+        offsets: Option<&LineOffsets>,
         streams: &Streams,
         raw: &mut RawImage,
     ) {
         let threshold_e = self.law.may_overflow_from_e();
         let mut overflows = vec![expected.flat_e() > threshold_e; self.columns];
-        for (index, signal_e) in expected.drawn() {
-            if expected.flat_e() + signal_e > threshold_e {
+        if expected.has_field() {
+            for (index, _) in expected.iter().enumerate().filter(|(_, mean_e)| *mean_e > threshold_e) {
+                overflows[index % self.columns] = true;
+            }
+        } else {
+            for (index, _) in
+                expected.drawn().filter(|(_, signal_e)| expected.flat_e() + signal_e > threshold_e)
+            {
                 overflows[index % self.columns] = true;
             }
         }
         let (mut collected, mut held) = (Vec::with_capacity(self.rows), Vec::with_capacity(self.rows));
         for x in (0..self.columns).filter(|&x| overflows[x]) {
             let stream = |y: usize| streams.at((self.rows + y * self.columns + x) as u64);
+            let mean_e = |y: usize| expected.at(x, y).max(0.0);
             collected.clear();
-            collected.extend((0..self.rows).map(|y| self.law.collect(expected.at(x, y), &mut stream(y))));
+            collected.extend((0..self.rows).map(|y| self.law.collect(mean_e(y), &mut stream(y))));
             held.clone_from(&collected);
             blooming.spill(&mut held, self.law.full_well_e());
             for y in 0..self.rows {
                 // Those that may overflow were drawn before with a well of their own, perhaps from a table.
-                if held[y] != collected[y] || expected.at(x, y) > threshold_e {
+                if held[y] != collected[y] || mean_e(y) > threshold_e {
                     let mut stream = stream(y);
                     // What was collected is drawn again only to leave the stream where the read noise begins.
-                    self.law.collect(expected.at(x, y), &mut stream);
-                    raw.dn[y * self.columns + x] = self.law.convert(held[y], &mut stream);
+                    self.law.collect(mean_e(y), &mut stream);
+                    let offset_e = offsets.map_or(0.0, |offsets| offsets.at(x, y));
+                    raw.dn[y * self.columns + x] = self.law.convert(held[y], offset_e, &mut stream);
                 }
             }
         }
@@ -230,7 +323,7 @@ impl Sensor {
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::tests::twelve_bit;
+    use super::super::config::tests::{opening, twelve_bit};
     use super::*;
     use crate::optics::{Psf, PsfConfig, Stamp};
     use contract::PixelPoint;
@@ -251,7 +344,7 @@ mod tests {
             image.add(&stamp);
         }
         let mut raw = sensor.new_raw();
-        let charge = sensor.collect(&mut image, 0.5);
+        let charge = sensor.collect(&mut image, &opening(0.5));
         sensor.read_out(&charge, &SEED, number, &mut FlatLaws::new(), &mut raw).unwrap();
         raw
     }
@@ -321,7 +414,7 @@ mod tests {
             let (mut sum, mut squares, mut n) = (0.0, 0.0, 0.0);
             for number in 0..4 {
                 image.clear(sensor.sky_electrons(exposure_s));
-                let charge = sensor.collect(&mut image, exposure_s);
+                let charge = sensor.collect(&mut image, &opening(exposure_s));
                 sensor.read_out(&charge, &SEED, number + 1000, &mut laws, &mut raw).unwrap();
                 for dn in &raw.dn {
                     let dn = f64::from(*dn) - 50.0;
@@ -422,7 +515,7 @@ mod tests {
     fn an_image_of_another_size_is_refused() {
         let sensor = Sensor::new(&twelve_bit(), 65, 48).unwrap();
         let mut image = ExpectedImage::new(64, 48);
-        let charge = sensor.collect(&mut image, 1.0);
+        let charge = sensor.collect(&mut image, &opening(1.0));
         let mut raw = sensor.new_raw();
         assert!(sensor.read_out(&charge, &SEED, 0, &mut FlatLaws::new(), &mut raw).is_err());
     }

@@ -116,6 +116,8 @@ pub enum ObjectKind {
     Star,
     /// A hot pixel; `id` is row × columns + column.
     HotPixel,
+    /// The track of a charged particle; `id` counts those of the frame from 0.
+    CosmicRay,
 }
 
 impl ObjectKind {
@@ -125,12 +127,15 @@ impl ObjectKind {
             Self::Target => "target",
             Self::Star => "star",
             Self::HotPixel => "hot_pixel",
+            Self::CosmicRay => "cosmic_ray",
         }
     }
 
     /// Reads [`ObjectKind::code`].
     pub fn parse(code: &str) -> Option<Self> {
-        [Self::Target, Self::Star, Self::HotPixel].into_iter().find(|kind| kind.code() == code)
+        [Self::Target, Self::Star, Self::HotPixel, Self::CosmicRay]
+            .into_iter()
+            .find(|kind| kind.code() == code)
     }
 }
 
@@ -143,20 +148,24 @@ pub struct ObjectTruth {
     pub kind: ObjectKind,
     /// Number within its kind; 0 for the target.
     pub id: u32,
-    /// Where the centre of its image is (energy centroid of the undisturbed image).
+    /// Where the centre of its image is (energy centroid of the image that an even, unlimited detector would have; the
+    /// middle of a particle's track on the detector).
     pub position: PixelPoint,
-    /// Direction without aberration, proper motion and parallax applied; `None` for a hot pixel.
+    /// Direction without aberration, proper motion and parallax applied; `None` for what the detector makes.
     pub astrometric: Option<Direction<Icrs>>,
-    /// Visual magnitude; `None` for a hot pixel.
+    /// Visual magnitude; `None` for what the detector makes.
     pub magnitude: Option<f64>,
-    /// Expected electrons of the object on the detector in this exposure, before saturation.
+    /// Expected electrons of the object that the detector collects in this exposure, before saturation: each pixel's
+    /// response counts, dead pixels count nothing. Light that a frame transfer smears over its columns is not in it.
     pub electrons: f64,
     /// Expected electrons in its brightest pixel, before saturation.
     pub peak_electrons: f64,
     /// Matched-filter signal-to-noise ratio over its own pixels: sqrt(Σ s²/(s + b + σ²)).
     pub snr: f64,
-    /// Radius within which its image exceeds the noise of one pixel (σ of background), px; at least 0.5.
+    /// Radius within which its image exceeds the noise of one pixel (σ of background), px; at least 0.5. Of an object that
+    /// overflows, the image is that after blooming.
     pub radius_px: f64,
-    /// Fraction of its electrons outside the transmitted regions, in [0, 1]; 0 when all is transmitted.
+    /// Fraction of its electrons outside the transmitted regions, in [0, 1]; 0 when all is transmitted. Of an object that
+    /// overflows, the electrons are counted where they are after blooming.
     pub cut: f64,
 }

@@ -63,7 +63,13 @@ pub(crate) fn still() -> Simulation {
             dark_current_e_per_s: 40.0,
             background_e_per_s: 60.0,
             noise: NoiseConfig::default(),
-            hot_pixels: HotPixelConfig { count: 12, seed: 7, median_e_per_s: 4000.0, spread: 0.8 },
+            hot_pixels: HotPixelConfig {
+                count: 12,
+                seed: 7,
+                median_e_per_s: 4000.0,
+                spread: 0.8,
+                ..HotPixelConfig::default()
+            },
             ..SensorConfig::default()
         },
         shutter: ShutterConfig::Fixed { exposure_s: 0.25 },

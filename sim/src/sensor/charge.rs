@@ -1,0 +1,234 @@
+//! What a detector has collected at the end of an exposure: light, dark current, hot pixels, tracks of particles.
+
+use super::hot_pixels::HotPixel;
+use super::readout::Sensor;
+use crate::draw::ExpectedImage;
+use crate::optics::Stamp;
+use crate::randomness::Seed;
+
+/// One opening of the shutter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Opening {
+    /// Seed of what switches in time.
+    pub seed: Seed,
+    /// Middle of the exposure, s of TT since J2000.0.
+    pub middle_s: f64,
+    /// Exposure time, s.
+    pub exposure_s: f64,
+}
+
+/// The expected charge of every pixel at the end of an exposure: photo-electrons, dark current, hot pixels and tracks of
+/// particles. Made by [`Sensor::collect`] alone.
+#[derive(Debug)]
+pub struct Charge<'a> {
+    expected: &'a mut ExpectedImage,
+}
+
+impl Charge<'_> {
+    /// Expected electrons, before saturation and noise.
+    pub fn expected(&self) -> &ExpectedImage {
+        self.expected
+    }
+}
+
+impl Sensor {
+    /// Turns photo-electrons as an even detector would collect them into the charge of this one: smear of the frame
+    /// transfer, response of each pixel, dark current, hot pixels; dead pixels stay empty.
+    pub fn collect<'a>(&self, photo_electrons: &'a mut ExpectedImage, opening: &Opening) -> Charge<'a> {
+        let Opening { exposure_s, .. } = *opening;
+        let (columns, rows) = photo_electrons.size();
+        if self.config().frame_transfer_s > 0.0 && exposure_s > 0.0 {
+            // A row stops in front of every other row for 1/rows of the transfer.
+            photo_electrons.smear(self.config().frame_transfer_s / (rows as f64 * exposure_s));
+        }
+        if !self.pattern().response.is_empty() {
+            photo_electrons.respond(&self.pattern().response);
+        }
+        let dark_e = self.dark_electrons(exposure_s);
+        if self.pattern().dark.is_empty() {
+            photo_electrons.add_flat(dark_e);
+        } else {
+            photo_electrons.add_pattern(dark_e, &self.pattern().dark);
+        }
+        for pixel in self.hot_pixels() {
+            photo_electrons.add_pixel(pixel.x, pixel.y, self.hot_electrons(pixel, opening));
+        }
+        for &(x, y) in self.pattern().dead.iter().filter(|(x, y)| *x < columns && *y < rows) {
+            photo_electrons.empty_pixel(x, y);
+        }
+        Charge { expected: photo_electrons }
+    }
+
+    /// Adds the charge of a particle's track, as the pixels collect it.
+    pub(crate) fn strike(&self, charge: &mut Charge<'_>, track: &mut Stamp) {
+        track.scale(|x, y| if self.pattern().is_dead(x, y) { 0.0 } else { 1.0 });
+        charge.expected.add(track);
+    }
+
+    /// Makes the photo-electrons of an object, as an even detector would collect them, those of this one: the share of
+    /// [`Sensor::collect`] that is the object's.
+    pub(crate) fn respond(&self, stamp: &mut Stamp) {
+        let pattern = self.pattern();
+        let columns = self.size().0;
+        if !pattern.response.is_empty() {
+            stamp.scale(|x, y| pattern.response.get(y * columns + x).map_or(1.0, |&r| f64::from(r)));
+        }
+        if !pattern.dead.is_empty() {
+            stamp.scale(|x, y| if pattern.is_dead(x, y) { 0.0 } else { 1.0 });
+        }
+    }
+
+    /// Expected electrons of a hot pixel in an exposure, above those of an ordinary one; 0 when it is dead.
+    pub(crate) fn hot_electrons(&self, pixel: &HotPixel, opening: &Opening) -> f64 {
+        if self.pattern().is_dead(pixel.x, pixel.y) {
+            return 0.0;
+        }
+        let electrons = pixel.rate_e_per_s * opening.exposure_s;
+        match self.config().hot_pixels.telegraph.filter(|_| pixel.switches) {
+            Some(telegraph) => {
+                let place = (pixel.y * self.size().0 + pixel.x) as u64;
+                let half_s = 0.5 * opening.exposure_s;
+                let (from_s, to_s) = (opening.middle_s - half_s, opening.middle_s + half_s);
+                electrons * telegraph.level(&opening.seed, place, from_s, to_s)
+            }
+            None => electrons,
+        }
+    }
+
+    /// The image of an object alone, over a background, as it is after its full wells have spilt: `bloomed`. `false` when
+    /// nothing spills, or when blooming is off.
+    pub(crate) fn bloom_stamp(&self, stamp: &Stamp, background_e: f64, bloomed: &mut Stamp) -> bool {
+        let full_well_e = self.config().full_well_e;
+        let Some(blooming) = &self.config().blooming else { return false };
+        let Some(window) = stamp.window() else { return false };
+        let overflows = |&electrons: &f64| electrons + background_e > full_well_e;
+        if !stamp.rows().any(|(_, _, row)| row.iter().any(overflows)) {
+            return false;
+        }
+        let rows = self.size().1;
+        bloomed.reset(stamp.centre(), (window.x, window.x + window.columns), (0, rows));
+        let mut column = vec![0.0; rows];
+        for i in 0..window.columns {
+            column.fill(background_e);
+            for (_, y, row) in stamp.rows() {
+                column[y] += row[i];
+            }
+            blooming.spill(&mut column, full_well_e);
+            for (y, electrons) in column.iter().enumerate() {
+                bloomed.add(window.x + i, y, (electrons - background_e).max(0.0));
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::config::tests::{opening, twelve_bit};
+    use super::super::fixed_pattern::FixedPatternConfig;
+    use super::super::{BloomingConfig, SensorConfig, TemperatureConfig};
+    use super::*;
+    use crate::optics::{Psf, PsfConfig};
+    use contract::PixelPoint;
+
+    fn star(sensor: &Sensor, electrons: f64) -> Stamp {
+        let mut stamp = Stamp::new();
+        let mut psf = Psf::new(&PsfConfig::Gaussian { sigma_px: 0.8 }).unwrap();
+        psf.stamp(PixelPoint::new(20.3, 30.1), electrons, Psf::FLOOR_E, sensor.size(), &mut stamp);
+        stamp
+    }
+
+    fn patterned() -> SensorConfig {
+        SensorConfig {
+            fixed_pattern: FixedPatternConfig {
+                seed: 2,
+                prnu_fraction: 0.1,
+                dsnu_fraction: 0.5,
+                dead_pixels: 100,
+                dead_columns: 1,
+                ..FixedPatternConfig::default()
+            },
+            ..twelve_bit()
+        }
+    }
+
+    fn sum(stamp: &Stamp) -> f64 {
+        stamp.rows().flat_map(|(_, _, row)| row).sum()
+    }
+
+    #[test]
+    fn light_dark_current_and_defects_add_up_pixel_by_pixel() {
+        let sensor = Sensor::new(&patterned(), 65, 48).unwrap();
+        let mut image = sensor.new_expected();
+        image.clear(100.0);
+        let mut object = star(&sensor, 1e5);
+        image.add(&object);
+        let before: Vec<f64> = image.iter().collect();
+        let charge = sensor.collect(&mut image, &opening(2.0));
+        for (index, electrons) in charge.expected().iter().enumerate() {
+            let (x, y) = (index % 65, index / 65);
+            let (response, dark) = (sensor.pattern().response[index], sensor.pattern().dark[index]);
+            let hot = sensor.hot_pixels().iter().find(|hot| (hot.x, hot.y) == (x, y));
+            let expected = if sensor.pattern().is_dead(x, y) {
+                0.0
+            } else {
+                before[index] * f64::from(response)
+                    + 20.0 * f64::from(dark)
+                    + hot.map_or(0.0, |hot| 2.0 * hot.rate_e_per_s)
+            };
+            assert!((electrons - expected).abs() < 1e-9 * (1.0 + expected), "{x}, {y}: {electrons}");
+        }
+        // What the object alone gives is the difference to a frame without it.
+        let with: f64 = charge.expected().iter().sum();
+        image.clear(100.0);
+        let without: f64 = sensor.collect(&mut image, &opening(2.0)).expected().iter().sum();
+        sensor.respond(&mut object);
+        assert!((with - without - sum(&object)).abs() < 1e-6);
+        assert!((sum(&object) - 1e5).abs() > 100.0);
+    }
+
+    #[test]
+    fn a_transfer_smears_the_light_of_every_column_over_it_and_nothing_else() {
+        let smeared = SensorConfig { frame_transfer_s: 0.0048, ..twelve_bit() };
+        let (sensor, still) =
+            (Sensor::new(&smeared, 65, 48).unwrap(), Sensor::new(&twelve_bit(), 65, 48).unwrap());
+        let stamp = star(&sensor, 1e5);
+        let charge = |sensor: &Sensor| {
+            let mut image = sensor.new_expected();
+            image.clear(0.0);
+            image.add(&stamp);
+            sensor.collect(&mut image, &opening(0.5)).expected().clone()
+        };
+        let (with, without) = (charge(&sensor), charge(&still));
+        // 0.1 ms a row, of 0.5 s; 47 other rows. Dark current and hot pixels are not smeared here.
+        let gained = with.iter().sum::<f64>() - without.iter().sum::<f64>();
+        assert!((gained - 1e5 * 2e-4 * 47.0).abs() < 0.1, "{gained}");
+        let column: f64 = stamp.rows().map(|(x, _, row)| row[20 - x]).sum();
+        assert!((with.at(20, 2) - without.at(20, 2) - 2e-4 * column).abs() < 1e-9);
+        assert_eq!(with.at(60, 2), without.at(60, 2));
+    }
+
+    #[test]
+    fn dark_current_and_hot_pixels_double_every_so_many_kelvin() {
+        let warm = TemperatureConfig { temperature_c: 33.0, reference_c: 20.0, doubling_k: 6.5 };
+        let warm = Sensor::new(&SensorConfig { temperature: warm, ..twelve_bit() }, 65, 48).unwrap();
+        let cold = Sensor::new(&twelve_bit(), 65, 48).unwrap();
+        assert!((warm.dark_electrons(1.0) / cold.dark_electrons(1.0) - 4.0).abs() < 1e-12);
+        for (warm, cold) in warm.hot_pixels().iter().zip(cold.hot_pixels()) {
+            assert!((warm.rate_e_per_s / cold.rate_e_per_s - 4.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_image_of_an_overfull_star_grows_along_its_column_and_keeps_its_electrons() {
+        let bloom = Some(BloomingConfig { spill_fraction: 1.0 });
+        let config = SensorConfig { blooming: bloom, full_well_e: 5000.0, ..twelve_bit() };
+        let sensor = Sensor::new(&config, 65, 48).unwrap();
+        let (stamp, mut bloomed) = (star(&sensor, 1e5), Stamp::new());
+        assert!(sensor.bloom_stamp(&stamp, 20.0, &mut bloomed));
+        // Some ten columns round to a whole electron each, at either end.
+        assert!((sum(&bloomed) - sum(&stamp)).abs() < 20.0, "{}", sum(&bloomed) - sum(&stamp));
+        assert!(bloomed.truth(20.0, 15.0).radius_px > 1.5 * stamp.truth(20.0, 15.0).radius_px);
+        assert!(!sensor.bloom_stamp(&star(&sensor, 1e3), 20.0, &mut bloomed));
+    }
+}

@@ -1,0 +1,353 @@
+//! Cosmic rays: straight tracks of charge through the sensitive layer.
+
+use contract::{Camera, PixelPoint};
+use hifitime::Epoch;
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::poisson::poisson;
+use crate::SimError;
+use crate::error::require;
+use crate::optics::Stamp;
+use crate::randomness::{Effect, Seed, Stream, normal, uniform};
+use crate::truth::geographic;
+
+/// Charged particles that cross the detector.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CosmicRayConfig {
+    /// Particles through the detector's face outside the South Atlantic Anomaly, a second and cm², 0 to 1e4. The Hubble
+    /// Space Telescope's CCDs see about 1 (Miles et al., ApJ 918, 86, 2021).
+    pub rate_per_cm2_s: f64,
+    /// Thickness of the layer from which charge is collected, µm, 0.1 to 1000.
+    pub thickness_um: f64,
+    /// Time besides the exposure in which the detector collects hits, s, 0 to 1000: storage and readout.
+    #[serde(default)]
+    pub readout_s: f64,
+    /// Mean charge along a track, electrons a µm, 1 to 1e5. A minimum ionising particle leaves about 80 in silicon; slow
+    /// protons leave more.
+    #[serde(default = "minimum_ionising")]
+    pub mean_e_per_um: f64,
+    /// Scale of the fluctuation of that charge, electrons a µm, 0 to 1e4: the width ξ of Landau's law. In silicon 4.9
+    /// (ξ of 17.8 eV/µm, and 3.65 eV a pair; Particle Data Group, Passage of particles through matter, Sec. 34.2.9).
+    #[serde(default = "landau_width")]
+    pub landau_e_per_um: f64,
+    /// The South Atlantic Anomaly; without the table the rate is the same all along the orbit.
+    #[serde(default)]
+    pub south_atlantic: Option<SouthAtlanticConfig>,
+}
+
+fn minimum_ionising() -> f64 {
+    80.0
+}
+
+fn landau_width() -> f64 {
+    4.9
+}
+
+/// The South Atlantic Anomaly as a bump of the rate over the globe, whatever the altitude.
+///
+/// The factor is 1 + (`peak_factor` − 1) exp(−(Δφ/`latitude_sigma_deg`)²/2 − (Δλ/`longitude_sigma_deg`)²/2), with φ the
+/// geocentric latitude and λ the longitude. At 540 km the peak is 1100 particles a second and cm² against about 1 outside
+/// (Miles et al., ApJ 918, 86, 2021): the default of `peak_factor`. Place and widths are assumptions; the anomaly drifts west by
+/// 0.3° a year.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct SouthAtlanticConfig {
+    /// Rate at the centre over the rate outside, 1 to 1e5.
+    pub peak_factor: f64,
+    /// Latitude of the centre, degrees, −90 to 90.
+    pub latitude_deg: f64,
+    /// Longitude of the centre, degrees east, −180 to 180.
+    pub longitude_deg: f64,
+    /// Standard deviation in latitude, degrees, 1 to 90.
+    pub latitude_sigma_deg: f64,
+    /// Standard deviation in longitude, degrees, 1 to 180.
+    pub longitude_sigma_deg: f64,
+}
+
+impl Default for SouthAtlanticConfig {
+    fn default() -> Self {
+        Self {
+            peak_factor: 1000.0,
+            latitude_deg: -26.0,
+            longitude_deg: -53.0,
+            latitude_sigma_deg: 9.0,
+            longitude_sigma_deg: 18.0,
+        }
+    }
+}
+
+impl SouthAtlanticConfig {
+    /// The rate's factor at a place.
+    fn factor(&self, latitude_deg: f64, longitude_deg: f64) -> f64 {
+        let turn = longitude_deg - self.longitude_deg;
+        let east = turn - 360.0 * (turn / 360.0).round();
+        let (v, u) =
+            ((latitude_deg - self.latitude_deg) / self.latitude_sigma_deg, east / self.longitude_sigma_deg);
+        1.0 + (self.peak_factor - 1.0) * libm::exp(-0.5 * (u * u + v * v))
+    }
+}
+
+impl CosmicRayConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        let within = |low: f64, high: f64| move |v: f64| (low..=high).contains(&v);
+        let field = "sensor.cosmic_rays.rate_per_cm2_s";
+        require(field, self.rate_per_cm2_s, "0 to 1e4", within(0.0, 1e4))?;
+        require("sensor.cosmic_rays.thickness_um", self.thickness_um, "0.1 to 1000", within(0.1, 1000.0))?;
+        require("sensor.cosmic_rays.readout_s", self.readout_s, "0 to 1000", within(0.0, 1000.0))?;
+        require("sensor.cosmic_rays.mean_e_per_um", self.mean_e_per_um, "1 to 1e5", within(1.0, 1e5))?;
+        require("sensor.cosmic_rays.landau_e_per_um", self.landau_e_per_um, "0 to 1e4", within(0.0, 1e4))?;
+        let Some(bump) = &self.south_atlantic else { return Ok(()) };
+        let field = "sensor.cosmic_rays.south_atlantic.peak_factor";
+        require(field, bump.peak_factor, "1 to 1e5", within(1.0, 1e5))?;
+        // Bounds the number of tracks in a frame.
+        let peak = self.rate_per_cm2_s * bump.peak_factor;
+        require(field, peak, "at most 1e5 particles a second and cm², times the rate", |v| v <= 1e5)?;
+        let field = "sensor.cosmic_rays.south_atlantic.latitude_deg";
+        require(field, bump.latitude_deg, "-90 to 90", within(-90.0, 90.0))?;
+        let field = "sensor.cosmic_rays.south_atlantic.longitude_deg";
+        require(field, bump.longitude_deg, "-180 to 180", within(-180.0, 180.0))?;
+        let field = "sensor.cosmic_rays.south_atlantic.latitude_sigma_deg";
+        require(field, bump.latitude_sigma_deg, "1 to 90", within(1.0, 90.0))?;
+        let field = "sensor.cosmic_rays.south_atlantic.longitude_sigma_deg";
+        require(field, bump.longitude_sigma_deg, "1 to 180", within(1.0, 180.0))
+    }
+}
+
+/// The particles that a camera's detector meets.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CosmicRays {
+    config: CosmicRayConfig,
+    columns: usize,
+    rows: usize,
+    pixel_width_um: f64,
+    pixel_height_um: f64,
+}
+
+/// The track of one particle: where it enters, how far it goes across the detector, how much charge it leaves. It may
+/// leave the detector.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Track {
+    start: PixelPoint,
+    /// Columns and rows from the entry to the exit.
+    across: (f64, f64),
+    /// Over the whole track.
+    electrons: f64,
+}
+
+impl CosmicRays {
+    pub(crate) fn new(config: &CosmicRayConfig, camera: &Camera) -> Result<Self, SimError> {
+        config.check()?;
+        Ok(Self {
+            config: config.clone(),
+            columns: camera.columns,
+            rows: camera.rows,
+            pixel_width_um: camera.pixel_width_um,
+            pixel_height_um: camera.pixel_height_um,
+        })
+    }
+
+    /// Particles a second and cm² at a place: `position_km` from the centre of the Earth in ICRS axes.
+    pub(crate) fn rate_per_cm2_s(&self, time: Epoch, position_km: &Vector3<f64>) -> f64 {
+        let factor = self.config.south_atlantic.map_or(1.0, |bump| {
+            let (latitude, longitude) = geographic(time, position_km);
+            bump.factor(latitude.degrees(), longitude.degrees())
+        });
+        self.config.rate_per_cm2_s * factor
+    }
+
+    /// The tracks of a frame. The first `n` of them are the same whatever the rate.
+    pub(crate) fn tracks(&self, seed: &Seed, frame: u64, exposure_s: f64, rate_per_cm2_s: f64) -> Vec<Track> {
+        let area_cm2 =
+            1e-8 * self.pixel_width_um * self.pixel_height_um * self.columns as f64 * self.rows as f64;
+        let mean = rate_per_cm2_s * area_cm2 * (exposure_s + self.config.readout_s);
+        let streams = seed.streams(frame, Effect::CosmicRays);
+        let count = poisson(mean, &mut streams.at(0)) as u64;
+        (1..=count).map(|number| self.track(&mut streams.at(number))).collect()
+    }
+
+    /// A particle of an isotropic flux: it crosses the face anywhere, with cos θ from the normal of density 2 cos θ (the
+    /// face seen from θ is smaller by cos θ). Its charge per µm follows Moyal's law (Phil. Mag. 46, 1955), an
+    /// approximation of Landau's: the mean plus ξ (m − γ − ln 2), where m = −ln z² of a normal z has Moyal's density.
+    fn track(&self, stream: &mut Stream) -> Track {
+        const MOYAL_MEAN: f64 = 1.270_362_845_461_478;
+        let x = self.columns as f64 * uniform(stream) - 0.5;
+        let y = self.rows as f64 * uniform(stream) - 0.5;
+        let cos2 = uniform(stream);
+        let depth_um = self.config.thickness_um;
+        let across_um = depth_um * ((1.0 - cos2) / cos2).sqrt();
+        let (sin, cos) = libm::sincos(2.0 * std::f64::consts::PI * uniform(stream));
+        let z = normal(stream);
+        let moyal = -libm::log((z * z).max(f64::MIN_POSITIVE));
+        let e_per_um = self.config.mean_e_per_um + self.config.landau_e_per_um * (moyal - MOYAL_MEAN);
+        Track {
+            start: PixelPoint::new(x, y),
+            across: (across_um * cos / self.pixel_width_um, across_um * sin / self.pixel_height_um),
+            electrons: e_per_um.max(0.0) * depth_um / cos2.sqrt(),
+        }
+    }
+
+    /// Makes `stamp` the image of a track: its charge evenly along its length, to each pixel by the length in it. What
+    /// lies off the detector is left out.
+    pub(crate) fn stamp(&self, track: &Track, stamp: &mut Stamp) {
+        let (dx, dy) = track.across;
+        // Where it leaves the detector, as a part of its length; it starts inside.
+        let leaves = |at: f64, by: f64, size: usize| {
+            let edge = if by > 0.0 { size as f64 - 0.5 } else { -0.5 };
+            if by == 0.0 { 1.0 } else { ((edge - at) / by).clamp(0.0, 1.0) }
+        };
+        let inside = leaves(track.start.x, dx, self.columns).min(leaves(track.start.y, dy, self.rows));
+        let (dx, dy, electrons) = (dx * inside, dy * inside, track.electrons * inside);
+        let (columns, rows) = (self.columns.saturating_sub(1), self.rows.saturating_sub(1));
+        let pixel = |at: f64, last: usize| (at.round().max(0.0) as usize).min(last);
+        let (x0, x1) = (pixel(track.start.x, columns), pixel(track.start.x + dx, columns));
+        let (y0, y1) = (pixel(track.start.y, rows), pixel(track.start.y + dy, rows));
+        let centre = PixelPoint::new(track.start.x + 0.5 * dx, track.start.y + 0.5 * dy);
+        stamp.reset(centre, (x0.min(x1), x0.max(x1) + 1), (y0.min(y1), y0.max(y1) + 1));
+        // From one border of pixels to the next.
+        let border = |pixel: usize, at: f64, by: f64| match by {
+            b if b > 0.0 => (pixel as f64 + 0.5 - at) / b,
+            b if b < 0.0 => (pixel as f64 - 0.5 - at) / b,
+            _ => f64::INFINITY,
+        };
+        let (mut x, mut y, mut done) = (x0, y0, 0.0);
+        while (x, y) != (x1, y1) {
+            let (to_x, to_y) = (border(x, track.start.x, dx), border(y, track.start.y, dy));
+            // Rounding must not lead past the last pixel.
+            let along_x = if x == x1 { false } else { y == y1 || to_x <= to_y };
+            let next = if along_x { to_x } else { to_y }.clamp(done, 1.0);
+            stamp.add(x, y, electrons * (next - done));
+            done = next;
+            match along_x {
+                true => x = if dx > 0.0 { x + 1 } else { x - 1 },
+                false => y = if dy > 0.0 { y + 1 } else { y - 1 },
+            }
+        }
+        stamp.add(x1, y1, electrons * (1.0 - done));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sensor::pixel_law::tests::{chi_square_p, counts_of};
+    use statrs::distribution::{Discrete, Poisson};
+
+    const SEED: Seed = Seed { seed: 3, case: 0 };
+
+    fn rays() -> CosmicRays {
+        CosmicRays {
+            config: CosmicRayConfig {
+                rate_per_cm2_s: 1.0,
+                thickness_um: 20.0,
+                readout_s: 0.5,
+                mean_e_per_um: 80.0,
+                landau_e_per_um: 4.9,
+                south_atlantic: None,
+            },
+            columns: 752,
+            rows: 580,
+            pixel_width_um: 8.6,
+            pixel_height_um: 8.3,
+        }
+    }
+
+    fn sum(stamp: &Stamp) -> f64 {
+        stamp.rows().flat_map(|(_, _, row)| row).sum()
+    }
+
+    #[test]
+    fn hits_are_poisson_with_the_rate_times_area_times_time() {
+        let rays = rays();
+        let counts = counts_of((0..20_000).map(|frame| rays.tracks(&SEED, frame, 9.5, 1.0).len()));
+        // 10 s on 0.6467 cm × 0.4814 cm.
+        let law = Poisson::new(10.0 * 0.064672 * 10.0 * 0.04814 * 10.0).unwrap();
+        let expected: Vec<f64> = (0..counts.len() as u64 + 10).map(|k| law.pmf(k)).collect();
+        assert!(chi_square_p(&counts, &expected) > 1e-4);
+    }
+
+    fn many() -> Vec<Track> {
+        (0..40_000).map(|place| rays().track(&mut SEED.stream(1, Effect::CosmicRays, place))).collect()
+    }
+
+    #[test]
+    fn lengths_follow_from_isotropy() {
+        // P(tan θ > t) = 1/(1 + t²); twenty bins of equal probability.
+        let bin = |track: &Track| {
+            let tangent = libm::hypot(track.across.0 * 8.6, track.across.1 * 8.3) / 20.0;
+            ((20.0 / (1.0 + tangent * tangent)) as usize).min(19)
+        };
+        let counts = counts_of(many().iter().map(bin));
+        assert!(chi_square_p(&counts, &[0.05; 20]) > 1e-4);
+    }
+
+    #[test]
+    fn charge_follows_moyals_law_and_grows_with_the_path() {
+        let bin = |track: &Track| {
+            let across_um = libm::hypot(track.across.0 * 8.6, track.across.1 * 8.3);
+            let e_per_um = track.electrons / libm::hypot(across_um, 20.0);
+            // Moyal's distribution function is erfc(exp(−m/2)/√2).
+            let moyal = (e_per_um - 80.0) / 4.9 + 1.270362845;
+            let below = libm::erfc(libm::exp(-0.5 * moyal) * std::f64::consts::FRAC_1_SQRT_2);
+            ((20.0 * below) as usize).min(19)
+        };
+        let counts = counts_of(many().iter().map(bin));
+        assert!(chi_square_p(&counts, &[0.05; 20]) > 1e-4);
+    }
+
+    #[test]
+    fn a_stamp_holds_the_charge_of_its_track_evenly_along_it() {
+        let rays = rays();
+        let mut stamp = Stamp::new();
+        for (start, across) in [
+            ((100.2, 50.1), (0.0, 0.0)),
+            ((100.2, 50.1), (7.3, 4.9)),
+            ((100.2, 50.1), (-7.3, 0.0)),
+            ((100.5, 50.5), (3.0, -3.0)),
+            ((0.0, 0.0), (0.1, 300.0)),
+        ] {
+            let track = Track { start: PixelPoint::new(start.0, start.1), across, electrons: 1000.0 };
+            rays.stamp(&track, &mut stamp);
+            assert!((sum(&stamp) - 1000.0).abs() < 1e-9, "{track:?}");
+            // The centre of charge is the middle of the track, to the half pixel that a pixel hides.
+            let (mut x, mut y) = (0.0, 0.0);
+            for (column, row, electrons) in stamp.rows() {
+                for (i, e) in electrons.iter().enumerate() {
+                    x += (column + i) as f64 * e / 1000.0;
+                    y += row as f64 * e / 1000.0;
+                }
+            }
+            assert!(PixelPoint::new(x, y).distance(stamp.centre()) < 0.71, "{track:?}: {x}, {y}");
+        }
+        // Four pixels and two halves along a row.
+        let track = Track { start: PixelPoint::new(10.0, 10.0), across: (5.0, 0.0), electrons: 1000.0 };
+        rays.stamp(&track, &mut stamp);
+        let row: Vec<f64> = stamp.rows().next().unwrap().2.to_vec();
+        assert!(
+            row.iter().zip([100.0, 200.0, 200.0, 200.0, 200.0, 100.0]).all(|(a, b)| (a - b).abs() < 1e-9)
+        );
+    }
+
+    #[test]
+    fn a_track_that_leaves_the_detector_leaves_its_charge_there() {
+        let mut stamp = Stamp::new();
+        let track = Track { start: PixelPoint::new(749.5, 10.0), across: (8.0, 0.0), electrons: 800.0 };
+        rays().stamp(&track, &mut stamp);
+        assert!((sum(&stamp) - 200.0).abs() < 1e-9);
+        for track in many() {
+            rays().stamp(&track, &mut stamp);
+            assert!(sum(&stamp) <= track.electrons * (1.0 + 1e-12));
+        }
+    }
+
+    #[test]
+    fn the_anomaly_is_a_bump_at_its_place() {
+        let bump = SouthAtlanticConfig::default();
+        assert_eq!(bump.factor(-26.0, -53.0), 1000.0);
+        assert!((bump.factor(-26.0 + 9.0, -53.0) - (1.0 + 999.0 * libm::exp(-0.5))).abs() < 1e-9);
+        assert!((bump.factor(-26.0, 307.0 - 18.0) - (1.0 + 999.0 * libm::exp(-0.5))).abs() < 1e-9);
+        assert!((bump.factor(50.0, 100.0) - 1.0).abs() < 1e-9);
+    }
+}

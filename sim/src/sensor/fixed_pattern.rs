@@ -1,0 +1,227 @@
+//! What is different from pixel to pixel and the same in every frame: response, dark current, defects.
+
+use rand::Rng;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::randomness::{Effect, Seed, Streams, normal};
+
+/// The law of the dark currents of ordinary pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DarkLaw {
+    /// Log-normal about the same mean: never negative, with a tail to high currents.
+    #[default]
+    LogNormal,
+    /// Normal, cut at 0.
+    Normal,
+}
+
+/// Differences between pixels, fixed for the life of a detector. All of it follows from `seed` and from nothing else.
+/// Everything is off by default.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct FixedPatternConfig {
+    /// Seed of this piece of hardware; not the seed of the scenario.
+    pub seed: u64,
+    /// Photo-response non-uniformity (PRNU): standard deviation of the pixels' sensitivity to light as a fraction of its
+    /// mean, 0 to 0.3. Normal, cut at 0.
+    pub prnu_fraction: f64,
+    /// Dark-signal non-uniformity (DSNU): standard deviation of the pixels' dark current as a fraction of its mean, 0 to 5.
+    pub dsnu_fraction: f64,
+    /// Law of the dark currents.
+    pub dsnu_law: DarkLaw,
+    /// Standard deviation of the columns' offsets, which are added to every frame, electrons, 0 to 500. Normal.
+    pub column_offset_e: f64,
+    /// Number of dead pixels, at most a tenth of all; they collect nothing, neither light nor dark current.
+    pub dead_pixels: usize,
+    /// Number of dead columns, at most a tenth of all.
+    pub dead_columns: usize,
+}
+
+impl FixedPatternConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        let within = |low: f64, high: f64| move |v: f64| (low..=high).contains(&v);
+        require("sensor.fixed_pattern.prnu_fraction", self.prnu_fraction, "0 to 0.3", within(0.0, 0.3))?;
+        require("sensor.fixed_pattern.dsnu_fraction", self.dsnu_fraction, "0 to 5", within(0.0, 5.0))?;
+        require("sensor.fixed_pattern.column_offset_e", self.column_offset_e, "0 to 500", within(0.0, 500.0))
+    }
+}
+
+/// The fixed pattern of a detector, made once. Row by row; empty where an effect is off.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct FixedPattern {
+    /// Sensitivity of each pixel, of mean 1.
+    pub(super) response: Vec<f32>,
+    /// Dark current of each pixel as a multiple of the mean.
+    pub(super) dark: Vec<f32>,
+    /// Offset of each column, electrons.
+    pub(super) column_offsets_e: Vec<f64>,
+    /// Column and row of each dead pixel, dead columns included, in the order of the image.
+    pub(super) dead: Vec<(usize, usize)>,
+}
+
+impl FixedPattern {
+    /// # Errors
+    /// [`SimError::Parameter`] when more than a tenth of all pixels or columns would be dead.
+    pub(super) fn new(config: &FixedPatternConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
+        let seed = Seed { seed: config.seed, case: 0 };
+        let standard = |effect: Effect, number: usize| normal(&mut seed.stream(0, effect, number as u64));
+        let pixels = |on: bool| 0..if on { columns * rows } else { 0 };
+        let response = |index| (1.0 + config.prnu_fraction * standard(Effect::PixelResponse, index)).max(0.0);
+        // A log-normal law of mean 1 and standard deviation s has σ² = ln(1 + s²) and μ = −σ²/2.
+        let variance = libm::log1p(config.dsnu_fraction * config.dsnu_fraction);
+        let dark = |index| {
+            let z = standard(Effect::DarkPattern, index);
+            match config.dsnu_law {
+                DarkLaw::LogNormal => libm::exp(variance.sqrt() * z - 0.5 * variance),
+                DarkLaw::Normal => (1.0 + config.dsnu_fraction * z).max(0.0),
+            }
+        };
+        let offset = |x| config.column_offset_e * standard(Effect::ColumnOffset, x);
+        let offsets = 0..if config.column_offset_e > 0.0 { columns } else { 0 };
+        Ok(Self {
+            response: pixels(config.prnu_fraction > 0.0).map(|index| response(index) as f32).collect(),
+            dark: pixels(config.dsnu_fraction > 0.0).map(|index| dark(index) as f32).collect(),
+            column_offsets_e: offsets.map(offset).collect(),
+            dead: dead(config, seed, columns, rows)?,
+        })
+    }
+
+    /// Whether a pixel collects nothing.
+    pub(super) fn is_dead(&self, x: usize, y: usize) -> bool {
+        self.dead.binary_search_by_key(&(y, x), |&(x, y)| (y, x)).is_ok()
+    }
+}
+
+/// Dead pixels and the pixels of dead columns, in the order of the image.
+fn dead(
+    config: &FixedPatternConfig,
+    seed: Seed,
+    columns: usize,
+    rows: usize,
+) -> Result<Vec<(usize, usize)>, SimError> {
+    for (field, count, of, expected) in [
+        (
+            "sensor.fixed_pattern.dead_pixels",
+            config.dead_pixels,
+            columns * rows,
+            "at most a tenth of all pixels",
+        ),
+        ("sensor.fixed_pattern.dead_columns", config.dead_columns, columns, "at most a tenth of all columns"),
+    ] {
+        if count > of / 10 {
+            return Err(SimError::Parameter { field, value: count.to_string(), expected });
+        }
+    }
+    let pixels = distinct(config.dead_pixels, columns * rows, seed.streams(0, Effect::DeadPixels));
+    let mut dead: Vec<(usize, usize)> =
+        pixels.into_iter().map(|index| (index % columns, index / columns)).collect();
+    for x in distinct(config.dead_columns, columns, seed.streams(0, Effect::DeadColumns)) {
+        dead.extend((0..rows).map(|y| (x, y)));
+    }
+    dead.sort_by_key(|&(x, y)| (y, x));
+    dead.dedup();
+    Ok(dead)
+}
+
+/// `count` different numbers below `of`, of which they are at most a tenth; a higher count keeps the others.
+fn distinct(count: usize, of: usize, streams: Streams) -> Vec<usize> {
+    let mut taken = vec![false; if count > 0 { of } else { 0 }];
+    (0..count)
+        .map(|number| {
+            let mut stream = streams.at(number as u64);
+            loop {
+                // The highest bits of a product: uniform but for of/2^64.
+                let index = ((u128::from(stream.next_u64()) * of as u128) >> 64) as usize;
+                if !std::mem::replace(&mut taken[index], true) {
+                    break index;
+                }
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use statrs::distribution::{ContinuousCDF, LogNormal, Normal};
+
+    /// The distance of Kolmogorov and Smirnov, times √n: above 2.23 once in 10,000.
+    fn distance(mut values: Vec<f64>, law: &impl ContinuousCDF<f64, f64>) -> f64 {
+        values.sort_by(f64::total_cmp);
+        let n = values.len() as f64;
+        let gaps = values.iter().enumerate().map(|(i, v)| (law.cdf(*v) - (i as f64 + 0.5) / n).abs());
+        gaps.fold(0.0, f64::max) * n.sqrt()
+    }
+
+    fn widened(values: &[f32]) -> Vec<f64> {
+        values.iter().map(|&value| f64::from(value)).collect()
+    }
+
+    #[test]
+    fn each_pattern_follows_its_law() {
+        let config = FixedPatternConfig {
+            seed: 4,
+            prnu_fraction: 0.02,
+            dsnu_fraction: 0.5,
+            column_offset_e: 3.0,
+            ..FixedPatternConfig::default()
+        };
+        let pattern = FixedPattern::new(&config, 300, 100).unwrap();
+        assert!(distance(widened(&pattern.response), &Normal::new(1.0, 0.02).unwrap()) < 2.23);
+        let sigma = libm::log(1.25_f64).sqrt();
+        let log_normal = LogNormal::new(-0.5 * sigma * sigma, sigma).unwrap();
+        assert!(distance(widened(&pattern.dark), &log_normal) < 2.23);
+        assert!(distance(pattern.column_offsets_e, &Normal::new(0.0, 3.0).unwrap()) < 2.23);
+        let config = FixedPatternConfig { dsnu_law: DarkLaw::Normal, dsnu_fraction: 0.1, ..config };
+        let pattern = FixedPattern::new(&config, 300, 100).unwrap();
+        assert!(distance(widened(&pattern.dark), &Normal::new(1.0, 0.1).unwrap()) < 2.23);
+    }
+
+    #[test]
+    fn nothing_is_negative() {
+        for dsnu_law in [DarkLaw::LogNormal, DarkLaw::Normal] {
+            let config =
+                FixedPatternConfig { prnu_fraction: 0.3, dsnu_fraction: 2.0, dsnu_law, ..Default::default() };
+            let pattern = FixedPattern::new(&config, 100, 100).unwrap();
+            assert!(pattern.response.iter().chain(&pattern.dark).all(|&factor| factor >= 0.0));
+        }
+    }
+
+    #[test]
+    fn as_many_are_dead_as_were_asked_for_and_a_higher_count_keeps_the_others() {
+        let pattern = |dead_pixels, dead_columns| {
+            let config = FixedPatternConfig { seed: 1, dead_pixels, dead_columns, ..Default::default() };
+            FixedPattern::new(&config, 40, 30)
+        };
+        let (few, many) = (pattern(20, 0).unwrap(), pattern(100, 0).unwrap());
+        assert_eq!((few.dead.len(), many.dead.len()), (20, 100));
+        assert!(few.dead.iter().all(|&(x, y)| many.is_dead(x, y)));
+        assert_eq!((0..1200).filter(|i| few.is_dead(i % 40, i / 40)).count(), 20);
+        assert_eq!(pattern(0, 2).unwrap().dead.len(), 60);
+        assert!(pattern(121, 0).is_err() && pattern(0, 5).is_err());
+    }
+
+    #[test]
+    fn an_effect_switched_off_leaves_the_others_as_they_were() {
+        let all = FixedPatternConfig {
+            seed: 4,
+            prnu_fraction: 0.02,
+            dsnu_fraction: 0.5,
+            column_offset_e: 3.0,
+            dead_pixels: 7,
+            dead_columns: 1,
+            ..FixedPatternConfig::default()
+        };
+        let pattern = |config: &FixedPatternConfig| FixedPattern::new(config, 30, 20).unwrap();
+        let (with, without) =
+            (pattern(&all), pattern(&FixedPatternConfig { prnu_fraction: 0.0, ..all.clone() }));
+        assert_eq!(without, FixedPattern { response: vec![], ..with.clone() });
+        let without =
+            pattern(&FixedPatternConfig { dsnu_fraction: 0.0, column_offset_e: 0.0, ..all.clone() });
+        assert_eq!(without, FixedPattern { dark: vec![], column_offsets_e: vec![], ..with });
+    }
+}

@@ -1,0 +1,159 @@
+//! Random telegraph signals: hot pixels that switch between two dark currents.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::poisson::poisson;
+use crate::SimError;
+use crate::error::require;
+use crate::randomness::{Effect, Seed, Stream, uniform};
+
+/// Random telegraph switching of a part of the hot pixels, as protons leave it in silicon (Hopkins & Hopkinson, "Random
+/// telegraph signals from proton-irradiated CCDs", IEEE Trans. Nucl. Sci. 40, 1993): two levels, exponential dwell times.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TelegraphConfig {
+    /// Part of the hot pixels that switch, 0 to 1.
+    pub fraction: f64,
+    /// Dark current in the low state as a part of that in the high one, 0 to 1.
+    pub low_level: f64,
+    /// Mean time in the high state, s, 0.1 to 1e7.
+    pub high_s: f64,
+    /// Mean time in the low state, s, 0.1 to 1e7.
+    pub low_s: f64,
+}
+
+impl TelegraphConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        let within = |low: f64, high: f64| move |v: f64| (low..=high).contains(&v);
+        require("sensor.hot_pixels.telegraph.fraction", self.fraction, "0 to 1", within(0.0, 1.0))?;
+        require("sensor.hot_pixels.telegraph.low_level", self.low_level, "0 to 1", within(0.0, 1.0))?;
+        require("sensor.hot_pixels.telegraph.high_s", self.high_s, "0.1 to 1e7", within(0.1, 1e7))?;
+        require("sensor.hot_pixels.telegraph.low_s", self.low_s, "0.1 to 1e7", within(0.1, 1e7))
+    }
+
+    /// Mean dark current of a switching pixel from `from_s` to `to_s`, as a part of that in the high state.
+    ///
+    /// The process has a memory, yet any time can be had alone. At the events of a Poisson process of the rate
+    /// 1/`high_s` + 1/`low_s` the state is drawn anew, high with probability `high_s`/(`high_s` + `low_s`), whatever it
+    /// was: this is the telegraph process itself, with its exponential dwell times. Time is cut into cells; the events of
+    /// a cell are drawn from its address, and the state at a time is that of the last event before it.
+    pub(super) fn level(&self, seed: &Seed, pixel: u64, from_s: f64, to_s: f64) -> f64 {
+        let cell_s = EVENTS_A_CELL * self.high_s * self.low_s / (self.high_s + self.low_s);
+        let first = (from_s / cell_s).floor();
+        let events = |cell: f64| {
+            // Cells before the epoch have negative numbers; as bits they are addresses like others.
+            let mut stream = seed.stream(cell as i64 as u64, Effect::Telegraph, pixel);
+            self.events(cell * cell_s, cell_s, &mut stream)
+        };
+        let before = |cell: f64| events(cell).into_iter().rev().find(|event| event.time_s <= from_s);
+        let mut high =
+            (0..MOST_CELLS_BACK).find_map(|back| before(first - f64::from(back))).is_some_and(|e| e.high);
+        let level = |high: bool| if high { 1.0 } else { self.low_level };
+        if to_s <= from_s {
+            return level(high);
+        }
+        let (mut time_s, mut sum, mut cell) = (from_s, 0.0, first);
+        while cell * cell_s < to_s {
+            for event in events(cell).into_iter().filter(|event| event.time_s > from_s && event.time_s < to_s)
+            {
+                sum += level(high) * (event.time_s - time_s);
+                (time_s, high) = (event.time_s, event.high);
+            }
+            cell += 1.0;
+        }
+        sum += level(high) * (to_s - time_s);
+        sum / (to_s - from_s)
+    }
+
+    /// The events of a cell, in order.
+    fn events(&self, start_s: f64, cell_s: f64, stream: &mut Stream) -> Vec<Event> {
+        let count = poisson(EVENTS_A_CELL, stream) as usize;
+        let high_share = self.high_s / (self.high_s + self.low_s);
+        let mut events: Vec<Event> = (0..count)
+            .map(|_| Event { time_s: start_s + cell_s * uniform(stream), high: uniform(stream) < high_share })
+            .collect();
+        events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+        events
+    }
+}
+
+/// Mean number of events in a cell of time. More make cells rarer and longer to draw.
+const EVENTS_A_CELL: f64 = 4.0;
+
+/// Cells looked back for an event: none in sixteen has a probability of exp(−64).
+const MOST_CELLS_BACK: u32 = 16;
+
+/// A moment at which the state is drawn anew.
+#[derive(Debug, Clone, Copy)]
+struct Event {
+    time_s: f64,
+    high: bool,
+}
+
+/// Whether a hot pixel switches, decided by the last number of its own stream.
+pub(super) fn switches(telegraph: Option<&TelegraphConfig>, stream: &mut Stream) -> bool {
+    telegraph.is_some_and(|telegraph| uniform(stream) < telegraph.fraction)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SEED: Seed = Seed { seed: 5, case: 0 };
+    const SLOW: TelegraphConfig =
+        TelegraphConfig { fraction: 1.0, low_level: 0.0, high_s: 30.0, low_s: 90.0 };
+
+    fn high(pixel: u64, time_s: f64) -> bool {
+        SLOW.level(&SEED, pixel, time_s, time_s) > 0.5
+    }
+
+    #[test]
+    fn occupancy_is_the_share_of_the_dwell_times() {
+        let n = 20_000;
+        let share = (0..n).filter(|&pixel| high(pixel, 1234.5)).count() as f64 / n as f64;
+        // A quarter; the standard error of independent pixels is sqrt(0.25 · 0.75/n) = 0.0031, four of them.
+        assert!((share - 0.25).abs() < 0.0125, "{share}");
+    }
+
+    #[test]
+    fn states_a_time_apart_are_correlated_as_an_exponential_telegraph_is() {
+        let n = 20_000;
+        // 1/(1/30 + 1/90) = 22.5 s.
+        for lag_s in [5.0, 22.5, 60.0_f64] {
+            let both = (0..n).filter(|&pixel| high(pixel, -40.0) && high(pixel, lag_s - 40.0)).count() as f64;
+            let expected = 0.25 * (0.25 + 0.75 * libm::exp(-lag_s / 22.5));
+            let error = (expected * (1.0 - expected) / n as f64).sqrt();
+            assert!((both / n as f64 - expected).abs() < 4.0 * error, "lag {lag_s}");
+        }
+    }
+
+    #[test]
+    fn dwell_times_are_exponential() {
+        // Sampled every 0.25 s; a dwell that is cut by either end of the series is left out.
+        let (step_s, mut long, mut dwells) = (0.25, 0, 0);
+        for pixel in 0..60 {
+            let states: Vec<bool> = (0..20_000).map(|i| high(pixel, f64::from(i) * step_s)).collect();
+            let runs: Vec<&[bool]> = states.chunk_by(|a, b| a == b).collect();
+            for run in runs[1..runs.len() - 1].iter().filter(|run| run[0]) {
+                dwells += 1;
+                long += usize::from(run.len() as f64 * step_s > 30.0);
+            }
+        }
+        // exp(−1) of them are longer than their mean; some 2,500 dwells know it to 0.0096. The steps hide dwells below
+        // 0.25 s, 0.8 % of them.
+        let share = long as f64 / dwells as f64;
+        assert!(dwells > 2000 && (share - 0.3679).abs() < 0.04, "{share} of {dwells}");
+    }
+
+    #[test]
+    fn the_mean_over_an_exposure_is_the_mean_of_the_moments() {
+        for pixel in 0..20 {
+            let moments =
+                (0..20_000).map(|i| SLOW.level(&SEED, pixel, 0.01 * f64::from(i), 0.0)).sum::<f64>();
+            let whole = SLOW.level(&SEED, pixel, 0.0, 200.0);
+            // Each of some ten switches is placed to half a step of 20,000.
+            assert!((moments / 20_000.0 - whole).abs() < 1e-3, "{whole}");
+        }
+    }
+}
