@@ -92,7 +92,7 @@ impl<'a> SimulatedCamera<'a> {
             &moment.observer,
             &camera,
             &simulator.projection,
-            self.psf.margin_px(),
+            |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
             &mut self.sources,
         );
         let mut objects = self.draw(number, exposure_s);
@@ -267,6 +267,7 @@ impl<'a> SimulatedCamera<'a> {
                 self.points.clear();
                 let [begin, end] = source.ends;
                 trail(begin, source.position, end, &mut self.points);
+                let electrons = electrons * simulator.vignetting.transmission(source.position);
                 self.psf.stamp_extended(&self.points, electrons, Psf::FLOOR_E, detector, stamp);
                 self.image.add(stamp);
             }

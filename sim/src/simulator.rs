@@ -7,7 +7,7 @@ use hifitime::Unit;
 
 use crate::catalog::{Catalog, CatalogConfig};
 use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
-use crate::optics::{Projection, Psf, PsfConfig, RadiometryConfig};
+use crate::optics::{OpticsConfig, Projection, Psf, PsfConfig, RadiometryConfig, Vignetting};
 use crate::randomness::Seed;
 use crate::scene::{StarField, TargetConfig};
 use crate::sensor::{Sensor, SensorConfig};
@@ -38,6 +38,8 @@ pub struct Simulation {
     pub camera: Camera,
     /// Point spread function.
     pub psf: PsfConfig,
+    /// What of the optics changes over the field.
+    pub optics: OpticsConfig,
     /// From magnitudes to photoelectrons.
     pub radiometry: RadiometryConfig,
     /// The detector.
@@ -62,6 +64,7 @@ pub struct Simulator {
     pub(crate) camera_from_body: Rotation<CameraFrame, Body>,
     pub(crate) projection: Projection,
     pub(crate) psf: Psf,
+    pub(crate) vignetting: Vignetting,
     pub(crate) sensor: Sensor,
     pub(crate) shutter: Shutter,
     pub(crate) roi: Option<RoiConfig>,
@@ -101,7 +104,9 @@ impl Simulator {
             knowledge: Knowledge::new(&simulation.knowledge, seed)?,
             camera_from_body: simulation.mounting.actual.camera_from_body(),
             projection,
-            psf: Psf::new(&simulation.psf)?,
+            vignetting: Vignetting::new(&simulation.optics, &simulation.camera)?,
+            psf: Psf::load(&simulation.psf, folder)?
+                .growing(simulation.optics.psf_growth, &simulation.camera),
             sensor: Sensor::new(&simulation.sensor, columns, rows)?,
             shutter,
             roi: simulation.roi.clone(),

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use sim::Simulation;
 use sim::catalog::CatalogConfig;
 use sim::onboard::{RoiConfig, ShutterConfig};
-use sim::optics::{PsfConfig, RadiometryConfig};
+use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use sim::scene::TargetConfig;
 use sim::sensor::SensorConfig;
 use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
@@ -45,6 +45,9 @@ pub struct Scenario {
     pub camera: Camera,
     /// Point spread function of the optics.
     pub psf: PsfConfig,
+    /// What of the optics changes over the field: vignetting, sharpness; absent: nothing.
+    #[serde(default)]
+    pub optics: OpticsConfig,
     /// From magnitudes to photoelectrons.
     pub radiometry: RadiometryConfig,
     /// The detector.
@@ -81,6 +84,7 @@ impl Scenario {
             mounting: self.mounting,
             camera: self.camera.clone(),
             psf: self.psf.clone(),
+            optics: self.optics.clone(),
             radiometry: self.radiometry.clone(),
             sensor: self.sensor.clone(),
             shutter: self.shutter.clone(),
