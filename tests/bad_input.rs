@@ -112,7 +112,7 @@ mod scenarios {
     #[test]
     fn a_value_of_the_wrong_type_is_named() {
         check_edited("seed = 1 #", "seed = \"one\" #", &["seed", "string \"one\"", "a whole number"]);
-        check_edited("kind = \"gaussian\"", "kind = \"airy\"", &["`airy`", "`gaussian`"]);
+        check_edited("kind = \"gaussian\"", "kind = \"square\"", &["`square`", "`gaussian`"]);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! The one error type of this crate.
 
+use std::path::PathBuf;
+
 use thiserror::Error;
 
 /// Why a simulation cannot be made.
@@ -31,6 +33,14 @@ pub enum SimError {
     /// A star catalogue that cannot be used.
     #[error(transparent)]
     Catalog(#[from] crate::catalog::CatalogError),
+    /// A point-spread function of the user's that cannot be used.
+    #[error("psf.path {}: {problem}", path.display())]
+    PsfFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
 }
 
 impl SimError {

@@ -100,7 +100,7 @@ impl<'a> SimulatedCamera<'a> {
             &moment.observer,
             &camera,
             &simulator.projection,
-            self.psf.margin_px(),
+            |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
             &mut self.sources,
         );
         let background = simulator.background.as_ref().map(|background| {
@@ -274,7 +274,8 @@ impl<'a> SimulatedCamera<'a> {
             image.set_field(Some(field), opening.exposure_s);
         }
         for (source, stamp) in sources.iter_mut().zip(lit) {
-            let electrons = source.electrons_per_s * opening.exposure_s;
+            let transmission = simulator.vignetting.transmission(source.position);
+            let electrons = source.electrons_per_s * opening.exposure_s * transmission;
             points.clear();
             let [begin, end] = source.ends;
             trail(begin, source.position, end, points);

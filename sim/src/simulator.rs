@@ -7,7 +7,7 @@ use hifitime::Unit;
 
 use crate::catalog::{Catalog, CatalogConfig};
 use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
-use crate::optics::{Projection, Psf, PsfConfig, Radiometry, RadiometryConfig};
+use crate::optics::{OpticsConfig, Projection, Psf, PsfConfig, Radiometry, RadiometryConfig, Vignetting};
 use crate::randomness::Seed;
 use crate::scene::{Background, BackgroundConfig, StarField, TargetConfig};
 use crate::sensor::{CosmicRays, Sensor, SensorConfig};
@@ -38,6 +38,8 @@ pub struct Simulation {
     pub camera: Camera,
     /// Point spread function.
     pub psf: PsfConfig,
+    /// What of the optics changes over the field.
+    pub optics: OpticsConfig,
     /// From magnitudes to photoelectrons.
     pub radiometry: RadiometryConfig,
     /// Light without a source in the field.
@@ -64,6 +66,7 @@ pub struct Simulator {
     pub(crate) camera_from_body: Rotation<CameraFrame, Body>,
     pub(crate) projection: Projection,
     pub(crate) psf: Psf,
+    pub(crate) vignetting: Vignetting,
     pub(crate) sensor: Sensor,
     pub(crate) cosmic_rays: Option<CosmicRays>,
     pub(crate) shutter: Shutter,
@@ -90,6 +93,7 @@ impl Simulator {
         let shutter = Shutter::new(&simulation.shutter, simulation.sensor.saturation_e())?;
         check_times(&schedule, &trajectory, shutter.lag_s())?;
         let projection = Projection::new(&simulation.camera)?;
+        let vignetting = Vignetting::new(&simulation.optics, &simulation.camera)?;
         let (columns, rows) = projection.detector();
         if let Some(roi) = &simulation.roi {
             roi.check(columns, rows)?;
@@ -102,7 +106,8 @@ impl Simulator {
                 &simulation.camera,
                 &projection,
                 &radiometry,
-            )?,
+            )?
+            .map(|background| background.vignetted(&vignetting)),
             stars: StarField::new(&catalog, &radiometry),
             catalog,
             trajectory,
@@ -111,7 +116,9 @@ impl Simulator {
             knowledge: Knowledge::new(&simulation.knowledge, seed)?,
             camera_from_body: simulation.mounting.actual.camera_from_body(),
             projection,
-            psf: Psf::new(&simulation.psf)?,
+            vignetting,
+            psf: Psf::load(&simulation.psf, folder)?
+                .growing(simulation.optics.psf_growth, &simulation.camera),
             sensor: Sensor::new(&simulation.sensor, columns, rows)?,
             cosmic_rays: simulation
                 .sensor

@@ -10,7 +10,7 @@ mod small_scene;
 use std::collections::BTreeSet;
 
 use boresight_sim::catalog::{Catalog, CatalogConfig};
-use boresight_sim::optics::{Projection, Psf, Stamp};
+use boresight_sim::optics::{OpticsConfig, Projection, Psf, PsfConfig, Stamp};
 use boresight_sim::truth::{
     FrameTruth, Guidance, ObjectKind, ObjectTruth, Observer, Shadow, StarMotion, Trajectory, Visibility,
     clock, ephemeris, shadow,
@@ -56,6 +56,10 @@ fn every_star_of_the_catalogue_with_light_on_the_detector_is_in_the_table() {
             attitude: looking_at(ra_deg, dec_deg),
             ..still()
         };
+        if i % 2 == 1 {
+            // Wings: the brighter a star, the farther off the detector it is seen.
+            simulation.psf = PsfConfig::Moffat { fwhm_px: 1.8, beta: 2.5 };
+        }
         simulation.orbit.epoch_utc = start_utc.into();
         simulation.schedule[0].start_utc = start_utc.into();
         let exposure = one(&simulation, 0);
@@ -82,6 +86,37 @@ fn every_star_of_the_catalogue_with_light_on_the_detector_is_in_the_table() {
         // 2.9 stars a square degree on average, 11 square degrees; at the galactic pole about half of it.
         assert!(expected.len() > 8, "{} stars at RA {ra_deg}°, Dec {dec_deg}°", expected.len());
     }
+}
+
+#[test]
+fn vignetting_takes_its_part_of_every_object_and_no_more() {
+    let mut simulation = Simulation { psf: PsfConfig::Gaussian { sigma_px: 0.8 }, ..still() };
+    let open = one(&simulation, 0);
+    simulation.optics = OpticsConfig { vignetting: [0.4, 0.0, 0.0], ..OpticsConfig::default() };
+    let vignetted = one(&simulation, 0);
+    let camera = &simulation.camera;
+    let [x_um, y_um] = [camera.pixel_width_um, camera.pixel_height_um];
+    // The principal point is (81.3, 58.4): the farthest corner is (−0.5, 119.5).
+    let corner_um = libm::hypot(81.8 * x_um, 61.1 * y_um);
+    let mut checked = 0;
+    for (before, after) in open.objects.iter().zip(&vignetted.objects) {
+        assert_eq!((before.kind, before.id, before.position), (after.kind, after.id, after.position));
+        let (x, y) = (before.position.x - 81.3, before.position.y - 58.4);
+        let rho = libm::hypot(x * x_um, y * y_um) / corner_um;
+        let expected = match before.kind {
+            // Dark current knows no optics.
+            ObjectKind::HotPixel => 1.0,
+            _ if before.position.is_on_detector(160, 120) && before.electrons > 100.0 => {
+                1.0 - 0.4 * rho * rho
+            }
+            _ => continue,
+        };
+        // A fainter image loses a little more to the floor of the stamps: 2πσ² · 0.01 e⁻ of 100.
+        let ratio = after.electrons / before.electrons;
+        assert!((ratio - expected).abs() < 0.003, "at ρ = {rho}: {ratio}, expected {expected}");
+        checked += usize::from(expected < 0.95);
+    }
+    assert!(checked > 3, "{checked} objects lose light");
 }
 
 /// Where a camera without distortion would see a direction, by similar triangles.

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use sim::Simulation;
 use sim::catalog::CatalogConfig;
 use sim::onboard::{RoiConfig, ShutterConfig};
-use sim::optics::{PsfConfig, RadiometryConfig};
+use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::SensorConfig;
 use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
@@ -47,6 +47,9 @@ pub struct Scenario {
     pub camera: Camera,
     /// Point spread function of the optics.
     pub psf: PsfConfig,
+    /// What of the optics changes over the field: vignetting, sharpness; absent: nothing.
+    #[serde(default)]
+    pub optics: OpticsConfig,
     /// From magnitudes to photoelectrons.
     pub radiometry: RadiometryConfig,
     /// Light without a source in the field: zodiacal light, faint stars, stray light; absent: none.
@@ -86,6 +89,7 @@ impl Scenario {
             mounting: self.mounting,
             camera: self.camera.clone(),
             psf: self.psf.clone(),
+            optics: self.optics.clone(),
             radiometry: self.radiometry.clone(),
             background: self.background.clone(),
             sensor: self.sensor.clone(),

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pipeline::PipelineError;
 use sim::catalog::CatalogSource;
+use sim::optics::PsfConfig;
 use sim::{SimError, Simulator};
 
 use super::{BUILT_IN, Scenario, is_argon};
@@ -61,11 +62,19 @@ impl ScenarioSource {
     /// A [`Failure`] with the place of the first mistake.
     pub fn parse(name: String, folder: PathBuf, file: PathBuf, text: String) -> Result<Self, Failure> {
         let mut scenario: Scenario = toml_file::parse(&file, &text)?;
-        if let CatalogSource::File(path) = &mut scenario.catalog.source
-            && let Ok(absolute) = std::path::absolute(folder.join(&*path))
-        {
-            // So that run.toml can be run from anywhere.
-            *path = absolute.to_string_lossy().into_owned();
+        let catalog = match &mut scenario.catalog.source {
+            CatalogSource::File(path) => Some(path),
+            CatalogSource::Hipparcos2 => None,
+        };
+        let psf = match &mut scenario.psf {
+            PsfConfig::Sampled { path, .. } => Some(path),
+            _ => None,
+        };
+        for path in catalog.into_iter().chain(psf) {
+            if let Ok(absolute) = std::path::absolute(folder.join(&*path)) {
+                // So that run.toml can be run from anywhere.
+                *path = absolute.to_string_lossy().into_owned();
+            }
         }
         Ok(Self { name, folder, scenario, file, text })
     }

@@ -1,13 +1,17 @@
 //! Optics: where a direction falls on the detector, and how its light spreads there.
 
+mod field;
 mod projection;
 mod psf;
 mod radiometry;
 mod stamp;
 mod trail;
+mod vignetting;
 
+pub use field::OpticsConfig;
 pub use projection::Projection;
 pub use psf::{Psf, PsfConfig};
 pub use radiometry::{KnownDetector, QuantumEfficiency, Radiometry, RadiometryConfig, SUN_V_MAG_AT_1_AU};
 pub use stamp::{Stamp, StampTruth};
 pub use trail::{ImagePoint, trail};
+pub use vignetting::Vignetting;

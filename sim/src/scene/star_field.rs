@@ -17,6 +17,8 @@ const CATALOG_MARGIN: Angle = Angle::from_degrees(0.2);
 pub struct StarField {
     index: ConeIndex,
     stars: Vec<PreparedStar>,
+    /// Of the brightest star.
+    brightest_e_per_s: f64,
 }
 
 /// What drawing needs of a star, computed once.
@@ -31,7 +33,7 @@ struct PreparedStar {
 impl StarField {
     /// Prepares the stars of a catalogue.
     pub fn new(catalog: &Catalog, radiometry: &Radiometry) -> Self {
-        let stars = catalog
+        let stars: Vec<PreparedStar> = catalog
             .stars()
             .iter()
             .map(|star| {
@@ -40,27 +42,30 @@ impl StarField {
                 PreparedStar { id: star.id, motion: StarMotion::new(star), magnitude, electrons_per_s }
             })
             .collect();
-        Self { index: ConeIndex::new(catalog.stars()), stars }
+        let brightest_e_per_s = stars.iter().map(|star| star.electrons_per_s).fold(0.0, f64::max);
+        Self { index: ConeIndex::new(catalog.stars()), stars, brightest_e_per_s }
     }
 
-    /// Appends the stars that come within `margin_px` of the detector during the exposure, by number.
+    /// Appends the stars whose image comes onto the detector during the exposure, by number: `reach_px` tells how far an
+    /// image reaches, px, for photo-electrons a second.
     pub fn look(
         &self,
         observer: &Observer,
         camera: &CameraMotion,
         projection: &Projection,
-        margin_px: f64,
+        reach_px: impl Fn(f64) -> f64,
         sources: &mut Vec<Source>,
     ) {
         let (x_px_per_rad, y_px_per_rad) = projection.plate_scale_px_per_rad();
         // Towards the corners of a wide field a turn moves a star by more than the plate scale on the axis says.
         let widening = 1.0 / libm::cos(projection.half_diagonal().radians()).max(0.1);
-        let reach_px = camera.reach().radians() * x_px_per_rad.max(y_px_per_rad) * widening * widening;
-        let margin_px = margin_px + reach_px;
+        let motion_px = camera.reach().radians() * x_px_per_rad.max(y_px_per_rad) * widening * widening;
+        let margin_px = reach_px(self.brightest_e_per_s) + motion_px;
         for star in self.around(camera.middle, projection, margin_px) {
             let apparent = observer.apparent(&star.motion);
             if let Some(position) = projection.project(&(camera.middle * apparent))
-                && is_within(position, projection, margin_px)
+                && (is_within(position, projection, 0.0)
+                    || is_within(position, projection, reach_px(star.electrons_per_s) + motion_px))
             {
                 sources.push(Source {
                     kind: ObjectKind::Star,
@@ -164,7 +169,7 @@ mod tests {
             &observer(),
             &CameraMotion::still(camera_from_icrs),
             &projection(),
-            margin_px,
+            |_| margin_px,
             &mut sources,
         );
         sources
@@ -231,7 +236,8 @@ mod tests {
             let at = projection().project(&(camera_from_icrs * observer().apparent(&motion))).unwrap();
             assert!(at.is_on_detector(300, 200), "{at:?}");
             let prepared = PreparedStar { id: 1, motion, magnitude: 5.0, electrons_per_s: 1e4 };
-            let field = StarField { index: ConeIndex::new(&[star]), stars: vec![prepared] };
+            let field =
+                StarField { index: ConeIndex::new(&[star]), stars: vec![prepared], brightest_e_per_s: 1e4 };
             seen(&field, camera_from_icrs, 0.0).len()
         };
         assert_eq!((found(10.4), found(90.0)), (1, 0));

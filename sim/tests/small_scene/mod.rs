@@ -4,7 +4,7 @@ use std::path::Path;
 
 use boresight_sim::catalog::CatalogConfig;
 use boresight_sim::onboard::{RoiConfig, ShutterConfig};
-use boresight_sim::optics::{PsfConfig, RadiometryConfig};
+use boresight_sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use boresight_sim::scene::{BackgroundConfig, TargetConfig};
 use boresight_sim::sensor::{HotPixelConfig, NoiseConfig, SensorConfig, Switch};
 use boresight_sim::truth::{
@@ -52,6 +52,7 @@ pub(crate) fn still() -> Simulation {
             tangential: [1e-7, -2e-7],
         },
         psf: PsfConfig::GaussianHalo { sigma_px: 0.8, halo_sigma_px: 4.0, halo_fraction: 0.03 },
+        optics: OpticsConfig::default(),
         radiometry: RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1.5e6 },
         background: BackgroundConfig::default(),
         sensor: SensorConfig {

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::SimError;
 use crate::error::require;
-use crate::optics::{Projection, Radiometry, SUN_V_MAG_AT_1_AU};
+use crate::optics::{Projection, Radiometry, SUN_V_MAG_AT_1_AU, Vignetting};
 use crate::truth::{clock, moon, shadow};
 use stray::Ray;
 
@@ -126,6 +126,7 @@ struct Node {
     /// Unit vector in the camera frame.
     direction: Vector3<f64>,
     /// Solid angle of a pixel there, sr.
+    /// Solid angle of the pixel, times the transmission there.
     pixel_sr: f64,
 }
 
@@ -177,6 +178,16 @@ impl Background {
             s10_e_per_s_sr: radiometry.sunlit(10.0) * SQUARE_DEGREES_PER_SR,
             bare_sun_e_per_s,
         }))
+    }
+
+    /// The same behind optics that vignette: light of the sky is lost as a star's is. Stray light is not, it comes in by
+    /// other ways.
+    pub fn vignetted(mut self, vignetting: &Vignetting) -> Self {
+        for (i, node) in self.nodes.iter_mut().enumerate() {
+            let at = PixelPoint::new(place(i % NODES, self.columns), place(i / NODES, self.rows));
+            node.pixel_sr *= vignetting.transmission(at);
+        }
+        self
     }
 
     /// The background at `time` for an observer at `position_km` from the centre of the Earth, with the Sun at `sun_km` from it,

@@ -1,5 +1,6 @@
 use super::*;
-use crate::optics::{KnownDetector, QuantumEfficiency, RadiometryConfig};
+use crate::optics::{KnownDetector, OpticsConfig, QuantumEfficiency, RadiometryConfig};
+use crate::sensor::Switch;
 use crate::truth::ecliptic;
 
 fn camera() -> Camera {
@@ -174,4 +175,21 @@ fn the_moon_scatters_as_much_less_as_it_is_fainter() {
     let expected = bare * 1e-7 * libm::pow(10.0, -0.4 * (26.76 - 12.73)) * nearness * nearness;
     assert!((full / expected - 1.0).abs() < 0.01, "{}", full / expected);
     assert!(mean(to_moon.normalize() * AU_KM) < 0.01 * full);
+}
+
+/// The law of a uniform sky: cos³ of the pixels' solid angles times the cosine of the foreshortened aperture.
+#[test]
+fn an_even_sky_falls_off_by_the_fourth_power_of_the_cosine() {
+    let even = BackgroundConfig { faint_stars_s10: 100.0, ..BackgroundConfig::default() };
+    let optics = OpticsConfig { cos_fourth: Switch::On, ..OpticsConfig::default() };
+    let vignetting = Vignetting::new(&optics, &camera()).unwrap();
+    let background = background(&even, &one_zero_point()).vignetted(&vignetting);
+    let mut pixels = Vec::new();
+    let (position_km, sun_km) = (Vector3::new(7000.0, 0.0, 0.0), Vector3::new(1.5e8, 0.0, 0.0));
+    background.field(time(), &position_km, &sun_km, looking_at(Vector3::z())).electrons_per_s(&mut pixels);
+    let projection = Projection::new(&camera()).unwrap();
+    let cos = projection.unproject(PixelPoint::new(0.0, 0.0)).unwrap().vector().z;
+    let ratio = pixels[0] / pixels[100 * 300 + 150];
+    // Between the nodes the field is linear: 1e-5.
+    assert!((ratio - cos * cos * cos * cos).abs() < 2e-5, "{ratio}, {}", cos * cos * cos * cos);
 }

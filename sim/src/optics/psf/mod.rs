@@ -1,70 +1,59 @@
 //! The point-spread function, integrated over pixels.
 
-use contract::PixelPoint;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+mod airy;
+mod config;
+mod defocus;
+mod gaussians;
+mod moffat;
+mod sampled;
+mod tabulated;
+#[cfg(test)]
+mod witness;
 
+use std::path::Path;
+
+use contract::{Camera, PixelPoint};
+
+pub use config::PsfConfig;
+
+use super::field::FieldRadius;
 use super::{ImagePoint, Stamp};
 use crate::SimError;
-use crate::error::require;
+use gaussians::{Gaussians, Profiles};
+use tabulated::{Edges, Tabulated};
 
-/// Shape of the image of a point.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum PsfConfig {
-    /// A circular Gaussian.
-    Gaussian {
-        /// Standard deviation, px, 0.05 to 100.
-        sigma_px: f64,
-    },
-    /// A circular Gaussian core in a broad Gaussian halo of scattered light.
-    GaussianHalo {
-        /// Standard deviation of the core, px, 0.05 to 100.
-        sigma_px: f64,
-        /// Standard deviation of the halo, px, 0.05 to 100, not below that of the core.
-        halo_sigma_px: f64,
-        /// Fraction of the light that is in the halo, 0 to 1.
-        halo_fraction: f64,
-    },
-}
-
-impl PsfConfig {
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`SimError::Parameter`] for the first field outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        let side = |v: f64| (0.05..=100.0).contains(&v);
-        match *self {
-            Self::Gaussian { sigma_px } => require("psf.sigma_px", sigma_px, "0.05 to 100", side),
-            Self::GaussianHalo { sigma_px, halo_sigma_px, halo_fraction } => {
-                require("psf.sigma_px", sigma_px, "0.05 to 100", side)?;
-                require("psf.halo_sigma_px", halo_sigma_px, "from psf.sigma_px to 100", |v| {
-                    side(v) && v >= sigma_px
-                })?;
-                require("psf.halo_fraction", halo_fraction, "0 to 1", |v| (0.0..=1.0).contains(&v))
-            }
-        }
-    }
-}
-
-/// A point-spread function: a sum of circular Gaussians, each integrated exactly over every pixel.
+/// A point-spread function, ready to draw: how the light of a point spreads over pixels, each of which integrates what
+/// falls on it. The light over the whole plane is 1.
 ///
-/// A Gaussian over a rectangle is the product of two differences of error functions, one a column and one a row,
-/// so a stamp costs as many error functions as it has columns and rows.
+/// ```
+/// use boresight_sim::optics::{Psf, PsfConfig, Stamp};
+/// use contract::PixelPoint;
+/// let mut psf = Psf::new(&PsfConfig::Moffat { fwhm_px: 1.8, beta: 3.0 })?;
+/// let mut stamp = Stamp::new();
+/// psf.stamp(PixelPoint::new(50.2, 49.7), 1e5, Psf::FLOOR_E, (100, 100), &mut stamp);
+/// let drawn: f64 = stamp.rows().flat_map(|(_, _, row)| row).sum();
+/// assert!(drawn > 0.999e5 && drawn < 1e5);
+/// # Ok::<(), boresight_sim::SimError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Psf {
-    /// In order of growing width.
-    components: Vec<Component>,
-    /// Shares of flux a column and a row, reused from stamp to stamp.
-    profile_x: Vec<f64>,
-    profile_y: Vec<f64>,
+    shape: Shape,
+    growth: Option<Growth>,
+    profiles: Profiles,
+    edges: Edges,
 }
 
+#[derive(Debug, Clone, PartialEq)]
+enum Shape {
+    Gaussians(Gaussians),
+    Tabulated(Tabulated),
+}
+
+/// How the width grows over the field: by 1 + aρ².
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Component {
-    weight: f64,
-    sigma_px: f64,
+struct Growth {
+    a: f64,
+    radius: FieldRadius,
 }
 
 impl Psf {
@@ -72,20 +61,44 @@ impl Psf {
     /// noise of any detector that tracks stars.
     pub const FLOOR_E: f64 = 0.01;
 
-    /// The point-spread function of a configuration.
+    /// The point-spread function of a configuration; a relative path in it starts at the current folder.
     ///
     /// # Errors
-    /// Those of [`PsfConfig::check`].
+    /// Those of [`Psf::load`].
     pub fn new(config: &PsfConfig) -> Result<Self, SimError> {
+        Self::load(config, Path::new(""))
+    }
+
+    /// The point-spread function of a configuration; a relative path in it starts at `folder`.
+    ///
+    /// # Errors
+    /// Those of [`PsfConfig::check`]; [`SimError::PsfFile`] when the file of [`PsfConfig::Sampled`] cannot be used.
+    pub fn load(config: &PsfConfig, folder: &Path) -> Result<Self, SimError> {
         config.check()?;
-        let components = match *config {
-            PsfConfig::Gaussian { sigma_px } => vec![Component { weight: 1.0, sigma_px }],
-            PsfConfig::GaussianHalo { sigma_px, halo_sigma_px, halo_fraction } => vec![
-                Component { weight: 1.0 - halo_fraction, sigma_px },
-                Component { weight: halo_fraction, sigma_px: halo_sigma_px },
-            ],
+        let shape = match config {
+            &PsfConfig::Gaussian { sigma_px } => Shape::Gaussians(Gaussians::one(sigma_px)),
+            &PsfConfig::GaussianHalo { sigma_px, halo_sigma_px, halo_fraction } => {
+                Shape::Gaussians(Gaussians::halo(sigma_px, halo_sigma_px, halo_fraction))
+            }
+            &PsfConfig::Moffat { fwhm_px, beta } => Shape::Gaussians(moffat::moffat(fwhm_px, beta)),
+            &PsfConfig::Airy { lambda_n_px, obscuration } => {
+                Shape::Tabulated(airy::airy(lambda_n_px, obscuration))
+            }
+            &PsfConfig::Defocus { radius_px, sigma_px } => {
+                Shape::Tabulated(defocus::defocus(radius_px, sigma_px))
+            }
+            PsfConfig::Sampled { path, oversampling } => {
+                Shape::Tabulated(sampled::sampled(&folder.join(path), *oversampling)?)
+            }
         };
-        Ok(Self { components, profile_x: Vec::new(), profile_y: Vec::new() })
+        Ok(Self { shape, growth: None, profiles: Profiles::default(), edges: Edges::default() })
+    }
+
+    /// The same, but 1 + `growth` ρ² times as wide at a distance ρ from the principal point of `camera`, in units of
+    /// that of its farthest corner ([`super::OpticsConfig::psf_growth`]). An image has the width of its centre.
+    pub fn growing(mut self, growth: f64, camera: &Camera) -> Self {
+        self.growth = (growth != 0.0).then(|| Growth { a: growth, radius: FieldRadius::new(camera) });
+        self
     }
 
     /// The image of a point of `electrons` at `centre`: [`Psf::stamp_extended`] of that one point.
@@ -109,9 +122,9 @@ impl Psf {
     /// The image of an object of `electrons` whose undisturbed image is made of `points` (a trail, a resolved body), on a
     /// detector of `detector` = (columns, rows). The centre of the stamp is the mean of the points by their shares.
     ///
-    /// Pixels with fewer than `floor_e` electrons (greater than 0) are left at zero. A Gaussian of width σ thereby
-    /// loses at most about 2πσ² `floor_e` electrons; the truth is taken from the stamp, so that truth and image
-    /// stay the same.
+    /// Pixels with fewer than `floor_e` electrons (greater than 0) are left at zero, and so is what lies beyond the reach
+    /// of the shape: a Gaussian of width σ thereby loses at most about 2πσ² `floor_e` electrons, a shape with wings more.
+    /// The truth is taken from the stamp, so that truth and image stay the same.
     pub fn stamp_extended(
         &mut self,
         points: &[ImagePoint],
@@ -120,38 +133,21 @@ impl Psf {
         detector: (usize, usize),
         stamp: &mut Stamp,
     ) {
-        let reach_px = self
-            .components
-            .iter()
-            .map(|component| component.reach_px(electrons, floor_e))
-            .fold(0.0, f64::max);
         let extent = Extent::of(points);
+        let scale = self.growth.map_or(1.0, |growth| growth.scale(extent.centre));
+        let reach_px = self.shape.reach_px(electrons, floor_e, scale);
         let x = pixels_within(extent.x, reach_px, detector.0);
         let y = pixels_within(extent.y, reach_px, detector.1);
         stamp.reset(extent.centre, x, y);
         if stamp.electrons.is_empty() || reach_px == 0.0 {
             return;
         }
-        for component in &self.components {
-            let own_px = component.reach_px(electrons, floor_e);
-            for point in points {
-                let PixelPoint { x: px, y: py } = point.position;
-                let own_x = pixels_within((px, px), own_px, detector.0);
-                let own_y = pixels_within((py, py), own_px, detector.1);
-                if own_px == 0.0 || own_x.0 >= own_x.1 || own_y.0 >= own_y.1 {
-                    continue;
-                }
-                component.profile(px, own_x, &mut self.profile_x);
-                component.profile(py, own_y, &mut self.profile_y);
-                let flux = electrons * component.weight * point.share;
-                let (left, width) = (own_x.0 - x.0, own_x.1 - own_x.0);
-                let rows = stamp.electrons.chunks_exact_mut(stamp.columns).skip(own_y.0 - y.0);
-                for (row, share_y) in rows.zip(&self.profile_y) {
-                    let row_flux = flux * share_y;
-                    for (pixel, share_x) in row[left..left + width].iter_mut().zip(&self.profile_x) {
-                        *pixel += row_flux * share_x;
-                    }
-                }
+        match &self.shape {
+            Shape::Gaussians(shape) => {
+                shape.draw(points, electrons, floor_e, scale, &mut self.profiles, stamp);
+            }
+            Shape::Tabulated(shape) => {
+                shape.draw(points, electrons, reach_px, scale, &mut self.edges, stamp);
             }
         }
         for pixel in &mut stamp.electrons {
@@ -161,56 +157,47 @@ impl Psf {
         }
     }
 
-    /// How far off the detector an object may be and still be drawn, px: five standard deviations of the widest
-    /// component, beyond which less than 1e-6 of the light falls.
-    pub fn margin_px(&self) -> f64 {
-        self.components.iter().map(|component| 5.0 * component.sigma_px).fold(0.0, f64::max)
+    /// How far off the detector an object of `electrons` may be and still leave `floor_e` electrons in a pixel of it, px;
+    /// 0 when it leaves them nowhere. Beyond 200 px the wings of a Moffat profile are not followed, beyond some tens of
+    /// pixels the rings of an Airy pattern.
+    pub fn reach_px(&self, electrons: f64, floor_e: f64) -> f64 {
+        match self.growth {
+            None => self.shape.reach_px(electrons, floor_e, 1.0),
+            // Off the detector the width is that of the corner, or not yet, over the shorter sides.
+            Some(growth) => {
+                let steps =
+                    (0..=Growth::STEPS).map(|i| 1.0 + growth.a * f64::from(i) / f64::from(Growth::STEPS));
+                steps.map(|scale| self.shape.reach_px(electrons, floor_e, scale)).fold(0.0, f64::max)
+            }
+        }
     }
 
-    /// The share of the light that falls in the pixel under the centre of the image, at best: when the image is
-    /// centred on the pixel. The shutter control takes it for the brightest pixel.
+    /// The share of the light that falls in the pixel under the centre of the image, at best: at the principal point, when
+    /// the image is centred on the pixel. The shutter control takes it for the brightest pixel.
     pub fn peak_share(&self) -> f64 {
-        self.components
-            .iter()
-            .map(|component| {
-                let along = component.share(-0.5, 0.5);
-                component.weight * along * along
-            })
-            .sum()
+        match &self.shape {
+            Shape::Gaussians(shape) => shape.peak_share(),
+            Shape::Tabulated(shape) => shape.peak_share(),
+        }
     }
 }
 
-impl Component {
-    /// Distance from the centre beyond which, along a column or a row, no pixel holds `floor_e`, px; 0 when no
-    /// pixel at all does. A pixel whose nearer edge is d away holds at most flux · n(d) · share(±0.5), with the
-    /// normal density n.
-    fn reach_px(&self, electrons: f64, floor_e: f64) -> f64 {
-        let density = 1.0 / (self.sigma_px * (2.0 * std::f64::consts::PI).sqrt());
-        let brightest = electrons * self.weight * density * self.share(-0.5, 0.5);
-        if brightest > floor_e {
-            0.5 + self.sigma_px * (2.0 * libm::log(brightest / floor_e)).sqrt()
-        } else {
-            0.0
+impl Shape {
+    /// Distance from a point beyond which, along a column or a row, no pixel holds `floor_e`, px; 0 when none does.
+    fn reach_px(&self, electrons: f64, floor_e: f64, scale: f64) -> f64 {
+        match self {
+            Self::Gaussians(shape) => shape.reach_px(electrons, floor_e, scale),
+            Self::Tabulated(shape) => shape.reach_px(electrons, floor_e, scale),
         }
     }
+}
 
-    /// Share of the flux between two distances from the centre along one axis.
-    fn share(&self, from_px: f64, to_px: f64) -> f64 {
-        let scale = 1.0 / (self.sigma_px * std::f64::consts::SQRT_2);
-        0.5 * (libm::erf(to_px * scale) - libm::erf(from_px * scale))
-    }
+impl Growth {
+    /// Widths that are tried for the largest reach, between those of the principal point and of the corner.
+    const STEPS: u32 = 8;
 
-    /// Shares of the flux in each pixel of a range along one axis.
-    fn profile(&self, centre: f64, range: (usize, usize), shares: &mut Vec<f64>) {
-        let scale = 1.0 / (self.sigma_px * std::f64::consts::SQRT_2);
-        let edge = |i: usize| libm::erf((i as f64 - 0.5 - centre) * scale);
-        shares.clear();
-        let mut left = edge(range.0);
-        for i in range.0..range.1 {
-            let right = edge(i + 1);
-            shares.push(0.5 * (right - left));
-            left = right;
-        }
+    fn scale(&self, at: PixelPoint) -> f64 {
+        1.0 + self.a * self.radius.squared(at)
     }
 }
 

@@ -1,0 +1,91 @@
+//! What of the optics changes over the field of view.
+
+use contract::{Camera, PixelPoint};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::sensor::Switch;
+
+/// How transmission and sharpness fall towards the corners. Without it the optics are the same everywhere.
+///
+/// ρ is the distance from the principal point on the focal plane, over that of the detector's farthest corner.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct OpticsConfig {
+    /// Natural vignetting, `on` or `off`: an even sky falls off by the fourth power of the cosine of the field angle, a star
+    /// by its cosine.
+    pub cos_fourth: Switch,
+    /// Mechanical vignetting: v₁, v₂, v₃ of the relative transmission 1 − v₁ρ² − v₂ρ⁴ − v₃ρ⁶, which is above 0 and at most
+    /// 1 up to ρ = 1.
+    pub vignetting: [f64; 3],
+    /// Growth a of the point-spread function: at ρ it is 1 + aρ² times as wide as at the principal point; −0.5 to 5.
+    pub psf_growth: f64,
+}
+
+impl Default for OpticsConfig {
+    fn default() -> Self {
+        Self { cos_fourth: Switch::Off, vignetting: [0.0; 3], psf_growth: 0.0 }
+    }
+}
+
+impl OpticsConfig {
+    /// Steps of ρ at which the transmission is tried.
+    const STEPS: u32 = 1000;
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        for i in 0..=Self::STEPS {
+            let rho = f64::from(i) / f64::from(Self::STEPS);
+            let transmission = self.mechanical(rho * rho);
+            if !(transmission > 0.0 && transmission <= 1.0) {
+                return Err(SimError::Parameter {
+                    field: "optics.vignetting",
+                    value: format!("{:?}", self.vignetting),
+                    expected: "a transmission above 0 and at most 1 from the principal point to the corner",
+                });
+            }
+        }
+        require("optics.psf_growth", self.psf_growth, "-0.5 to 5", |v| (-0.5..=5.0).contains(&v))
+    }
+
+    /// The transmission that mechanical vignetting leaves at ρ².
+    pub(super) fn mechanical(&self, rho2: f64) -> f64 {
+        let [v1, v2, v3] = self.vignetting;
+        1.0 - rho2 * (v1 + rho2 * (v2 + rho2 * v3))
+    }
+}
+
+/// Distance from the principal point, over that of the farthest corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FieldRadius {
+    principal: PixelPoint,
+    pixel_um: [f64; 2],
+    corner2_um2: f64,
+}
+
+impl FieldRadius {
+    pub(super) fn new(camera: &Camera) -> Self {
+        let farthest = |principal: f64, count: usize| {
+            (principal + 0.5).abs().max((count as f64 - 0.5 - principal).abs())
+        };
+        let x_um = farthest(camera.principal_x_px, camera.columns) * camera.pixel_width_um;
+        let y_um = farthest(camera.principal_y_px, camera.rows) * camera.pixel_height_um;
+        Self {
+            principal: PixelPoint::new(camera.principal_x_px, camera.principal_y_px),
+            pixel_um: [camera.pixel_width_um, camera.pixel_height_um],
+            corner2_um2: x_um * x_um + y_um * y_um,
+        }
+    }
+
+    /// ρ² of a point; that of the corner for what lies farther out, where no pixel is.
+    pub(super) fn squared(&self, point: PixelPoint) -> f64 {
+        let x_um = (point.x - self.principal.x) * self.pixel_um[0];
+        let y_um = (point.y - self.principal.y) * self.pixel_um[1];
+        ((x_um * x_um + y_um * y_um) / self.corner2_um2).min(1.0)
+    }
+}

@@ -1,0 +1,83 @@
+//! A point-spread function from a file of the user's.
+//!
+//! The file holds the light on each cell of a grid finer than the pixels, without the pixels' own integration: what a
+//! program of optical design prints, or a measured image after deconvolution. A cell's centre is `1/oversampling` px
+//! from the next.
+
+use std::path::Path;
+
+use super::tabulated::Tabulated;
+use crate::SimError;
+
+/// Cells along a side.
+const CELLS: std::ops::RangeInclusive<usize> = 3..=2048;
+
+/// The shape that a file holds, normalised to unit flux, its centroid at the centre.
+///
+/// # Errors
+/// [`SimError::PsfFile`] when the file cannot be read or does not hold a matrix of numbers that are 0 or more.
+pub(super) fn sampled(path: &Path, oversampling: f64) -> Result<Tabulated, SimError> {
+    let fail = |problem: String| SimError::PsfFile { path: path.to_path_buf(), problem };
+    let text = std::fs::read_to_string(path).map_err(|error| fail(error.to_string()))?;
+    let (mut light, columns) = matrix(&text).map_err(fail)?;
+    let (mut flux, mut moment_x, mut moment_y) = (0.0, 0.0, 0.0);
+    for (j, row) in light.chunks_exact(columns).enumerate() {
+        for (i, &cell) in row.iter().enumerate() {
+            flux += cell;
+            moment_x += cell * i as f64;
+            moment_y += cell * j as f64;
+        }
+    }
+    if !(flux > 0.0 && flux.is_finite()) {
+        return Err(fail(format!("its sum is {flux}, expected more than 0")));
+    }
+    for cell in &mut light {
+        *cell /= flux;
+    }
+    let step_px = 1.0 / oversampling;
+    Ok(Tabulated::cells(
+        &light,
+        columns,
+        step_px,
+        [moment_x, moment_y].map(|moment| -moment / flux * step_px),
+    ))
+}
+
+/// The numbers row by row, and how many stand in a row.
+fn matrix(text: &str) -> Result<(Vec<f64>, usize), String> {
+    let (mut light, mut columns, mut rows) = (Vec::new(), 0, 0);
+    let lines = (1..).zip(text.strip_prefix('\u{feff}').unwrap_or(text).lines());
+    for (line, content) in lines.filter(|(_, content)| !content.trim().is_empty()) {
+        let before = light.len();
+        for (column, cell) in (1..).zip(content.split(',').map(str::trim)) {
+            match cell.parse::<f64>() {
+                Ok(value) if value >= 0.0 && value.is_finite() => light.push(value),
+                _ => {
+                    return Err(format!(
+                        "line {line}, cell {column} is `{cell}`, expected a number of 0 or more"
+                    ));
+                }
+            }
+        }
+        let found = light.len() - before;
+        if rows == 0 {
+            columns = found;
+        }
+        if found != columns || !CELLS.contains(&found) {
+            return Err(format!(
+                "line {line} has {found} cells, expected as many as the first line, {} to {}",
+                CELLS.start(),
+                CELLS.end()
+            ));
+        }
+        rows += 1;
+        if rows > *CELLS.end() {
+            break;
+        }
+    }
+    if CELLS.contains(&rows) {
+        Ok((light, columns))
+    } else {
+        Err(format!("it has {rows} rows or more, expected {} to {}", CELLS.start(), CELLS.end()))
+    }
+}
