@@ -75,6 +75,7 @@ fn frame_truth(row: &TelemetryRow, camera_from_icrs: Rotation<CameraFrame, Icrs>
         phase_deg: 90.0,
         shadow: Shadow::Sunlit,
         sunlit_fraction: 1.0,
+        target_from_icrs: None,
         target_position: None,
         target_visibility: Visibility::Invisible,
     }

@@ -1,15 +1,19 @@
 //! Truth → scene → optics → sensor → on board: one frame, in one function.
 
-use contract::{Body, CameraFrame, Direction, Frame, Icrs, PixelPoint, Rotation, Telemetry};
+use contract::{Body, CameraFrame, Direction, Frame, Icrs, PixelPoint, Rotation, Target, Telemetry};
 use hifitime::{Epoch, Unit};
+use nalgebra::Vector3;
 
 use crate::draw::ExpectedImage;
 use crate::onboard::{RoiExtractor, downlink};
-use crate::optics::{ImagePoint, Psf, Stamp, trail};
-use crate::scene::{CameraMotion, Source};
+use crate::optics::{ImagePoint, Projection, Psf, Stamp, trail};
+use crate::scene::{Appearance, CameraMotion, Lighting, Source};
 use crate::sensor::{FlatLaws, RawImage, Switch};
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, shadow};
 use crate::{SimError, Simulator};
+
+/// Points that the image of a source is made of, at most: its body's and those of its trail, multiplied.
+const POINTS: usize = 1 << 18;
 
 /// One frame with all that belongs to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +38,9 @@ pub struct SimulatedCamera<'a> {
     raw: RawImage,
     regions: Option<RoiExtractor>,
     sources: Vec<Source>,
+    /// The target's body in the middle of the exposure.
+    body: Vec<ImagePoint>,
+    trail: Vec<ImagePoint>,
     points: Vec<ImagePoint>,
     stamps: Vec<Stamp>,
 }
@@ -47,9 +54,20 @@ struct Moment {
     line_of_sight: Direction<Icrs>,
     sunlit_fraction: f64,
     phase_rad: f64,
-    /// The target, and where its image is; `None` behind the camera.
+    /// The target, and where the origin of its body frame is in the image; `None` behind the camera.
     target: Source,
     target_position: Option<PixelPoint>,
+    target_from_icrs: Option<Rotation<Target, Icrs>>,
+    appearance: Appearance,
+}
+
+impl Moment {
+    /// Where a point of the target's body frame, m, is in the image: each point in its own direction.
+    fn place_of(&self, point_m: &Vector3<f64>, projection: &Projection) -> Option<PixelPoint> {
+        let turned_m = self.target_from_icrs.map_or(*point_m, |turn| turn.inverse().rotate(point_m));
+        let from_chaser_km = self.states.line_of_sight_km() + turned_m / 1000.0;
+        projection.project(&(self.camera_from_icrs * Direction::from_vector(from_chaser_km).ok()?))
+    }
 }
 
 impl<'a> SimulatedCamera<'a> {
@@ -64,6 +82,8 @@ impl<'a> SimulatedCamera<'a> {
             raw: simulator.sensor.new_raw(),
             regions,
             sources: Vec::new(),
+            body: Vec::new(),
+            trail: Vec::new(),
             points: Vec::new(),
             stamps: Vec::new(),
         })
@@ -95,7 +115,7 @@ impl<'a> SimulatedCamera<'a> {
             self.psf.margin_px(),
             &mut self.sources,
         );
-        let mut objects = self.draw(number, exposure_s);
+        let mut objects = self.draw(&moment, number, exposure_s);
         let charge = simulator.sensor.collect(&mut self.image, exposure_s);
         simulator.sensor.read_out(&charge, &simulator.seed, number, &mut self.laws, &mut self.raw)?;
         let windows = self.regions.as_mut().map(|regions| regions.extract(&self.raw));
@@ -120,6 +140,7 @@ impl<'a> SimulatedCamera<'a> {
             phase_deg: moment.phase_rad.to_degrees(),
             shadow: shadow::classify(moment.sunlit_fraction),
             sunlit_fraction: moment.sunlit_fraction,
+            target_from_icrs: moment.target_from_icrs,
             target_position: moment.target_position,
             target_visibility: Visibility::of_snr(
                 objects
@@ -156,19 +177,15 @@ impl<'a> SimulatedCamera<'a> {
         let line_of_sight_km = states.line_of_sight_km();
         let line_of_sight = Direction::from_vector(line_of_sight_km)?;
         let earth_to_sun_km = states.chaser.position_km + observer.sun_km();
-        let target_to_sun_km = earth_to_sun_km - states.target.position_km;
         let sunlit_fraction = shadow::sunlit_fraction(&states.target.position_km, &earth_to_sun_km);
-        let target_to_chaser_km = -line_of_sight_km;
-        let phase_rad = libm::atan2(
-            target_to_sun_km.cross(&target_to_chaser_km).norm(),
-            target_to_sun_km.dot(&target_to_chaser_km),
-        );
-        let magnitude = simulator.target.magnitude(
-            states.range_km(),
-            target_to_sun_km.norm(),
-            phase_rad,
+        let lighting = Lighting {
+            chaser_km: -line_of_sight_km,
+            sun_km: earth_to_sun_km - states.target.position_km,
             sunlit_fraction,
-        );
+        };
+        let target_from_icrs = simulator.target.attitude(&states);
+        let appearance = simulator.target.appearance(&lighting, target_from_icrs);
+        let magnitude = appearance.magnitude();
         // The target moves with the chaser: light time cancels aberration, so it is seen where it is.
         let target_position = simulator.projection.project(&(camera_from_icrs * line_of_sight));
         let target = Source {
@@ -178,8 +195,8 @@ impl<'a> SimulatedCamera<'a> {
             ends: [target_position.unwrap_or_default(); 2],
             astrometric: Some(line_of_sight),
             // In the umbra there is no light, and no magnitude.
-            magnitude: magnitude.is_finite().then_some(magnitude),
-            electrons_per_s: simulator.radiometry.sunlit(magnitude),
+            magnitude,
+            electrons_per_s: magnitude.map_or(0.0, |m| simulator.radiometry.sunlit(m)),
         };
         Ok(Moment {
             states,
@@ -188,9 +205,11 @@ impl<'a> SimulatedCamera<'a> {
             camera_from_icrs,
             line_of_sight,
             sunlit_fraction,
-            phase_rad,
+            phase_rad: lighting.phase_rad(),
             target,
             target_position,
+            target_from_icrs,
+            appearance,
         })
     }
 
@@ -224,18 +243,22 @@ impl<'a> SimulatedCamera<'a> {
         let moment = self.moment(time - simulator.shutter.lag_s() * Unit::Second, number)?;
         let (columns, rows) = simulator.projection.detector();
         let target = moment.target_position.filter(|position| position.is_on_detector(columns, rows));
+        // A body that spans pixels has a lower peak than a point of its light.
+        let peak_share = self.psf.peak_share();
+        let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
+        let spread = moment.appearance.peak_share(&place, peak_share) / peak_share;
         let brightest = simulator.stars.brightest(
             &moment.observer,
             moment.camera_from_icrs,
             &simulator.projection,
-            target.map_or(0.0, |_| moment.target.electrons_per_s),
+            target.map_or(0.0, |_| moment.target.electrons_per_s * spread),
         );
-        let peak = (brightest > 0.0).then(|| brightest * self.psf.peak_share());
+        let peak = (brightest > 0.0).then(|| brightest * peak_share);
         Ok(simulator.shutter.exposure_s(peak))
     }
 
     /// Draws the expected image, keeps a stamp of every object that has light on the detector, and tells its truth.
-    fn draw(&mut self, number: u64, exposure_s: f64) -> Vec<ObjectTruth> {
+    fn draw(&mut self, moment: &Moment, number: u64, exposure_s: f64) -> Vec<ObjectTruth> {
         let simulator = self.simulator;
         let sensor = &simulator.sensor;
         let flat_e = sensor.flat_electrons(exposure_s);
@@ -264,9 +287,17 @@ impl<'a> SimulatedCamera<'a> {
                 // The sensor itself collects it; here it is only described.
                 stamp.set_pixel(source.position.x as usize, source.position.y as usize, electrons);
             } else {
-                self.points.clear();
                 let [begin, end] = source.ends;
-                trail(begin, source.position, end, &mut self.points);
+                self.trail.clear();
+                trail(begin, source.position, end, &mut self.trail);
+                self.body.clear();
+                if source.kind == ObjectKind::Target {
+                    let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
+                    moment.appearance.image(&place, POINTS / self.trail.len(), &mut self.body);
+                } else {
+                    self.body.push(ImagePoint { position: source.position, share: 1.0 });
+                }
+                carry_along(&self.body, source.position, &self.trail, &mut self.points);
                 self.psf.stamp_extended(&self.points, electrons, Psf::FLOOR_E, detector, stamp);
                 self.image.add(stamp);
             }
@@ -288,5 +319,18 @@ impl<'a> SimulatedCamera<'a> {
             }
         }
         objects
+    }
+}
+
+/// The points of an image that moves as a whole: each point of the `body` along the `trail` that `centre` makes.
+fn carry_along(body: &[ImagePoint], centre: PixelPoint, trail: &[ImagePoint], points: &mut Vec<ImagePoint>) {
+    points.clear();
+    for along in trail {
+        points.extend(body.iter().map(|point| {
+            // From the trail outwards: a point at the centre is on it to the bit.
+            let (dx, dy) = (point.position.x - centre.x, point.position.y - centre.y);
+            let position = PixelPoint::new(along.position.x + dx, along.position.y + dy);
+            ImagePoint { position, share: along.share * point.share }
+        }));
     }
 }

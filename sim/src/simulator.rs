@@ -9,7 +9,7 @@ use crate::catalog::{Catalog, CatalogConfig};
 use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
 use crate::optics::{Projection, Psf, PsfConfig, Radiometry, RadiometryConfig};
 use crate::randomness::Seed;
-use crate::scene::{StarField, TargetConfig};
+use crate::scene::{Spacecraft, StarField, TargetConfig};
 use crate::sensor::{Sensor, SensorConfig};
 use crate::truth::{
     Attitude, AttitudeConfig, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig, Observer, OrbitConfig,
@@ -66,7 +66,7 @@ pub struct Simulator {
     pub(crate) shutter: Shutter,
     pub(crate) roi: Option<RoiConfig>,
     pub(crate) seed: Seed,
-    pub(crate) target: TargetConfig,
+    pub(crate) target: Spacecraft,
     pub(crate) radiometry: Radiometry,
 }
 
@@ -78,7 +78,7 @@ impl Simulator {
     pub fn new(simulation: &Simulation, folder: &Path) -> Result<Self, SimError> {
         let seed = Seed { seed: simulation.seed, case: 0 };
         let radiometry = Radiometry::new(&simulation.radiometry)?;
-        simulation.target.check()?;
+        let target = Spacecraft::new(&simulation.target)?;
         // Before the shutter, which takes the sensor's saturation for granted.
         simulation.sensor.check()?;
         let trajectory = Trajectory::new(&simulation.orbit)?;
@@ -106,7 +106,7 @@ impl Simulator {
             shutter,
             roi: simulation.roi.clone(),
             seed,
-            target: simulation.target.clone(),
+            target,
             radiometry,
         })
     }

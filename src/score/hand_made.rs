@@ -49,6 +49,7 @@ fn looking(frame: u64, camera_from_icrs: Rotation<CameraFrame, Icrs>) -> FrameTr
         phase_deg: 60.0,
         shadow: Shadow::Sunlit,
         sunlit_fraction: 1.0,
+        target_from_icrs: None,
         target_position: Some(CENTRE),
         target_visibility: Visibility::Detectable,
     }

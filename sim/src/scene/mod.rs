@@ -3,7 +3,7 @@
 mod spacecraft;
 mod star_field;
 
-pub use spacecraft::TargetConfig;
+pub use spacecraft::{Appearance, BoxConfig, Lighting, PlateConfig, Spacecraft, SurfaceConfig, TargetConfig};
 pub use star_field::StarField;
 
 use contract::{Angle, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
@@ -39,7 +39,8 @@ pub struct Source {
     pub kind: ObjectKind,
     /// Number within its kind.
     pub id: u32,
-    /// Where it is in the middle of the exposure; may lie off the detector by as much as its image reaches.
+    /// Where it is in the middle of the exposure; may lie off the detector by as much as its image reaches. Of the target:
+    /// where the origin of its body frame is.
     pub position: PixelPoint,
     /// Where it is at the begin and at the end of the exposure.
     pub ends: [PixelPoint; 2],

@@ -15,6 +15,7 @@ mod relative;
 mod schedule;
 pub mod shadow;
 mod table;
+mod target_attitude;
 mod trajectory;
 
 pub use apparent::{Observer, StarMotion, aberrate, deflect, unaberrate};
@@ -30,4 +31,5 @@ pub use orbit::{
 pub use relative::RelativeElements;
 pub use schedule::{GroupConfig, MAX_FRAMES, Schedule, Sequence};
 pub use table::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
+pub use target_attitude::TargetAttitudeConfig;
 pub use trajectory::{OrbitConfig, States, Trajectory};

@@ -1,6 +1,6 @@
 //! The truth table: one row a frame, one row an object in a frame.
 
-use contract::{Body, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
+use contract::{Body, CameraFrame, Direction, Icrs, PixelPoint, Rotation, Target};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
@@ -86,7 +86,7 @@ pub struct FrameTruth {
     pub position_km: Vector3<f64>,
     /// Velocity of the chaser about the Earth, km/s, ICRS axes.
     pub velocity_km_s: Vector3<f64>,
-    /// Geometric line of sight to the target.
+    /// Geometric line of sight to the target: to the origin of its body frame.
     pub line_of_sight: Direction<Icrs>,
     /// Distance to the target, km.
     pub range_km: f64,
@@ -98,7 +98,10 @@ pub struct FrameTruth {
     pub shadow: Shadow,
     /// Fraction of the Sun's disk seen from the target, in [0, 1].
     pub sunlit_fraction: f64,
-    /// Where the target's image is; `None` behind the camera. It may lie off the detector.
+    /// True attitude of the target's body; `None` for a target without one.
+    pub target_from_icrs: Option<Rotation<Target, Icrs>>,
+    /// Where the line of sight meets the image; `None` behind the camera. It may lie off the detector. The centre of
+    /// brightness of a body is elsewhere, towards its sunlit side: [`ObjectTruth::position`] of the target has it.
     pub target_position: Option<PixelPoint>,
     /// Visibility class of the target.
     pub target_visibility: Visibility,
