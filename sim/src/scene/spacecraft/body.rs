@@ -4,6 +4,8 @@
 //! polygons, and are subtracted as such. Neglected: the width of the Sun (a shadow cast over 1 m has a fringe of 9 mm; a
 //! glint is no narrower than `roughness`), and light that goes from plate to plate.
 
+use std::f64::consts::PI;
+
 use nalgebra::{Vector2, Vector3};
 
 use super::plate::Plate;
@@ -115,21 +117,37 @@ impl LitBody {
         }
     }
 
-    /// The brightest facet's share of the light, per square pixel of the image.
-    pub(super) fn peak_share_per_px2(
+    /// An estimate of the share of the light that falls in the brightest pixel, when `psf_share` of a point's does: each facet
+    /// adds what it sends into a pixel, not more than its area allows, to its neighbours as a Gaussian of that peak
+    /// would.
+    pub(super) fn peak_share(
         &self,
         project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>,
+        psf_share: f64,
     ) -> Option<f64> {
         let total = self.flux_ratio();
-        let densities = self.facets.iter().filter_map(|facet| {
-            let corners: Option<Polygon> = facet
-                .outline
+        let peaks: Vec<(Vector2<f64>, f64)> = self
+            .facets
+            .iter()
+            .filter_map(|facet| {
+                let corners: Option<Polygon> = facet
+                    .outline
+                    .iter()
+                    .map(|corner| project(&facet.plate.at(corner)).map(|at| Vector2::new(at.x, at.y)))
+                    .collect();
+                let corners = corners?;
+                let middle = corners.iter().sum::<Vector2<f64>>() / corners.len() as f64;
+                let density = (1.0 / signed_area(&corners).abs()).min(psf_share);
+                Some((middle, self.facet_flux(facet) / total * density))
+            })
+            .collect();
+        let around = |at: &Vector2<f64>| {
+            peaks
                 .iter()
-                .map(|corner| project(&facet.plate.at(corner)).map(|at| Vector2::new(at.x, at.y)))
-                .collect();
-            Some(self.facet_flux(facet) / total / signed_area(&corners?).abs())
-        });
-        densities.reduce(f64::max)
+                .map(|(other, peak)| peak * libm::exp(-PI * psf_share * (other - at).norm_squared()))
+                .sum::<f64>()
+        };
+        peaks.iter().map(|(at, _)| around(at)).reduce(f64::max)
     }
 
     fn facet_flux(&self, facet: &Facet) -> f64 {

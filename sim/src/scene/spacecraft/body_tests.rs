@@ -326,14 +326,37 @@ fn the_centre_of_brightness_is_on_the_sunlit_side() {
 
 #[test]
 fn a_large_image_has_a_lower_peak_than_a_point_and_a_small_one_the_same() {
-    let faces = [plate([0.0, 0.0], 0.0, [1.0, 1.0], GREY, None)];
-    let share = |range_m: f64| {
-        let eye_m = Vector3::z() * range_m;
-        let lit = LitBody::new(&faces, eye_m, tilted(30.0));
-        lit.peak_share_per_px2(&pinhole(eye_m, 1000.0)).unwrap()
+    let cube = BoxConfig { centre_m: [0.0; 3], size_m: [1.0; 3], surface: GREY }.plates().unwrap();
+    let share = |range_m: f64, eye: Vector3<f64>| {
+        let eye_m = eye * range_m;
+        let lit = LitBody::new(&cube, eye_m, unit(0.3, 0.2, 1.0));
+        lit.peak_share(&pinhole(eye_m, 1000.0), 0.2).unwrap()
     };
-    assert!((share(100.0) - 0.01).abs() < 1e-6, "10 × 10 px");
-    assert!(share(10_000.0) > 50.0);
+    // A square metre seen from a distance of 99.5 m: 10.05 × 10.05 px.
+    assert!((share(100.0, Vector3::z()) - 0.0099).abs() < 1e-4);
+    // Three faces, and 0.05 px between their middles.
+    assert!((share(10_000.0, unit(1.0, 1.0, 1.0)) - 0.2).abs() < 1e-3);
+}
+
+#[test]
+fn the_penumbra_dims_a_body_in_proportion() {
+    let config: TargetConfig =
+        toml::from_str("kind = \"plates\"\n[[boxes]]\nsize_m = [1, 2, 3]\nsurface = { diffuse = 0.3 }")
+            .unwrap();
+    let light = |sunlit_fraction: f64| {
+        let lighting = Lighting {
+            chaser_km: Vector3::new(3.0, 4.0, 5.0),
+            sun_km: Vector3::new(1.0, 0.2, 0.1) * 1.5e8,
+            sunlit_fraction,
+        };
+        Spacecraft::new(&config).unwrap().appearance(&lighting, Some(Rotation::identity())).magnitude()
+    };
+    let full = light(1.0).unwrap();
+    for fraction in [0.9, 0.5, 1e-6] {
+        let expected = full - 2.5 * libm::log10(fraction);
+        assert!((light(fraction).unwrap() - expected).abs() < 1e-12);
+    }
+    assert_eq!(light(0.0), None);
 }
 
 #[test]

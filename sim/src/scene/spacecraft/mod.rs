@@ -210,13 +210,9 @@ impl Appearance {
         }
     }
 
-    /// An estimate of the share of its light that falls in its brightest pixel, when `psf_share` of a point's does: no
-    /// more than what a square pixel of its brightest facet sends.
+    /// An estimate of the share of its light that falls in its brightest pixel, when `psf_share` of a point's does.
     pub fn peak_share(&self, project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>, psf_share: f64) -> f64 {
-        self.lit
-            .as_ref()
-            .and_then(|lit| lit.peak_share_per_px2(project))
-            .map_or(psf_share, |s| s.min(psf_share))
+        self.lit.as_ref().and_then(|lit| lit.peak_share(project, psf_share)).unwrap_or(psf_share)
     }
 }
 
