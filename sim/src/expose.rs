@@ -7,9 +7,9 @@ use nalgebra::Vector3;
 use crate::draw::ExpectedImage;
 use crate::onboard::{RoiExtractor, downlink};
 use crate::optics::{ImagePoint, Projection, Psf, Stamp, trail};
-use crate::scene::{Appearance, CameraMotion, Lighting, Source};
+use crate::scene::{Appearance, CameraMotion, Lighting, Source, planets};
 use crate::sensor::{FlatLaws, RawImage, Switch};
-use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, shadow};
+use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, clock, shadow};
 use crate::{SimError, Simulator};
 
 /// Points that the image of a source is made of, at most: its body's and those of its trail, multiplied.
@@ -24,7 +24,7 @@ pub struct Exposure {
     pub telemetry: Telemetry,
     /// The truth about the frame.
     pub truth: FrameTruth,
-    /// The truth about every object in it: the target, then stars, then hot pixels, each by number.
+    /// The truth about every object in it: the target, then stars, planets and hot pixels, each by number.
     pub objects: Vec<ObjectTruth>,
 }
 
@@ -115,6 +115,17 @@ impl<'a> SimulatedCamera<'a> {
             self.psf.margin_px(),
             &mut self.sources,
         );
+        if simulator.planets == Switch::On {
+            planets::look(
+                clock::tdb_j2000_s(time),
+                &moment.observer,
+                &camera,
+                &simulator.projection,
+                &simulator.radiometry,
+                self.psf.margin_px(),
+                &mut self.sources,
+            );
+        }
         let mut objects = self.draw(&moment, number, exposure_s);
         let charge = simulator.sensor.collect(&mut self.image, exposure_s);
         simulator.sensor.read_out(&charge, &simulator.seed, number, &mut self.laws, &mut self.raw)?;
@@ -240,20 +251,31 @@ impl<'a> SimulatedCamera<'a> {
     /// was a lag before the exposure.
     fn exposure_s(&self, time: Epoch, number: u64) -> Result<f64, SimError> {
         let simulator = self.simulator;
-        let moment = self.moment(time - simulator.shutter.lag_s() * Unit::Second, number)?;
+        let time = time - simulator.shutter.lag_s() * Unit::Second;
+        let moment = self.moment(time, number)?;
         let (columns, rows) = simulator.projection.detector();
         let target = moment.target_position.filter(|position| position.is_on_detector(columns, rows));
         // A body that spans pixels has a lower peak than a point of its light.
         let peak_share = self.psf.peak_share();
         let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
         let spread = moment.appearance.peak_share(&place, peak_share) / peak_share;
-        let brightest = simulator.stars.brightest(
+        let mut brightest = simulator.stars.brightest(
             &moment.observer,
             moment.camera_from_icrs,
             &simulator.projection,
             target.map_or(0.0, |_| moment.target.electrons_per_s * spread),
         );
-        let peak = (brightest > 0.0).then(|| brightest * peak_share);
+        if simulator.planets == Switch::On {
+            brightest = planets::brightest(
+                clock::tdb_j2000_s(time),
+                &moment.observer,
+                moment.camera_from_icrs,
+                &simulator.projection,
+                &simulator.radiometry,
+                brightest,
+            );
+        }
+        let peak = (brightest > 0.0).then_some(brightest * peak_share);
         Ok(simulator.shutter.exposure_s(peak))
     }
 

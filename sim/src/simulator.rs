@@ -10,7 +10,7 @@ use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
 use crate::optics::{Projection, Psf, PsfConfig, Radiometry, RadiometryConfig};
 use crate::randomness::Seed;
 use crate::scene::{Spacecraft, StarField, TargetConfig};
-use crate::sensor::{Sensor, SensorConfig};
+use crate::sensor::{Sensor, SensorConfig, Switch};
 use crate::truth::{
     Attitude, AttitudeConfig, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig, Observer, OrbitConfig,
     Schedule, Trajectory,
@@ -48,6 +48,8 @@ pub struct Simulation {
     pub roi: Option<RoiConfig>,
     /// The target as a source of light.
     pub target: TargetConfig,
+    /// Whether planets are in the field.
+    pub planets: Switch,
 }
 
 /// A simulation that was checked and prepared; shared by all threads.
@@ -67,6 +69,7 @@ pub struct Simulator {
     pub(crate) roi: Option<RoiConfig>,
     pub(crate) seed: Seed,
     pub(crate) target: Spacecraft,
+    pub(crate) planets: Switch,
     pub(crate) radiometry: Radiometry,
 }
 
@@ -107,6 +110,7 @@ impl Simulator {
             roi: simulation.roi.clone(),
             seed,
             target,
+            planets: simulation.planets,
             radiometry,
         })
     }

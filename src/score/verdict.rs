@@ -47,6 +47,8 @@ pub enum Verdict {
 pub enum Taken {
     /// The star of this number in the catalogue.
     Star(u32),
+    /// The planet of this number, 1 to 8.
+    Planet(u32),
     /// The hot pixel of this number: row × columns + column.
     HotPixel(u32),
     /// Nothing of the truth is there: noise, or a place of its own making.
@@ -58,15 +60,16 @@ impl Taken {
     pub fn code(self) -> &'static str {
         match self {
             Self::Star(_) => "star",
+            Self::Planet(_) => "planet",
             Self::HotPixel(_) => "hot_pixel",
             Self::Nothing => "nothing",
         }
     }
 
-    /// The number of the star or hot pixel.
+    /// The number of the star, planet or hot pixel.
     pub fn id(self) -> Option<u32> {
         match self {
-            Self::Star(id) | Self::HotPixel(id) => Some(id),
+            Self::Star(id) | Self::Planet(id) | Self::HotPixel(id) => Some(id),
             Self::Nothing => None,
         }
     }
@@ -234,6 +237,7 @@ fn chosen(position: PixelPoint, objects: &[ObjectTruth]) -> Chosen<'_> {
 fn taken(object: &ObjectTruth) -> Taken {
     match object.kind {
         ObjectKind::Star => Taken::Star(object.id),
+        ObjectKind::Planet => Taken::Planet(object.id),
         ObjectKind::HotPixel => Taken::HotPixel(object.id),
         ObjectKind::Target => Taken::Nothing,
     }

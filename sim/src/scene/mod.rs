@@ -1,5 +1,6 @@
-//! What is in the field: stars and the target, as sources with a place and a rate of electrons.
+//! What is in the field: stars, planets and the target, as sources with a place and a rate of electrons.
 
+pub(crate) mod planets;
 mod spacecraft;
 mod star_field;
 
@@ -8,6 +9,7 @@ pub use star_field::StarField;
 
 use contract::{Angle, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
 
+use crate::optics::Projection;
 use crate::truth::ObjectKind;
 
 /// Where the camera looks during an exposure.
@@ -29,6 +31,14 @@ impl CameraMotion {
     pub fn reach(&self) -> Angle {
         let [begin, end] = self.ends.map(|end| end.angle_to(&self.middle));
         if begin.radians() > end.radians() { begin } else { end }
+    }
+
+    /// How far that moves the image of a far object, px, at most.
+    pub(crate) fn reach_px(&self, projection: &Projection) -> f64 {
+        let (x_px_per_rad, y_px_per_rad) = projection.plate_scale_px_per_rad();
+        // Towards the corners of a wide field a turn moves a star by more than the plate scale on the axis says.
+        let widening = 1.0 / libm::cos(projection.half_diagonal().radians()).max(0.1);
+        self.reach().radians() * x_px_per_rad.max(y_px_per_rad) * widening * widening
     }
 }
 

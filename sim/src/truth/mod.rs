@@ -11,6 +11,7 @@ mod knowledge;
 mod manoeuvre;
 mod mounting;
 mod orbit;
+mod planets;
 mod relative;
 mod schedule;
 pub mod shadow;
@@ -28,6 +29,7 @@ pub use mounting::MountingConfig;
 pub use orbit::{
     EARTH_GM_KM3_S2, EARTH_J2, EARTH_RADIUS_KM, Elements, ElementsConfig, Rtn, SecularRates, State,
 };
+pub use planets::{Planet, PlanetSight};
 pub use relative::RelativeElements;
 pub use schedule::{GroupConfig, MAX_FRAMES, Schedule, Sequence};
 pub use table::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};

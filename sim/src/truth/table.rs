@@ -114,6 +114,8 @@ pub enum ObjectKind {
     Target,
     /// A star of the catalogue; `id` is its number there.
     Star,
+    /// A planet; `id` is its number from the Sun outwards, 1 to 8.
+    Planet,
     /// A hot pixel; `id` is row × columns + column.
     HotPixel,
 }
@@ -124,13 +126,14 @@ impl ObjectKind {
         match self {
             Self::Target => "target",
             Self::Star => "star",
+            Self::Planet => "planet",
             Self::HotPixel => "hot_pixel",
         }
     }
 
     /// Reads [`ObjectKind::code`].
     pub fn parse(code: &str) -> Option<Self> {
-        [Self::Target, Self::Star, Self::HotPixel].into_iter().find(|kind| kind.code() == code)
+        [Self::Target, Self::Star, Self::Planet, Self::HotPixel].into_iter().find(|kind| kind.code() == code)
     }
 }
 
