@@ -60,20 +60,21 @@ fn directions_and_distances_are_those_of_de421_to_minutes_of_arc() {
     let references = references();
     assert_eq!(references.len(), 350);
     let mut worst = [0.0_f64; 9];
+    let mut worst_distance = [0.0_f64; 9];
     for Reference { tdb_j2000_s, planet, direction, distance_au } in references {
         let observer = Observer::new(epoch(tdb_j2000_s), Vector3::zeros(), Vector3::zeros()).unwrap();
         let sight = planet.seen(tdb_j2000_s, &observer).unwrap();
         let error_arcmin = sight.astrometric.separation(&direction).arcsec() / 60.0;
         let number = planet.number() as usize;
         worst[number] = worst[number].max(error_arcmin);
-        // 1.5 million km of Saturn's 1400 are stated, and seen.
-        assert!((sight.distance_au / distance_au - 1.0).abs() < 2e-3, "{planet:?}: {}", sight.distance_au);
+        let distance = (sight.distance_au / distance_au - 1.0).abs();
+        worst_distance[number] = worst_distance[number].max(distance);
     }
     // What Standish and Williams state, from the Earth; see golden/manifest.toml.
-    println!("{worst:?}");
-    for (number, bound) in [(1, 2.5), (2, 2.5), (4, 2.5), (5, 9.0), (6, 13.0), (7, 2.0), (8, 2.0)] {
+    for (number, bound) in [(1, 0.3), (2, 0.6), (4, 2.5), (5, 9.0), (6, 13.0), (7, 2.5), (8, 1.5)] {
         assert!(worst[number] < bound, "planet {number}: {worst:?}");
     }
+    assert!(worst_distance.iter().all(|error| *error < 3e-3), "{worst_distance:?}");
     // Bounds that mean something: the worst comes near them.
     assert!(worst[5] > 1.0 && worst[6] > 1.0, "{worst:?}");
 }

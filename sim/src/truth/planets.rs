@@ -1,8 +1,8 @@
 //! The planets: where they are, and how bright.
 //!
 //! Places from Keplerian elements that drift linearly: Standish & Williams, Keplerian Elements for Approximate Positions of the
-//! Major Planets (JPL, Table 1, 1800 to 2050). Against DE421 the direction from the Earth errs by up to 1.5′ (Mercury to
-//! Mars), 9′ (Jupiter), 13′ (Saturn) and 2′ (Uranus, Neptune); see `golden/planets`. Image and truth share the error: the
+//! Major Planets (JPL, Table 1, 1800 to 2050). Against DE421 the direction from the Earth errs by up to 0.3′ (Mercury, Venus),
+//! 1.5′ (Mars), 7.4′ (Jupiter), 10.4′ (Saturn), 1.9′ (Uranus) and 1′ (Neptune); see `golden/planets`. Image and truth share the error: the
 //! planet is drawn where the truth says.
 //!
 //! Magnitudes by Mallama & Hilton 2018, Astron. Comput. 25, 10 (the Astronomical Almanac's), without the terms of rotation
