@@ -15,6 +15,10 @@ pub enum Icrs {}
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Body {}
 
+/// The body frame of the target spacecraft.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {}
+
 /// The camera frame: z along the boresight, x along increasing column, y along increasing row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CameraFrame {}

@@ -21,7 +21,7 @@ mod telemetry;
 
 pub use angle::Angle;
 pub use camera::{Camera, Mounting};
-pub use direction::{Body, CameraFrame, Direction, Icrs};
+pub use direction::{Body, CameraFrame, Direction, Icrs, Target};
 pub use error::ContractError;
 pub use frame::{Frame, Window};
 pub use measurement::{AttitudeSource, Cluster, Label, Measurement, NoSolution, Outcome, Solution};

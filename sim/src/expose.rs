@@ -1,16 +1,19 @@
 //! Truth → scene → optics → sensor → on board: one frame, in one function.
 
-use contract::{Body, CameraFrame, Direction, Frame, Icrs, PixelPoint, Rotation, Telemetry};
+use contract::{Body, CameraFrame, Direction, Frame, Icrs, PixelPoint, Rotation, Target, Telemetry};
 use hifitime::{Epoch, Unit};
+use nalgebra::Vector3;
 
 use crate::draw::ExpectedImage;
 use crate::onboard::{RoiExtractor, downlink};
-use crate::optics::{ImagePoint, Psf, Stamp, trail};
-use crate::scene::{BackgroundField, CameraMotion, Source};
+use crate::optics::{self, ImagePoint, Projection, Psf, Stamp};
+use crate::scene::{Appearance, BackgroundField, CameraMotion, Lighting, Source, planets};
 use crate::sensor::{FlatLaws, Opening, RawImage, Switch, Track};
-use crate::truth::clock;
-use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, shadow};
+use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, clock, shadow};
 use crate::{SimError, Simulator};
+
+/// Points that the image of a source is made of, at most: its body's and those of its trail, multiplied.
+const POINTS: usize = 1 << 18;
 
 /// One frame with all that belongs to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,8 +24,8 @@ pub struct Exposure {
     pub telemetry: Telemetry,
     /// The truth about the frame.
     pub truth: FrameTruth,
-    /// The truth about every object in it: the target, then stars, then hot pixels, then tracks
-    /// of particles, each by number.
+    /// The truth about every object in it: the target, then stars, planets, hot pixels and tracks of particles, each by
+    /// number.
     pub objects: Vec<ObjectTruth>,
 }
 
@@ -36,6 +39,9 @@ pub struct SimulatedCamera<'a> {
     raw: RawImage,
     regions: Option<RoiExtractor>,
     sources: Vec<Source>,
+    /// The target's body in the middle of the exposure.
+    body: Vec<ImagePoint>,
+    trail: Vec<ImagePoint>,
     points: Vec<ImagePoint>,
     /// Background of the scene, electrons a second, pixel by pixel.
     field: Vec<f64>,
@@ -53,9 +59,20 @@ struct Moment {
     line_of_sight: Direction<Icrs>,
     sunlit_fraction: f64,
     phase_rad: f64,
-    /// The target, and where its image is; `None` behind the camera.
+    /// The target, and where the origin of its body frame is in the image; `None` behind the camera.
     target: Source,
     target_position: Option<PixelPoint>,
+    target_from_icrs: Option<Rotation<Target, Icrs>>,
+    appearance: Appearance,
+}
+
+impl Moment {
+    /// Where a point of the target's body frame, m, is in the image: each point in its own direction.
+    fn place_of(&self, point_m: &Vector3<f64>, projection: &Projection) -> Option<PixelPoint> {
+        let turned_m = self.target_from_icrs.map_or(*point_m, |turn| turn.inverse().rotate(point_m));
+        let from_chaser_km = self.states.line_of_sight_km() + turned_m / 1000.0;
+        projection.project(&(self.camera_from_icrs * Direction::from_vector(from_chaser_km).ok()?))
+    }
 }
 
 impl<'a> SimulatedCamera<'a> {
@@ -70,6 +87,8 @@ impl<'a> SimulatedCamera<'a> {
             raw: simulator.sensor.new_raw(),
             regions,
             sources: Vec::new(),
+            body: Vec::new(),
+            trail: Vec::new(),
             points: Vec::new(),
             field: Vec::new(),
             stamps: Vec::new(),
@@ -103,6 +122,17 @@ impl<'a> SimulatedCamera<'a> {
             |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
             &mut self.sources,
         );
+        if simulator.planets == Switch::On {
+            planets::look(
+                clock::tdb_j2000_s(time),
+                &moment.observer,
+                &camera,
+                &simulator.projection,
+                &simulator.radiometry,
+                |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
+                &mut self.sources,
+            );
+        }
         let background = simulator.background.as_ref().map(|background| {
             let (position_km, sun_km) = (&moment.states.chaser.position_km, &moment.observer.sun_km());
             background.field(time, position_km, sun_km, moment.camera_from_icrs)
@@ -112,7 +142,7 @@ impl<'a> SimulatedCamera<'a> {
             let rate = rays.rate_per_cm2_s(time, &moment.states.chaser.position_km);
             rays.tracks(&simulator.seed, number, exposure_s, rate)
         });
-        let mut objects = self.draw(number, &opening, background.as_ref(), &tracks)?;
+        let mut objects = self.draw(&moment, number, &opening, background.as_ref(), &tracks)?;
         let windows = self.regions.as_mut().map(|regions| regions.extract(&self.raw));
         if let Some(windows) = &windows {
             for (object, stamp) in objects.iter_mut().zip(&self.stamps) {
@@ -136,6 +166,7 @@ impl<'a> SimulatedCamera<'a> {
             shadow: shadow::classify(moment.sunlit_fraction),
             sunlit_fraction: moment.sunlit_fraction,
             background_e_per_s: background.map_or(0.0, |field| field.mean_e_per_s()),
+            target_from_icrs: moment.target_from_icrs,
             target_position: moment.target_position,
             target_visibility: Visibility::of_snr(
                 objects
@@ -172,19 +203,15 @@ impl<'a> SimulatedCamera<'a> {
         let line_of_sight_km = states.line_of_sight_km();
         let line_of_sight = Direction::from_vector(line_of_sight_km)?;
         let earth_to_sun_km = states.chaser.position_km + observer.sun_km();
-        let target_to_sun_km = earth_to_sun_km - states.target.position_km;
         let sunlit_fraction = shadow::sunlit_fraction(&states.target.position_km, &earth_to_sun_km);
-        let target_to_chaser_km = -line_of_sight_km;
-        let phase_rad = libm::atan2(
-            target_to_sun_km.cross(&target_to_chaser_km).norm(),
-            target_to_sun_km.dot(&target_to_chaser_km),
-        );
-        let magnitude = simulator.target.magnitude(
-            states.range_km(),
-            target_to_sun_km.norm(),
-            phase_rad,
+        let lighting = Lighting {
+            chaser_km: -line_of_sight_km,
+            sun_km: earth_to_sun_km - states.target.position_km,
             sunlit_fraction,
-        );
+        };
+        let target_from_icrs = simulator.target.attitude(&states);
+        let appearance = simulator.target.appearance(&lighting, target_from_icrs);
+        let magnitude = appearance.magnitude();
         // The target moves with the chaser: light time cancels aberration, so it is seen where it is.
         let target_position = simulator.projection.project(&(camera_from_icrs * line_of_sight));
         let target = Source {
@@ -194,8 +221,8 @@ impl<'a> SimulatedCamera<'a> {
             ends: [target_position.unwrap_or_default(); 2],
             astrometric: Some(line_of_sight),
             // In the umbra there is no light, and no magnitude.
-            magnitude: magnitude.is_finite().then_some(magnitude),
-            electrons_per_s: simulator.radiometry.sunlit(magnitude),
+            magnitude,
+            electrons_per_s: magnitude.map_or(0.0, |m| simulator.radiometry.sunlit(m)),
         };
         Ok(Moment {
             states,
@@ -204,9 +231,11 @@ impl<'a> SimulatedCamera<'a> {
             camera_from_icrs,
             line_of_sight,
             sunlit_fraction,
-            phase_rad,
+            phase_rad: lighting.phase_rad(),
             target,
             target_position,
+            target_from_icrs,
+            appearance,
         })
     }
 
@@ -237,16 +266,31 @@ impl<'a> SimulatedCamera<'a> {
     /// was a lag before the exposure.
     fn exposure_s(&self, time: Epoch, number: u64) -> Result<f64, SimError> {
         let simulator = self.simulator;
-        let moment = self.moment(time - simulator.shutter.lag_s() * Unit::Second, number)?;
+        let time = time - simulator.shutter.lag_s() * Unit::Second;
+        let moment = self.moment(time, number)?;
         let (columns, rows) = simulator.projection.detector();
         let target = moment.target_position.filter(|position| position.is_on_detector(columns, rows));
-        let brightest = simulator.stars.brightest(
+        // A body that spans pixels has a lower peak than a point of its light.
+        let peak_share = self.psf.peak_share();
+        let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
+        let spread = moment.appearance.peak_share(&place, peak_share) / peak_share;
+        let mut brightest = simulator.stars.brightest(
             &moment.observer,
             moment.camera_from_icrs,
             &simulator.projection,
-            target.map_or(0.0, |_| moment.target.electrons_per_s),
+            target.map_or(0.0, |_| moment.target.electrons_per_s * spread),
         );
-        let peak = (brightest > 0.0).then(|| brightest * self.psf.peak_share());
+        if simulator.planets == Switch::On {
+            brightest = planets::brightest(
+                clock::tdb_j2000_s(time),
+                &moment.observer,
+                moment.camera_from_icrs,
+                &simulator.projection,
+                &simulator.radiometry,
+                brightest,
+            );
+        }
+        let peak = (brightest > 0.0).then_some(brightest * peak_share);
         Ok(simulator.shutter.exposure_s(peak))
     }
 
@@ -254,12 +298,27 @@ impl<'a> SimulatedCamera<'a> {
     /// and tells its truth.
     fn draw(
         &mut self,
+        moment: &Moment,
         number: u64,
         opening: &Opening,
         background: Option<&BackgroundField>,
         tracks: &[Track],
     ) -> Result<Vec<ObjectTruth>, SimError> {
-        let Self { simulator, psf, image, field, laws, raw, sources, points, stamps, bloomed, .. } = self;
+        let Self {
+            simulator,
+            psf,
+            image,
+            field,
+            laws,
+            raw,
+            sources,
+            body,
+            trail,
+            points,
+            stamps,
+            bloomed,
+            ..
+        } = self;
         let sensor = &simulator.sensor;
         let (columns, rows) = image.size();
         let hot_pixels = sensor.hot_pixels();
@@ -276,9 +335,17 @@ impl<'a> SimulatedCamera<'a> {
         for (source, stamp) in sources.iter_mut().zip(lit) {
             let transmission = simulator.vignetting.transmission(source.position);
             let electrons = source.electrons_per_s * opening.exposure_s * transmission;
-            points.clear();
             let [begin, end] = source.ends;
-            trail(begin, source.position, end, points);
+            trail.clear();
+            optics::trail(begin, source.position, end, trail);
+            body.clear();
+            if source.kind == ObjectKind::Target {
+                let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
+                moment.appearance.image(&place, POINTS / trail.len(), body);
+            } else {
+                body.push(ImagePoint { position: source.position, share: 1.0 });
+            }
+            carry_along(body, source.position, trail, points);
             psf.stamp_extended(points, electrons, Psf::FLOOR_E, (columns, rows), stamp);
             source.position = stamp.centre();
             image.add(stamp);
@@ -344,5 +411,18 @@ fn of_the_detector(kind: ObjectKind, id: usize, stamp: &Stamp) -> Source {
         astrometric: None,
         magnitude: None,
         electrons_per_s: 0.0,
+    }
+}
+
+/// The points of an image that moves as a whole: each point of the `body` along the `trail` that `centre` makes.
+fn carry_along(body: &[ImagePoint], centre: PixelPoint, trail: &[ImagePoint], points: &mut Vec<ImagePoint>) {
+    points.clear();
+    for along in trail {
+        points.extend(body.iter().map(|point| {
+            // From the trail outwards: a point at the centre is on it to the bit.
+            let (dx, dy) = (point.position.x - centre.x, point.position.y - centre.y);
+            let position = PixelPoint::new(along.position.x + dx, along.position.y + dy);
+            ImagePoint { position, share: along.share * point.share }
+        }));
     }
 }

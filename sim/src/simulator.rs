@@ -9,8 +9,8 @@ use crate::catalog::{Catalog, CatalogConfig};
 use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
 use crate::optics::{OpticsConfig, Projection, Psf, PsfConfig, Radiometry, RadiometryConfig, Vignetting};
 use crate::randomness::Seed;
-use crate::scene::{Background, BackgroundConfig, StarField, TargetConfig};
-use crate::sensor::{CosmicRays, Sensor, SensorConfig};
+use crate::scene::{Background, BackgroundConfig, Spacecraft, StarField, TargetConfig};
+use crate::sensor::{CosmicRays, Sensor, SensorConfig, Switch};
 use crate::truth::{
     Attitude, AttitudeConfig, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig, Observer, OrbitConfig,
     Schedule, Trajectory,
@@ -52,6 +52,8 @@ pub struct Simulation {
     pub roi: Option<RoiConfig>,
     /// The target as a source of light.
     pub target: TargetConfig,
+    /// Whether planets are in the field.
+    pub planets: Switch,
 }
 
 /// A simulation that was checked and prepared; shared by all threads.
@@ -72,7 +74,8 @@ pub struct Simulator {
     pub(crate) shutter: Shutter,
     pub(crate) roi: Option<RoiConfig>,
     pub(crate) seed: Seed,
-    pub(crate) target: TargetConfig,
+    pub(crate) target: Spacecraft,
+    pub(crate) planets: Switch,
     pub(crate) radiometry: Radiometry,
     pub(crate) background: Option<Background>,
 }
@@ -85,7 +88,7 @@ impl Simulator {
     pub fn new(simulation: &Simulation, folder: &Path) -> Result<Self, SimError> {
         let seed = Seed { seed: simulation.seed, case: 0 };
         let radiometry = Radiometry::new(&simulation.radiometry)?;
-        simulation.target.check()?;
+        let target = Spacecraft::new(&simulation.target)?;
         // Before the shutter, which takes the sensor's saturation for granted.
         simulation.sensor.check()?;
         let trajectory = Trajectory::new(&simulation.orbit)?;
@@ -129,7 +132,8 @@ impl Simulator {
             shutter,
             roi: simulation.roi.clone(),
             seed,
-            target: simulation.target.clone(),
+            target,
+            planets: simulation.planets,
             radiometry,
         })
     }

@@ -159,8 +159,10 @@ fn stars_are_aberrated_and_the_target_is_not() {
 
     let line_of_sight = truth.line_of_sight.vector();
     let target = exposure.objects[0].position;
-    assert_eq!((exposure.objects[0].kind, truth.target_position), (ObjectKind::Target, Some(target)));
-    assert!(target.distance(pinhole(&simulation, truth, line_of_sight)) < 1e-9);
+    assert_eq!(exposure.objects[0].kind, ObjectKind::Target);
+    // The mean of its trail, which is bent by 1e-7 px.
+    assert!(truth.target_position.unwrap().distance(target) < 1e-6);
+    assert!(target.distance(pinhole(&simulation, truth, line_of_sight)) < 1e-6);
     let shifted = pinhole(&simulation, truth, &aberrated(line_of_sight, &velocity));
     assert!(target.distance(shifted) > 0.05, "the velocity is along the line of sight: nothing is tested");
 

@@ -18,6 +18,7 @@ type Timestamps = PrimitiveArray<TimestampNanosecondType>;
 
 const BODY: [&str; 4] = ["q_sc_j2000_w", "q_sc_j2000_x", "q_sc_j2000_y", "q_sc_j2000_z"];
 const CAMERA: [&str; 4] = ["q_cam_j2000_w", "q_cam_j2000_x", "q_cam_j2000_y", "q_cam_j2000_z"];
+const TARGET: [&str; 4] = ["q_target_j2000_w", "q_target_j2000_x", "q_target_j2000_y", "q_target_j2000_z"];
 const POSITION: [&str; 3] = ["position_x_km", "position_y_km", "position_z_km"];
 const VELOCITY: [&str; 3] = ["velocity_x_km_s", "velocity_y_km_s", "velocity_z_km_s"];
 const LINE_OF_SIGHT: [&str; 3] = ["los_j2000_x", "los_j2000_y", "los_j2000_z"];
@@ -33,6 +34,16 @@ fn optional_numbers<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> Opt
 
 fn words<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> &str) -> Column {
     Column::new(name, StringArray::from_iter_values(rows.iter().map(value)))
+}
+
+/// Numbers that stand together, one column each, all of them there or none.
+fn optional_components<R, const N: usize>(
+    rows: &[R],
+    names: [&'static str; N],
+    values: impl Fn(&R) -> Option<[f64; N]>,
+) -> impl Iterator<Item = Column> {
+    let column = |i: usize| optional_numbers(rows, names[i], |row| values(row).map(|values| values[i]));
+    (0..N).map(column).collect::<Vec<_>>().into_iter()
 }
 
 /// Numbers that stand together, one column each.
@@ -87,6 +98,7 @@ impl Row for FrameTruth {
             optional_numbers(rows, "target_y_px", |row| row.target_position.map(|p| p.y)),
             words(rows, "target_visibility", |row| row.target_visibility.code()),
         ]);
+        columns.extend(optional_components(rows, TARGET, |row| row.target_from_icrs.map(|turn| turn.wxyz())));
         columns
     }
 
@@ -102,6 +114,12 @@ impl Row for FrameTruth {
         let (line_of_sight, sun) = (columns_f64(columns, LINE_OF_SIGHT)?, columns_f64(columns, SUN)?);
         let target_x = columns.optional_f64("target_x_px")?;
         let target_y = columns.optional_f64("target_y_px")?;
+        let target = [
+            columns.optional_f64(TARGET[0])?,
+            columns.optional_f64(TARGET[1])?,
+            columns.optional_f64(TARGET[2])?,
+            columns.optional_f64(TARGET[3])?,
+        ];
         let direction = |slices: &[&[f64]; 3], name: &str, row| {
             let xyz = at(slices, row);
             unit::direction(xyz).ok_or_else(|| columns.error(row, name, format!("{xyz:?}"), unit::EXPECTED))
@@ -110,6 +128,8 @@ impl Row for FrameTruth {
         (0..columns.len())
             .map(|row| {
                 let since_1970 = Duration::from_total_nanoseconds(i128::from(time.value(row)));
+                let turned = target.iter().all(|array| array.is_valid(row));
+                let target_wxyz = turned.then(|| target.map(|array| array.value(row)));
                 let x_and_y = optional(target_x, row).zip(optional(target_y, row));
                 Ok(Self {
                     frame: frame[row],
@@ -127,6 +147,9 @@ impl Row for FrameTruth {
                     shadow: columns.word("shadow", row, Shadow::parse)?,
                     sunlit_fraction: sunlit_fraction[row],
                     background_e_per_s: background_e_per_s[row],
+                    target_from_icrs: target_wxyz
+                        .map(|wxyz| unit_quaternion(columns, wxyz, TARGET[0], row))
+                        .transpose()?,
                     target_position: x_and_y.map(|(x, y)| PixelPoint::new(x, y)),
                     target_visibility: columns.word("target_visibility", row, Visibility::parse)?,
                 })
@@ -145,7 +168,15 @@ fn rotation<To, From>(
     name: &str,
     row: usize,
 ) -> Result<Rotation<To, From>, FileError> {
-    let wxyz = at(slices, row);
+    unit_quaternion(columns, at(slices, row), name, row)
+}
+
+fn unit_quaternion<To, From>(
+    columns: &Columns<'_>,
+    wxyz: [f64; 4],
+    name: &str,
+    row: usize,
+) -> Result<Rotation<To, From>, FileError> {
     Rotation::from_wxyz(wxyz)
         .map_err(|error| columns.error(row, name, format!("{wxyz:?}"), format!("a unit quaternion: {error}")))
 }

@@ -17,7 +17,7 @@ use sim::catalog::CatalogConfig;
 use sim::onboard::{RoiConfig, ShutterConfig};
 use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use sim::scene::{BackgroundConfig, TargetConfig};
-use sim::sensor::SensorConfig;
+use sim::sensor::{SensorConfig, Switch};
 use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
 
 /// A scenario, as a TOML file holds it. Units are in the names; unknown keys are errors.
@@ -63,9 +63,16 @@ pub struct Scenario {
     pub roi: Option<RoiConfig>,
     /// The target spacecraft as a source of light.
     pub target: TargetConfig,
+    /// Whether the planets are drawn, "on" or "off" (the default). They are in no star list.
+    #[serde(default = "off")]
+    pub planets: Switch,
     /// Parameters of the pipeline `far_range`.
     #[serde(default)]
     pub far_range: FarRangeConfig,
+}
+
+fn off() -> Switch {
+    Switch::Off
 }
 
 /// The star list uploaded to the pipeline.
@@ -96,6 +103,7 @@ impl Scenario {
             shutter: self.shutter.clone(),
             roi: self.roi.clone(),
             target: self.target.clone(),
+            planets: self.planets,
         }
     }
 

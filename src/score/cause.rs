@@ -13,12 +13,12 @@ use super::belonging::{holds, merged_with, reach_px, target};
 /// 3. the reason that the pipeline itself gives: [`Cause::PipelineFailed`], [`Cause::SaturatedFrame`],
 ///    [`Cause::NoPreviousFrame`], and an empty frame as [`Cause::BelowThreshold`];
 /// 4. when the pipeline tells its clusters, the label of the one nearest to the target and within its reach of
-///    max(`radius_px`, 1.5) px; where there is none, a cluster at a star, hot pixel or track that touches the target
+///    max(`radius_px`, 1.5) px; where there is none, a cluster at a star, planet, hot pixel or track that touches the target
 ///    (distance up to the sum of the reaches), and where that is missing too, [`Cause::BelowThreshold`];
-/// 5. by the truth alone, the visible star, hot pixel or track that touches the target;
+/// 5. by the truth alone, the visible star, planet, hot pixel or track that touches the target;
 /// 6. [`Cause::Unexplained`].
 ///
-/// A wrong answer whose chosen cluster holds the target but more light of a star, hot pixel or track was merged with it.
+/// A wrong answer whose chosen cluster holds the target but more light of a star, planet, hot pixel or track was merged with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Cause {
     /// The measurements have no row for the frame.
@@ -39,6 +39,8 @@ pub enum Cause {
     NoPreviousFrame,
     /// Its image touches a visible star's: one cluster, which was taken for the star or for another place.
     MergedWithStar,
+    /// Its image touches a visible planet's: one cluster, which was taken for another place.
+    MergedWithPlanet,
     /// Its cluster was labelled as a star though no visible star touches it: a wrong identification.
     TakenForStar,
     /// Its cluster was labelled as a hotspot, or it touches a hot pixel.
@@ -57,7 +59,7 @@ pub enum Cause {
 
 impl Cause {
     /// Every cause, in the order of precedence.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::NotReported,
         Self::OutsideField,
         Self::InEclipse,
@@ -67,6 +69,7 @@ impl Cause {
         Self::SaturatedFrame,
         Self::NoPreviousFrame,
         Self::MergedWithStar,
+        Self::MergedWithPlanet,
         Self::TakenForStar,
         Self::TakenForHotspot,
         Self::MergedWithCosmicRay,
@@ -88,6 +91,7 @@ impl Cause {
             Self::SaturatedFrame => "saturated_frame",
             Self::NoPreviousFrame => "no_previous_frame",
             Self::MergedWithStar => "merged_with_star",
+            Self::MergedWithPlanet => "merged_with_planet",
             Self::TakenForStar => "taken_for_star",
             Self::TakenForHotspot => "taken_for_hotspot",
             Self::MergedWithCosmicRay => "merged_with_cosmic_ray",
@@ -107,6 +111,7 @@ impl Cause {
     pub(super) fn of_outshining(kind: ObjectKind) -> Self {
         match kind {
             ObjectKind::Star => Self::MergedWithStar,
+            ObjectKind::Planet => Self::MergedWithPlanet,
             ObjectKind::HotPixel => Self::TakenForHotspot,
             ObjectKind::CosmicRay => Self::MergedWithCosmicRay,
             ObjectKind::Target => Self::Unexplained,
@@ -176,6 +181,7 @@ fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[
     match nearest.map(|cluster| cluster.label) {
         Some(Label::Star(_)) => Some(match neighbour {
             Some(other) if other.kind == ObjectKind::Star => Cause::MergedWithStar,
+            Some(other) if other.kind == ObjectKind::Planet => Cause::MergedWithPlanet,
             _ => Cause::TakenForStar,
         }),
         Some(Label::Hotspot) => Some(Cause::TakenForHotspot),
@@ -314,6 +320,13 @@ mod tests {
         assert_eq!(of(&no_target(), &[hot, star]), Cause::MergedWithStar);
         let track = cosmic_ray_at(0, right_of_target(1.0), 900.0);
         assert_eq!(of(&no_target(), &[track]), Cause::MergedWithCosmicRay);
+    }
+
+    #[test]
+    fn a_planet_at_the_target_is_a_merger_of_its_own() {
+        let planet = ObjectTruth { kind: ObjectKind::Planet, ..star_at(5, right_of_target(2.0), 5000.0) };
+        assert_eq!(of(&no_target(), std::slice::from_ref(&planet)), Cause::MergedWithPlanet);
+        assert_eq!(of(&labelled(Label::Star(5)), &[planet]), Cause::MergedWithPlanet);
     }
 
     #[test]

@@ -47,6 +47,8 @@ pub enum Verdict {
 pub enum Taken {
     /// The star of this number in the catalogue.
     Star(u32),
+    /// The planet of this number, 1 to 8.
+    Planet(u32),
     /// The hot pixel of this number: row × columns + column.
     HotPixel(u32),
     /// The track of this number in the frame.
@@ -60,16 +62,17 @@ impl Taken {
     pub fn code(self) -> &'static str {
         match self {
             Self::Star(_) => "star",
+            Self::Planet(_) => "planet",
             Self::HotPixel(_) => "hot_pixel",
             Self::CosmicRay(_) => "cosmic_ray",
             Self::Nothing => "nothing",
         }
     }
 
-    /// The number of the star, hot pixel or track.
+    /// The number of the star, planet, hot pixel or track.
     pub fn id(self) -> Option<u32> {
         match self {
-            Self::Star(id) | Self::HotPixel(id) | Self::CosmicRay(id) => Some(id),
+            Self::Star(id) | Self::Planet(id) | Self::HotPixel(id) | Self::CosmicRay(id) => Some(id),
             Self::Nothing => None,
         }
     }
@@ -237,6 +240,7 @@ fn chosen(position: PixelPoint, objects: &[ObjectTruth]) -> Chosen<'_> {
 fn taken(object: &ObjectTruth) -> Taken {
     match object.kind {
         ObjectKind::Star => Taken::Star(object.id),
+        ObjectKind::Planet => Taken::Planet(object.id),
         ObjectKind::HotPixel => Taken::HotPixel(object.id),
         ObjectKind::CosmicRay => Taken::CosmicRay(object.id),
         ObjectKind::Target => Taken::Nothing,

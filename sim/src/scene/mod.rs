@@ -1,15 +1,17 @@
-//! What is in the field: stars and the target, as sources with a place and a rate of electrons.
+//! What is in the field: stars, planets and the target, as sources with a place and a rate of electrons.
 
 mod background;
+pub(crate) mod planets;
 mod spacecraft;
 mod star_field;
 
 pub use background::{Background, BackgroundConfig, BackgroundField, EarthLightConfig, StrayLightConfig};
-pub use spacecraft::TargetConfig;
+pub use spacecraft::{Appearance, BoxConfig, Lighting, PlateConfig, Spacecraft, SurfaceConfig, TargetConfig};
 pub use star_field::StarField;
 
 use contract::{Angle, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
 
+use crate::optics::Projection;
 use crate::truth::ObjectKind;
 
 /// Where the camera looks during an exposure.
@@ -32,6 +34,14 @@ impl CameraMotion {
         let [begin, end] = self.ends.map(|end| end.angle_to(&self.middle));
         if begin.radians() > end.radians() { begin } else { end }
     }
+
+    /// How far that moves the image of a far object, px, at most.
+    pub(crate) fn reach_px(&self, projection: &Projection) -> f64 {
+        let (x_px_per_rad, y_px_per_rad) = projection.plate_scale_px_per_rad();
+        // Towards the corners of a wide field a turn moves a star by more than the plate scale on the axis says.
+        let widening = 1.0 / libm::cos(projection.half_diagonal().radians()).max(0.1);
+        self.reach().radians() * x_px_per_rad.max(y_px_per_rad) * widening * widening
+    }
 }
 
 /// A point-like source of electrons on the detector.
@@ -41,7 +51,8 @@ pub struct Source {
     pub kind: ObjectKind,
     /// Number within its kind.
     pub id: u32,
-    /// Where it is in the middle of the exposure; may lie off the detector by as much as its image reaches.
+    /// Where it is in the middle of the exposure; may lie off the detector by as much as its image reaches. Of the target:
+    /// where the origin of its body frame is.
     pub position: PixelPoint,
     /// Where it is at the begin and at the end of the exposure.
     pub ends: [PixelPoint; 2],

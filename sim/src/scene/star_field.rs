@@ -56,10 +56,7 @@ impl StarField {
         reach_px: impl Fn(f64) -> f64,
         sources: &mut Vec<Source>,
     ) {
-        let (x_px_per_rad, y_px_per_rad) = projection.plate_scale_px_per_rad();
-        // Towards the corners of a wide field a turn moves a star by more than the plate scale on the axis says.
-        let widening = 1.0 / libm::cos(projection.half_diagonal().radians()).max(0.1);
-        let motion_px = camera.reach().radians() * x_px_per_rad.max(y_px_per_rad) * widening * widening;
+        let motion_px = camera.reach_px(projection);
         let margin_px = reach_px(self.brightest_e_per_s) + motion_px;
         for star in self.around(camera.middle, projection, margin_px) {
             let apparent = observer.apparent(&star.motion);
@@ -117,7 +114,8 @@ impl StarField {
     }
 }
 
-fn is_within(position: PixelPoint, projection: &Projection, margin_px: f64) -> bool {
+/// Whether a place is on the detector, or no farther than `margin_px` off its border along either axis.
+pub(super) fn is_within(position: PixelPoint, projection: &Projection, margin_px: f64) -> bool {
     let (columns, rows) = projection.detector();
     let inside = |v: f64, n: usize| v >= -0.5 - margin_px && v <= n as f64 - 0.5 + margin_px;
     inside(position.x, columns) && inside(position.y, rows)

@@ -14,10 +14,12 @@ mod manoeuvre;
 pub mod moon;
 mod mounting;
 mod orbit;
+mod planets;
 mod relative;
 mod schedule;
 pub mod shadow;
 mod table;
+mod target_attitude;
 mod trajectory;
 
 pub use apparent::{Observer, StarMotion, aberrate, deflect, unaberrate};
@@ -31,7 +33,9 @@ pub use mounting::MountingConfig;
 pub use orbit::{
     EARTH_GM_KM3_S2, EARTH_J2, EARTH_RADIUS_KM, Elements, ElementsConfig, Rtn, SecularRates, State,
 };
+pub use planets::{Planet, PlanetSight};
 pub use relative::RelativeElements;
 pub use schedule::{GroupConfig, MAX_FRAMES, Schedule, Sequence};
 pub use table::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
+pub use target_attitude::TargetAttitudeConfig;
 pub use trajectory::{OrbitConfig, States, Trajectory};

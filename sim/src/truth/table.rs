@@ -1,6 +1,6 @@
 //! The truth table: one row a frame, one row an object in a frame.
 
-use contract::{Body, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
+use contract::{Body, CameraFrame, Direction, Icrs, PixelPoint, Rotation, Target};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
@@ -86,7 +86,7 @@ pub struct FrameTruth {
     pub position_km: Vector3<f64>,
     /// Velocity of the chaser about the Earth, km/s, ICRS axes.
     pub velocity_km_s: Vector3<f64>,
-    /// Geometric line of sight to the target.
+    /// Geometric line of sight to the target: to the origin of its body frame.
     pub line_of_sight: Direction<Icrs>,
     /// Distance to the target, km.
     pub range_km: f64,
@@ -101,7 +101,10 @@ pub struct FrameTruth {
     /// Photo-electrons a second and pixel of zodiacal light, faint stars and stray light, the mean over the detector; without
     /// the constant of the sensor.
     pub background_e_per_s: f64,
-    /// Where the target's image is; `None` behind the camera. It may lie off the detector.
+    /// True attitude of the target's body; `None` for a target without one.
+    pub target_from_icrs: Option<Rotation<Target, Icrs>>,
+    /// Where the line of sight meets the image; `None` behind the camera. It may lie off the detector. The centre of
+    /// brightness of a body is elsewhere, towards its sunlit side: [`ObjectTruth::position`] of the target has it.
     pub target_position: Option<PixelPoint>,
     /// Visibility class of the target.
     pub target_visibility: Visibility,
@@ -114,6 +117,8 @@ pub enum ObjectKind {
     Target,
     /// A star of the catalogue; `id` is its number there.
     Star,
+    /// A planet; `id` is its number from the Sun outwards, 1 to 8.
+    Planet,
     /// A hot pixel; `id` is row × columns + column.
     HotPixel,
     /// The track of a charged particle; `id` counts those of the frame from 0.
@@ -126,6 +131,7 @@ impl ObjectKind {
         match self {
             Self::Target => "target",
             Self::Star => "star",
+            Self::Planet => "planet",
             Self::HotPixel => "hot_pixel",
             Self::CosmicRay => "cosmic_ray",
         }
@@ -133,7 +139,7 @@ impl ObjectKind {
 
     /// Reads [`ObjectKind::code`].
     pub fn parse(code: &str) -> Option<Self> {
-        [Self::Target, Self::Star, Self::HotPixel, Self::CosmicRay]
+        [Self::Target, Self::Star, Self::Planet, Self::HotPixel, Self::CosmicRay]
             .into_iter()
             .find(|kind| kind.code() == code)
     }

@@ -1,0 +1,55 @@
+//! The planets in the field.
+
+use contract::{CameraFrame, Icrs, Rotation};
+
+use super::star_field::is_within;
+use super::{CameraMotion, Source};
+use crate::optics::{Projection, Radiometry};
+use crate::truth::{ObjectKind, Observer, Planet};
+
+/// Appends the planets whose image comes onto the detector during the exposure, from the Sun outwards, as points: the
+/// largest, Venus near conjunction, spans 1′. `tdb_j2000_s` is the time of the observer, `reach_px` tells how far an image
+/// reaches, px, for photo-electrons a second.
+pub(crate) fn look(
+    tdb_j2000_s: f64,
+    observer: &Observer,
+    camera: &CameraMotion,
+    projection: &Projection,
+    radiometry: &Radiometry,
+    reach_px: impl Fn(f64) -> f64,
+    sources: &mut Vec<Source>,
+) {
+    for planet in Planet::ALL {
+        let Some(sight) = planet.seen(tdb_j2000_s, observer) else { continue };
+        let apparent = observer.apparent_of(sight.astrometric);
+        let electrons_per_s = radiometry.star(sight.magnitude, Some(planet.b_v()), None);
+        if let Some(position) = projection.project(&(camera.middle * apparent))
+            && is_within(position, projection, reach_px(electrons_per_s) + camera.reach_px(projection))
+        {
+            sources.push(Source {
+                kind: ObjectKind::Planet,
+                id: planet.number(),
+                position,
+                ends: camera.ends.map(|end| projection.project(&(end * apparent)).unwrap_or(position)),
+                astrometric: Some(sight.astrometric),
+                magnitude: Some(sight.magnitude),
+                electrons_per_s,
+            });
+        }
+    }
+}
+
+/// Electrons per second of the brightest planet on the detector, or `at_least` when that is more.
+pub(crate) fn brightest(
+    tdb_j2000_s: f64,
+    observer: &Observer,
+    camera_from_icrs: Rotation<CameraFrame, Icrs>,
+    projection: &Projection,
+    radiometry: &Radiometry,
+    at_least: f64,
+) -> f64 {
+    let mut seen = Vec::new();
+    let camera = CameraMotion::still(camera_from_icrs);
+    look(tdb_j2000_s, observer, &camera, projection, radiometry, |_| 0.0, &mut seen);
+    seen.iter().map(|planet| planet.electrons_per_s).fold(at_least, f64::max)
+}

@@ -1,0 +1,327 @@
+//! The target spacecraft as a source of light.
+
+mod body;
+mod plate;
+mod polygon;
+mod surface;
+
+#[cfg(test)]
+mod body_tests;
+
+pub use plate::{BoxConfig, PlateConfig};
+pub use surface::SurfaceConfig;
+
+use contract::{Icrs, PixelPoint, Rotation, Target};
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::optics::{ImagePoint, SUN_V_MAG_AT_1_AU};
+use crate::truth::{States, TargetAttitudeConfig};
+use body::LitBody;
+use plate::Plate;
+
+/// Kilometres in an astronomical unit (IAU 2012 Resolution B2, exact).
+const AU_KM: f64 = 149_597_870.7;
+
+/// Plates that a body may have, those of boxes included: each is held against each.
+const MAX_PLATES: usize = 200;
+
+/// The target as the sensor sees it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum TargetConfig {
+    /// A point of constant brightness, whatever the phase angle and the shadow: a beacon.
+    Beacon {
+        /// Visual magnitude at a distance of 1 km; it fades with the square of the distance.
+        magnitude_at_1_km: f64,
+    },
+    /// A diffusely reflecting sphere in sunlight (Lambert's phase law), drawn as a point at its centre.
+    LambertSphere {
+        /// Radius, m, positive.
+        radius_m: f64,
+        /// Diffuse reflectance (Lambert albedo) in V, 0 to 1.
+        albedo: f64,
+    },
+    /// A body of flat plates in sunlight, with an attitude of its own: its brightness and its centre of brightness move
+    /// with the phase angle, and it is drawn resolved. One plate at least, 200 at most, a box counting six.
+    Plates {
+        /// How its body frame is turned; without it along R, T, N of its orbit.
+        #[serde(default)]
+        attitude: TargetAttitudeConfig,
+        /// Boxes along the axes of the body frame.
+        #[serde(default)]
+        boxes: Vec<BoxConfig>,
+        /// Single plates, solar panels for instance.
+        #[serde(default)]
+        plates: Vec<PlateConfig>,
+    },
+}
+
+impl TargetConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        Spacecraft::new(self).map(|_| ())
+    }
+}
+
+/// Where target, chaser and Sun are, and how much of the Sun's disk shines on the target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lighting {
+    /// From the target to the chaser, km, ICRS axes.
+    pub chaser_km: Vector3<f64>,
+    /// From the target to the Sun, km, ICRS axes.
+    pub sun_km: Vector3<f64>,
+    /// Fraction of the Sun's disk seen from the target, 0 to 1.
+    pub sunlit_fraction: f64,
+}
+
+impl Lighting {
+    /// Angle Sun–target–chaser, rad.
+    pub fn phase_rad(&self) -> f64 {
+        libm::atan2(self.sun_km.cross(&self.chaser_km).norm(), self.sun_km.dot(&self.chaser_km))
+    }
+
+    /// V magnitude of a body that sends the chaser this share of the irradiance that the Sun would give it unshaded.
+    /// Infinite when no light comes from it.
+    fn magnitude(&self, flux_ratio: f64) -> f64 {
+        let sun_au = self.sun_km.norm() / AU_KM;
+        SUN_V_MAG_AT_1_AU - 2.5 * libm::log10(flux_ratio * self.sunlit_fraction / (sun_au * sun_au))
+    }
+}
+
+/// A target, checked and prepared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spacecraft {
+    model: Model,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Model {
+    Beacon { magnitude_at_1_km: f64 },
+    Sphere { radius_m: f64, albedo: f64 },
+    Plates { attitude: TargetAttitudeConfig, plates: Vec<Plate> },
+}
+
+impl Spacecraft {
+    /// Checks and prepares a target.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first number outside its range.
+    pub fn new(config: &TargetConfig) -> Result<Self, SimError> {
+        let model = match config {
+            &TargetConfig::Beacon { magnitude_at_1_km } => {
+                require("target.magnitude_at_1_km", magnitude_at_1_km, "-30 to 30", |m| {
+                    (-30.0..=30.0).contains(&m)
+                })?;
+                Model::Beacon { magnitude_at_1_km }
+            }
+            &TargetConfig::LambertSphere { radius_m, albedo } => {
+                require("target.radius_m", radius_m, "greater than 0, at most 1000", |r| {
+                    r > 0.0 && r <= 1000.0
+                })?;
+                require("target.albedo", albedo, "0 to 1", |a| (0.0..=1.0).contains(&a))?;
+                Model::Sphere { radius_m, albedo }
+            }
+            TargetConfig::Plates { attitude, boxes, plates } => {
+                attitude.check()?;
+                let mut all = Vec::with_capacity(6 * boxes.len() + plates.len());
+                for (i, config) in boxes.iter().enumerate() {
+                    all.extend(config.plates().map_err(|error| error.in_entry(i))?);
+                }
+                for (i, config) in plates.iter().enumerate() {
+                    all.push(config.plate().map_err(|error| error.in_entry(i))?);
+                }
+                require("target.plates", all.len() as f64, "1 to 200, a box counting six", |n| {
+                    n >= 1.0 && n <= MAX_PLATES as f64
+                })?;
+                Model::Plates { attitude: attitude.clone(), plates: all }
+            }
+        };
+        Ok(Self { model })
+    }
+
+    /// The attitude of its body frame; `None` for a target that looks the same from all sides.
+    pub fn attitude(&self, states: &States) -> Option<Rotation<Target, Icrs>> {
+        match &self.model {
+            Model::Beacon { .. } | Model::Sphere { .. } => None,
+            Model::Plates { attitude, .. } => Some(attitude.target_from_icrs(states)),
+        }
+    }
+
+    /// How it looks, turned by `target_from_icrs` (which points of light do not heed).
+    pub fn appearance(
+        &self,
+        lighting: &Lighting,
+        target_from_icrs: Option<Rotation<Target, Icrs>>,
+    ) -> Appearance {
+        let range_km = lighting.chaser_km.norm();
+        match &self.model {
+            Model::Beacon { magnitude_at_1_km } => {
+                Appearance { magnitude: magnitude_at_1_km + 5.0 * libm::log10(range_km), lit: None }
+            }
+            Model::Sphere { radius_m, albedo } => {
+                let ratio = radius_m / (range_km * 1000.0);
+                let flux_ratio = 2.0 / 3.0 * albedo * lambert_phase(lighting.phase_rad()) * ratio * ratio;
+                Appearance { magnitude: lighting.magnitude(flux_ratio), lit: None }
+            }
+            Model::Plates { plates, .. } => {
+                let turn = target_from_icrs.unwrap_or_else(Rotation::identity);
+                let sun = turn.rotate(&lighting.sun_km).normalize();
+                let lit = LitBody::new(plates, turn.rotate(&lighting.chaser_km) * 1000.0, sun);
+                Appearance { magnitude: lighting.magnitude(lit.flux_ratio()), lit: Some(lit) }
+            }
+        }
+    }
+}
+
+/// How the target looks at one moment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Appearance {
+    magnitude: f64,
+    /// `None` for a point at the origin of the body frame.
+    lit: Option<LitBody>,
+}
+
+impl Appearance {
+    /// V magnitude; `None` when no light comes from it.
+    pub fn magnitude(&self) -> Option<f64> {
+        self.magnitude.is_finite().then_some(self.magnitude)
+    }
+
+    /// Appends the points of its undisturbed image, some `count_limit` at most, their shares adding up to 1 as far as
+    /// `project` (from the body frame, m, to the image) has a place for them.
+    pub fn image(
+        &self,
+        project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>,
+        count_limit: usize,
+        points: &mut Vec<ImagePoint>,
+    ) {
+        match &self.lit {
+            Some(lit) => lit.image(project, count_limit, points),
+            None => {
+                points.extend(project(&Vector3::zeros()).map(|position| ImagePoint { position, share: 1.0 }));
+            }
+        }
+    }
+
+    /// An estimate of the share of its light that falls in its brightest pixel, when `psf_share` of a point's does.
+    pub fn peak_share(&self, project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>, psf_share: f64) -> f64 {
+        self.lit.as_ref().and_then(|lit| lit.peak_share(project, psf_share)).unwrap_or(psf_share)
+    }
+}
+
+/// Phase law of a Lambert sphere, 1 at full phase, 0 at π: (sin α + (π − α) cos α)/π (Russell 1916, ApJ 43, 173).
+fn lambert_phase(phase_rad: f64) -> f64 {
+    let (sin, cos) = libm::sincos(phase_rad);
+    ((sin + (std::f64::consts::PI - phase_rad) * cos) / std::f64::consts::PI).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPHERE: TargetConfig = TargetConfig::LambertSphere { radius_m: 1.0, albedo: 0.9 };
+
+    /// The magnitude of a target without an attitude.
+    fn magnitude(
+        config: &TargetConfig,
+        range_km: f64,
+        sun_distance_km: f64,
+        phase_rad: f64,
+        sunlit_fraction: f64,
+    ) -> f64 {
+        let (sin, cos) = libm::sincos(phase_rad);
+        let lighting = Lighting {
+            chaser_km: Vector3::x() * range_km,
+            sun_km: Vector3::new(cos, sin, 0.0) * sun_distance_km,
+            sunlit_fraction,
+        };
+        Spacecraft::new(config).unwrap().appearance(&lighting, None).magnitude
+    }
+
+    #[test]
+    fn the_phase_law_has_its_known_values() {
+        assert_eq!(lambert_phase(0.0), 1.0);
+        assert!((lambert_phase(std::f64::consts::FRAC_PI_2) - 1.0 / std::f64::consts::PI).abs() < 1e-15);
+        assert!(lambert_phase(std::f64::consts::PI) < 1e-15);
+    }
+
+    /// All light that a Lambert sphere takes up and reflects: the integral of the phase law over all directions
+    /// times the geometric albedo 2/3 must give the Bond albedo 1: 2 ∫ Φ sin α dα = 3/2.
+    #[test]
+    fn a_white_sphere_reflects_all_that_it_receives() {
+        let n = 10_000;
+        let step = std::f64::consts::PI / n as f64;
+        let integral: f64 = (0..n)
+            .map(|i| {
+                let alpha = (i as f64 + 0.5) * step;
+                lambert_phase(alpha) * libm::sin(alpha) * step
+            })
+            .sum();
+        // Midpoint rule: error of order step² = 1e-7.
+        assert!((2.0 * integral - 1.5).abs() < 1e-6, "{integral}");
+    }
+
+    #[test]
+    fn ten_times_the_distance_is_five_magnitudes() {
+        let near = magnitude(&SPHERE, 3.0, AU_KM, 1.0, 1.0);
+        let far = magnitude(&SPHERE, 30.0, AU_KM, 1.0, 1.0);
+        assert!((far - near - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn half_the_sun_is_three_quarters_of_a_magnitude() {
+        let lit = magnitude(&SPHERE, 3.0, AU_KM, 1.0, 1.0);
+        let half = magnitude(&SPHERE, 3.0, AU_KM, 1.0, 0.5);
+        assert!((half - lit - 2.5 * libm::log10(2.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn in_umbra_no_light_comes() {
+        assert_eq!(magnitude(&SPHERE, 3.0, AU_KM, 1.0, 0.0), f64::INFINITY);
+    }
+
+    #[test]
+    fn a_beacon_fades_with_distance_and_knows_no_sun() {
+        let beacon = TargetConfig::Beacon { magnitude_at_1_km: 2.0 };
+        assert_eq!(magnitude(&beacon, 1.0, AU_KM, 0.0, 1.0), 2.0);
+        assert_eq!(magnitude(&beacon, 10.0, AU_KM, 3.0, 0.0), 7.0);
+    }
+
+    /// A white sphere of 1 m at 1 km, full phase, at 1 au: −26.76 − 2.5 log10(2/3 · 1e-6) = −11.32.
+    #[test]
+    fn a_sphere_has_the_magnitude_of_its_closed_form() {
+        let white = TargetConfig::LambertSphere { radius_m: 1.0, albedo: 1.0 };
+        assert!((magnitude(&white, 1.0, AU_KM, 0.0, 1.0) + 11.3198).abs() < 1e-4);
+        // Twice as far from the Sun it is a quarter as bright.
+        let far = magnitude(&white, 1.0, 2.0 * AU_KM, 0.0, 1.0) - magnitude(&white, 1.0, AU_KM, 0.0, 1.0);
+        assert!((far - 5.0 * libm::log10(2.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_black_sphere_and_a_new_one_give_no_light() {
+        let black = TargetConfig::LambertSphere { radius_m: 1.0, albedo: 0.0 };
+        assert_eq!(magnitude(&black, 1.0, AU_KM, 0.0, 1.0), f64::INFINITY);
+        // Φ(π) is 4e-17, not 0: fainter than anything all the same.
+        assert!(magnitude(&SPHERE, 1.0, AU_KM, std::f64::consts::PI, 1.0) > 25.0);
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_named() {
+        let message = |config: TargetConfig| config.check().unwrap_err().to_string();
+        assert!(
+            message(TargetConfig::LambertSphere { radius_m: 0.0, albedo: 0.5 })
+                .contains("target.radius_m is 0")
+        );
+        assert!(
+            message(TargetConfig::LambertSphere { radius_m: 1.0, albedo: 1.1 }).contains("target.albedo")
+        );
+        assert!(message(TargetConfig::Beacon { magnitude_at_1_km: f64::NAN }).contains("magnitude_at_1_km"));
+    }
+}

@@ -1,0 +1,159 @@
+//! Flat plates and boxes of them: the shape of the target, in metres in its body frame.
+
+use nalgebra::{Vector2, Vector3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::polygon::Polygon;
+use super::surface::SurfaceConfig;
+use crate::SimError;
+use crate::error::require;
+
+/// Farthest from the origin and largest that a part may be, m.
+const FARTHEST_M: f64 = 200.0;
+
+/// A rectangular plate without thickness. It is opaque from both sides.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlateConfig {
+    /// Its centre in the target's body frame, m, each −200 to 200.
+    pub centre_m: [f64; 3],
+    /// Direction out of its front, body frame, of any length but 0.
+    pub normal: [f64; 3],
+    /// Direction of its height, body frame, of any length but 0, not along the normal; its part along the normal is taken
+    /// away.
+    pub up: [f64; 3],
+    /// Extent across `up`, m, above 0, at most 200.
+    pub width_m: f64,
+    /// Extent along `up`, m, above 0, at most 200.
+    pub height_m: f64,
+    /// Reflectance of its front.
+    pub front: SurfaceConfig,
+    /// Reflectance of its back; absent: black.
+    #[serde(default)]
+    pub back: Option<SurfaceConfig>,
+}
+
+/// A box with its edges along the axes of the body frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BoxConfig {
+    /// Its centre in the target's body frame, m, each −200 to 200.
+    #[serde(default)]
+    pub centre_m: [f64; 3],
+    /// Extent along x, y and z, m, each above 0, at most 200.
+    pub size_m: [f64; 3],
+    /// Reflectance of its six faces, outside.
+    pub surface: SurfaceConfig,
+}
+
+/// A plate, checked: `right`, `up` and `normal` are orthonormal and right-handed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Plate {
+    pub centre: Vector3<f64>,
+    pub right: Vector3<f64>,
+    pub up: Vector3<f64>,
+    pub normal: Vector3<f64>,
+    pub half_width: f64,
+    pub half_height: f64,
+    pub front: SurfaceConfig,
+    pub back: Option<SurfaceConfig>,
+}
+
+fn check_places(field: &'static str, places: [f64; 3]) -> Result<(), SimError> {
+    places.into_iter().try_for_each(|place| require(field, place, "-200 to 200", |p| p.abs() <= FARTHEST_M))
+}
+
+fn check_size(field: &'static str, size: f64) -> Result<(), SimError> {
+    require(field, size, "greater than 0, at most 200", |s| s > 0.0 && s <= FARTHEST_M)
+}
+
+impl PlateConfig {
+    /// The plate.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first number outside its range.
+    pub(super) fn plate(&self) -> Result<Plate, SimError> {
+        check_places("target.plates[].centre_m", self.centre_m)?;
+        check_size("target.plates[].width_m", self.width_m)?;
+        check_size("target.plates[].height_m", self.height_m)?;
+        self.front.check()?;
+        self.back.map_or(Ok(()), |back| back.check())?;
+        let unit = |vector: Vector3<f64>| {
+            vector.iter().all(|component| component.is_finite()).then(|| vector.try_normalize(1e-9)).flatten()
+        };
+        let none = |field, value: [f64; 3], expected| SimError::Parameter {
+            field,
+            value: format!("{value:?}"),
+            expected,
+        };
+        let normal = unit(self.normal.into())
+            .ok_or_else(|| none("target.plates[].normal", self.normal, "a vector that is not 0"))?;
+        let up =
+            unit(self.up.into()).and_then(|up| unit(up - normal * normal.dot(&up))).ok_or_else(|| {
+                none("target.plates[].up", self.up, "a vector that is not 0 and not along the normal")
+            })?;
+        Ok(Plate {
+            centre: self.centre_m.into(),
+            right: up.cross(&normal),
+            up,
+            normal,
+            half_width: 0.5 * self.width_m,
+            half_height: 0.5 * self.height_m,
+            front: self.front,
+            back: self.back,
+        })
+    }
+}
+
+impl BoxConfig {
+    /// Its six faces.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first number outside its range.
+    pub(super) fn plates(&self) -> Result<[Plate; 6], SimError> {
+        check_places("target.boxes[].centre_m", self.centre_m)?;
+        self.size_m.into_iter().try_for_each(|size| check_size("target.boxes[].size_m", size))?;
+        self.surface.check()?;
+        let face = |axis: usize, side: f64| {
+            let unit = |axis: usize| Vector3::ith(axis % 3, 1.0);
+            let (normal, up) = (unit(axis) * side, unit(axis + 2));
+            Plate {
+                centre: Vector3::from(self.centre_m) + normal * (0.5 * self.size_m[axis]),
+                right: up.cross(&normal),
+                up,
+                normal,
+                half_width: 0.5 * self.size_m[(axis + 1) % 3],
+                half_height: 0.5 * self.size_m[(axis + 2) % 3],
+                front: self.surface,
+                back: None,
+            }
+        };
+        Ok([face(0, 1.0), face(0, -1.0), face(1, 1.0), face(1, -1.0), face(2, 1.0), face(2, -1.0)])
+    }
+}
+
+impl Plate {
+    /// Its other side: the front surface is the back's.
+    pub(super) fn turned(&self, front: SurfaceConfig) -> Self {
+        Self { right: -self.right, normal: -self.normal, front, back: Some(self.front), ..*self }
+    }
+
+    /// Its outline in its own plane, right and up from the centre.
+    pub(super) fn outline(&self) -> Polygon {
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(i, j)| Vector2::new(i * self.half_width, j * self.half_height))
+            .to_vec()
+    }
+
+    /// A point of its plane in the body frame.
+    pub(super) fn at(&self, point: &Vector2<f64>) -> Vector3<f64> {
+        self.centre + self.right * point.x + self.up * point.y
+    }
+
+    /// A point of the body frame along its axes: right, up and height above its front.
+    pub(super) fn local(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        let offset = point - self.centre;
+        Vector3::new(offset.dot(&self.right), offset.dot(&self.up), offset.dot(&self.normal))
+    }
+}
