@@ -43,8 +43,7 @@ TABLE_2 = {
 
 # The free parameters, twelve at most: path in the scenario, range, scale. Everything else in argon.toml is fixed.
 PARAMETERS = [
-    ("target.albedo", 0.1, 0.6, "log"),
-    ("psf.sigma_px", 0.55, 1.1, "lin"),
+    ("target.boxes.0.surface.diffuse", 0.08, 0.6, "log"),
     ("psf.halo_fraction", 0.005, 0.2, "log"),
     ("sensor.full_well_e", 3e4, 2e5, "log"),
     ("shutter.target_level", 1.0, 60.0, "log"),
@@ -61,14 +60,14 @@ PARAMETERS = [
 def lookup(scenario, path):
     value = scenario
     for key in path.split("."):
-        value = value[key]
+        value = value[int(key) if isinstance(value, list) else key]
     return value[0] if isinstance(value, list) else value
 
 
 def put(scenario, path, value):
     *tables, last = path.split(".")
     for key in tables:
-        scenario = scenario.setdefault(key, {})
+        scenario = scenario[int(key) if isinstance(scenario, list) else key]
     # A vector over the body's axes has one value for all three.
     scenario[last] = [value] * 3 if isinstance(scenario.get(last), list) else value
 
@@ -87,6 +86,10 @@ def from_unit(unit, low, high, scale):
     return round(value) if scale == "int" else value
 
 
+# Frames before each block that are not counted: the pipeline learns which pixels are hot.
+WARM_UP = 20
+
+
 def in_blocks(scenario, blocks, length):
     """The scenario with `blocks` stretches of `length` frames of each day instead of the whole of it."""
     from datetime import datetime, timedelta
@@ -95,15 +98,26 @@ def in_blocks(scenario, blocks, length):
     for day in scenario["schedule"]:
         start = datetime.fromisoformat(day["start_utc"])
         for block in range(blocks):
-            first = round((day["count"] - length) * (block + 0.5) / blocks)
-            at = start + timedelta(seconds=day["cadence_s"] * first)
-            schedule.append({
-                "name": f"{day['name']}, block {block + 1}",
-                "start_utc": at.strftime("%Y-%m-%dT%H:%M:%S.%fZ"),
-                "cadence_s": day["cadence_s"],
-                "count": length,
-            })
+            first = round((day["count"] - WARM_UP - length) * (block + 0.5) / blocks)
+            for name, offset, count in [("warm-up", 0, WARM_UP), (day["name"], WARM_UP, length)]:
+                at = start + timedelta(seconds=day["cadence_s"] * (first + offset))
+                schedule.append({
+                    "name": f"{name}, {day['name']}, block {block + 1}",
+                    "start_utc": at.strftime("%Y-%m-%dT%H:%M:%S.%fZ"),
+                    "cadence_s": day["cadence_s"],
+                    "count": count,
+                })
     return {**scenario, "schedule": schedule}
+
+
+def quicker(scenario):
+    """The scenario without what gives every pixel a mean of its own (a fixed pattern of a percent, a smooth background of
+    some electrons): it multiplies the time of a frame and moves no cell of the table by more than its noise."""
+    trial = copy.deepcopy(scenario)
+    trial["sensor"].pop("fixed_pattern", None)
+    if trial.pop("background", None):
+        trial["sensor"]["background_e_per_s"] = 25.0  # its mean
+    return trial
 
 
 def run(scenario, boresight, jobs):
@@ -137,7 +151,7 @@ def differences(rates, days):
 def loss(rates, days):
     difference = np.abs(differences(rates, days))
     # The worst cell counts too: the aim is a mean of 3 and none above 10.
-    return difference.mean() + 0.1 * difference.max()
+    return difference.mean() + 0.2 * difference.max()
 
 
 def show_table(rates, out=sys.stdout):
@@ -173,7 +187,7 @@ def main():
     import cma
 
     seen = [day for day in range(1, 6) if day != options.leave_out]
-    blocks = in_blocks(scenario, options.blocks, options.length)
+    blocks = in_blocks(quicker(scenario), options.blocks, options.length)
     best = math.inf
 
     def evaluate(units):
