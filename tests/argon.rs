@@ -37,6 +37,13 @@ fn score(bench: &Bench, run: &str, stretch: Stretch, change: impl FnOnce(&mut to
     bench.boresight(&format!("run {file} --out {run} --json")).done().json()
 }
 
+/// Without hot pixels and particles: a target found on one of them is as wrong in both angles, and hides what is cut.
+fn without_false_targets(scenario: &mut toml::Table) {
+    let sensor = scenario["sensor"].as_table_mut().unwrap();
+    sensor.remove("hot_pixels").unwrap();
+    sensor.remove("cosmic_rays").unwrap();
+}
+
 /// A figure of the days 1 to 5.
 fn by_day(score: &Value, name: &str) -> [f64; 5] {
     std::array::from_fn(|day| figure(&score["groups"][format!("day {}", day + 1)], name))
@@ -46,14 +53,14 @@ fn by_day(score: &Value, name: &str) -> [f64; 5] {
 #[test]
 fn the_regions_of_interest_and_nothing_else_spoil_the_declination_of_the_last_days() {
     let bench = Bench::new();
-    let flown = score(&bench, "flown", AS_FLOWN, |_| {});
+    let flown = score(&bench, "flown", AS_FLOWN, without_false_targets);
     let whole = score(&bench, "whole", AS_FLOWN, |scenario| {
+        without_false_targets(scenario);
         scenario.remove("roi").unwrap();
     });
     let lost = |score: &Value| -> [f64; 5] {
         let (ra, dec) = (by_day(score, "ra_within_1px"), by_day(score, "dec_within_1px"));
-        // On day 1 the hot pixels of the longest exposures win until they are learnt; both angles suffer alike.
-        assert!(ra[1..].iter().all(|rate| *rate > 0.7), "{ra:?}");
+        assert!(ra.iter().all(|rate| *rate > 0.7), "{ra:?}");
         std::array::from_fn(|day| ra[day] - dec[day])
     };
     // 60 frames a day: a difference of two rates near 0.85 is known to 0.065, the effect is 0.7.

@@ -130,7 +130,7 @@ mod scenarios {
             ("sigma_px = 0.8", "sigma_px = nan", ["psf.sigma_px", "is NaN, expected"]),
             ("cadence_s = 15.0", "cadence_s = 0.0", ["schedule[0].cadence_s", "is 0, expected"]),
             ("eccentricity = 0.003", "eccentricity = 1.5", ["orbit.target.eccentricity", "is 1.5, expected"]),
-            ("albedo = 0.3", "albedo = 1.3", ["target.albedo", "is 1.3, expected"]),
+            ("radius_m = 0.4", "radius_m = -0.4", ["target.radius_m", "is -0.4, expected"]),
             ("lag_s = 30.0", "lag_s = -30.0", ["shutter.lag_s", "is -30, expected"]),
             ("min_s = 0.001", "min_s = 0.0", ["shutter.min_s", "is 0, expected"]),
             ("latency_s = 0.0", "latency_s = inf", ["knowledge.latency_s", "is inf, expected"]),
@@ -444,7 +444,7 @@ mod cameras {
 
     #[test]
     fn a_mistake_in_the_camera_is_named() {
-        check("columns = 752", "columns = ", &["camera.toml:6:11"]);
+        check("columns = 752", "columns = ", &["camera.toml:12:11"]);
         check("focal_length_mm", "focal_length", &["`focal_length`", "did you mean `focal_length_mm`?"]);
         check(
             "focal_length_mm = 20.187",

@@ -217,9 +217,10 @@ fn the_seed_changes_every_frame_but_not_the_hot_pixels() {
     for (own, other) in telemetry("own").iter().zip(telemetry("other")) {
         assert_ne!(own.telemetry.body_from_icrs, other.telemetry.body_from_icrs, "frame {}", own.frame);
     }
-    let hot_pixels = |run| -> Vec<(u64, u32, f64)> {
+    // Which ones are high at the moment is a matter of the seed: some are telegraphs.
+    let hot_pixels = |run| -> Vec<(u64, u32)> {
         let objects = bench.objects(run).into_iter().filter(|object| object.kind == ObjectKind::HotPixel);
-        objects.map(|object| (object.frame, object.id, object.electrons)).collect()
+        objects.map(|object| (object.frame, object.id)).collect()
     };
     assert_eq!(hot_pixels("own"), hot_pixels("other"));
 }
