@@ -174,6 +174,24 @@ impl ExpectedImage {
         self.signal.iter().zip(field).map(|(signal, field)| self.flat_e + field + signal)
     }
 
+    /// Expected electrons of the pixels of a row, background included; `out` is as long as a row.
+    pub(crate) fn row(&self, y: usize, out: &mut [f64]) {
+        let pixels = y * self.columns..(y + 1) * self.columns;
+        let signal = self.signal.get(pixels.clone()).unwrap_or_default();
+        match self.field.get(pixels) {
+            Some(field) => {
+                for ((out, signal), field) in out.iter_mut().zip(signal).zip(field) {
+                    *out = self.flat_e + field + signal;
+                }
+            }
+            None => {
+                for (out, signal) in out.iter_mut().zip(signal) {
+                    *out = self.flat_e + signal;
+                }
+            }
+        }
+    }
+
     /// Index (row by row) and electrons above the background of every pixel where something was drawn, in the order
     /// of the image.
     pub fn drawn(&self) -> impl Iterator<Item = (usize, f64)> {
