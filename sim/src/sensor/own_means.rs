@@ -10,25 +10,23 @@ use super::pixel_law::PixelLaw;
 use super::poisson_digits::few;
 use crate::randomness::Stream;
 
-/// Tables of the means of the grid, made when first met: at most 1920 of [`OwnMeans::WIDEST`] digital numbers, 16 MB.
+/// Tables of the means of the grid, made when first met: at most 3072 of [`OwnMeans::WIDEST`] digital numbers, 25 MB.
 #[derive(Debug, Clone, Default)]
 pub(super) struct OwnMeans {
-    nodes: Vec<Node>,
+    /// By the mean in quarters of an electron, then by n.
+    tables: Vec<Option<AliasTable>>,
 }
 
-/// The tables of one mean, with 0, 1 and 2 electrons more.
-type Node = [Option<AliasTable>; 3];
-
-/// The grid has steps of a quarter of an electron to 64, then of half an electron to 256.
-const FINE_NODES: u32 = 256;
+/// The grid ends here, electrons.
 const END_E: f64 = 256.0;
-const NODES: usize = 640;
+/// Tables of a mean: with 0, 1 and 2 electrons more.
+const OF_A_MEAN: usize = 3;
 
 impl OwnMeans {
     /// Digital numbers in a table at most.
     const WIDEST: f64 = 1024.0;
 
-    /// The means from which on pixels of a law have no grid, electrons; 0 where each table would be wide.
+    /// The means from which on pixels of a law have no grid, electrons; 0 where its tables would be wide.
     pub(super) fn end_e(law: &PixelLaw) -> f64 {
         if law.width_dn(END_E) <= Self::WIDEST { END_E } else { 0.0 }
     }
@@ -44,36 +42,27 @@ impl OwnMeans {
         own: impl FnOnce() -> Stream,
     ) -> u16 {
         let quarters = (mean_e * 4.0) as u32;
-        let (index, node_e) = if quarters < FINE_NODES {
-            (quarters, 0.25 * f64::from(quarters))
-        } else {
-            let halves = quarters / 2;
-            (halves + FINE_NODES / 2, 0.5 * f64::from(halves))
-        };
-        let n = few(mean_e - node_e, (word >> 32) as u32);
-        match self.nodes.get(index as usize).and_then(|node| node.get(n)) {
-            Some(Some(table)) => table.draw(word as u32),
-            _ => self.draw_on(law, (index as usize, node_e), n, word as u32, own()),
+        let n = few(mean_e - 0.25 * f64::from(quarters), (word >> 32) as u32);
+        if n < OF_A_MEAN
+            && let Some(Some(table)) = self.tables.get(quarters as usize * OF_A_MEAN + n)
+        {
+            return table.draw(word as u32);
         }
+        self.draw_on(law, quarters, n, word as u32, own())
     }
 
     /// The same when there is no table, or not yet.
     #[cold]
-    fn draw_on(
-        &mut self,
-        law: &PixelLaw,
-        (index, node_e): (usize, f64),
-        n: usize,
-        word: u32,
-        mut own: Stream,
-    ) -> u16 {
-        if self.nodes.is_empty() {
-            self.nodes.resize(NODES, Node::default());
+    fn draw_on(&mut self, law: &PixelLaw, quarters: u32, n: usize, word: u32, mut own: Stream) -> u16 {
+        let node_e = 0.25 * f64::from(quarters);
+        if n >= OF_A_MEAN {
+            return law.sample_more(node_e, n as f64, &mut own);
         }
-        match self.nodes.get_mut(index).and_then(|node| node.get_mut(n)) {
-            Some(kept) => kept.get_or_insert_with(|| table(law, node_e, n as u32)).draw(word),
-            None => law.sample_more(node_e, n as f64, &mut own),
+        let index = quarters as usize * OF_A_MEAN + n;
+        if index >= self.tables.len() {
+            self.tables.resize(index + 1, None);
         }
+        self.tables[index].get_or_insert_with(|| table(law, node_e, n as u32)).draw(word)
     }
 }
 
@@ -120,14 +109,14 @@ mod tests {
         let (law, mut kept) = (law(), OwnMeans::default());
         let streams = Seed { seed: 24, case: 0 }.streams(0, Effect::PixelNoise);
         let mean_e = |place: u64| place as f64 * 0.0937;
-        let mut draw = |tables: &mut OwnMeans, place: u64| {
+        let draw = |tables: &mut OwnMeans, place: u64| {
             tables.draw(&law, mean_e(place), streams.word(place), || streams.at(place))
         };
         let all: Vec<u16> = (0..2700).map(|place| draw(&mut kept, place)).collect();
         for place in (0..2700).step_by(61) {
             assert_eq!(draw(&mut OwnMeans::default(), place), all[place as usize]);
         }
-        assert_eq!(kept.nodes.len(), NODES);
+        assert!(kept.tables.len() <= 3072);
     }
 
     #[test]

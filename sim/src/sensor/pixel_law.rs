@@ -70,17 +70,20 @@ impl PixelLaw {
 
     /// The digital number of a pixel that holds `held_e` electrons: the second half of [`PixelLaw::sample`].
     pub(super) fn convert(&self, held_e: f64, offset_e: f64, stream: &mut Stream) -> u16 {
-        self.read(held_e, offset_e, || normal(stream))
+        let normal = if self.read_noise_e > 0.0 { normal(stream) } else { 0.0 };
+        self.read(held_e, normal, offset_e)
     }
 
-    /// The same of electrons before the well is full, with the standard normal number that `normal` gives.
+    /// The digital number of the electrons that a pixel collected, its well perhaps full, with `normal` standard deviations of
+    /// read noise.
     #[inline(always)]
-    pub(super) fn read(&self, collected_e: f64, offset_e: f64, normal: impl FnOnce() -> f64) -> u16 {
-        let noise_e = if self.read_noise_e > 0.0 { self.read_noise_e * normal() } else { 0.0 };
-        self.digitise(self.amplified(collected_e.min(self.full_well_e)) + noise_e + offset_e)
+    pub(super) fn read(&self, collected_e: f64, normal: f64, offset_e: f64) -> u16 {
+        let held_e = self.amplified(collected_e.min(self.full_well_e));
+        self.digitise(held_e + self.read_noise_e * normal + offset_e)
     }
 
     /// Electrons as a linear amplifier would have to see them: e (1 − β e/full well).
+    #[inline(always)]
     fn amplified(&self, held_e: f64) -> f64 {
         if self.non_linearity == 0.0 {
             return held_e;
@@ -107,6 +110,7 @@ impl PixelLaw {
     }
 
     /// The converter: floor(e/gain + bias + ½), clipped.
+    #[inline(always)]
     fn digitise(&self, electrons: f64) -> u16 {
         let dn = electrons / self.gain_e_per_dn + self.bias_dn + 0.5;
         // Above 0 the conversion is the floor.

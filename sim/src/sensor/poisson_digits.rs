@@ -55,22 +55,21 @@ pub(super) const FEW: usize = 24;
 #[inline(always)]
 pub(super) fn few(mean: f64, word: u32) -> usize {
     let u = (f64::from(word) + 0.5) * (1.0 / 4_294_967_296.0);
-    // Bounds from Taylor's series, whose terms alternate and fall up to 1, decide nearly always without an exponential:
-    // exp(−s) ≥ 1 − s + s²/2 − s³/6 …
-    if mean <= 1.0 && u <= 1.0 - mean * (1.0 - mean * (0.5 - mean * (1.0 / 6.0))) {
-        return 0;
+    // Bounds from Taylor's series, whose terms alternate and fall up to 1, decide nearly always when the mean is small,
+    // without an exponential and without a branch between 0 and 1: exp(−s) lies between 1 − s + s²/2 and s³/6 less, and
+    // (1 + s) exp(−s) ≥ 1 − s²/2.
+    let half_square = 0.5 * mean * mean;
+    let none_to = 1.0 - mean + half_square;
+    let none_from = none_to - half_square * mean * (1.0 / 3.0);
+    if (mean <= 1.0) & ((u <= none_from) | ((u > none_to) & (u <= 1.0 - half_square))) {
+        usize::from(u > none_from)
+    } else {
+        by_inversion(mean, u)
     }
-    some(mean, u)
 }
 
-fn some(mean: f64, u: f64) -> usize {
-    // … exp(−s) ≤ 1 − s + s²/2 − s³/6 + s⁴/24, and (1 + s) exp(−s) ≥ 1 − s²/2 + s³/3 − s⁴/8.
-    if mean <= 1.0
-        && u > 1.0 - mean * (1.0 - mean * (0.5 - mean * (1.0 / 6.0 - mean * (1.0 / 24.0))))
-        && u <= 1.0 - mean * mean * (0.5 - mean * (1.0 / 3.0 - mean * 0.125))
-    {
-        return 1;
-    }
+/// [`few`] where the bounds leave it open.
+fn by_inversion(mean: f64, u: f64) -> usize {
     let (mut n, mut left, mut probability) = (0, u, libm::exp(-mean));
     while left > probability && n < FEW {
         left -= probability;

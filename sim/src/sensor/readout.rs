@@ -261,26 +261,47 @@ impl Sensor {
         raw: &mut RawImage,
     ) {
         let (digits, normal) = laws.in_parts();
-        let mut means = vec![0.0; self.columns];
-        let none = vec![0.0; self.columns];
-        let columns_e = offsets.map_or(&none, |offsets| &offsets.columns);
+        let [mut means, mut collected, mut noise, mut offsets_e] = [(); 4].map(|()| vec![0.0; self.columns]);
         for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            expected.row(y, &mut means);
-            let row_e = offsets.map_or(0.0, |offsets| offsets.rows[y]);
+            let own = |x: usize| streams.at((self.rows + y * self.columns + x) as u64);
             let mut stream = streams.at(y as u64);
-            for (x, ((dn, &mean_e), &column_e)) in row.iter_mut().zip(&means).zip(columns_e).enumerate() {
-                let (mean_e, offset_e) = (mean_e.max(0.0), row_e + column_e);
-                let words = [stream.next_u64(), stream.next_u64()];
-                let noise = stream.next_u64();
-                let own = || streams.at((self.rows + y * self.columns + x) as u64);
-                *dn = match self.law.shot {
-                    Switch::On if mean_e < PoissonDigits::END_E => {
-                        let collected_e = f64::from(digits.draw(mean_e, words));
-                        self.law.read(collected_e, offset_e, || normal.draw(noise, own))
+            expected.row(y, &mut means);
+            // One step after the other over the row, each a short loop.
+            match self.law.shot {
+                Switch::On => {
+                    for (collected, &mean_e) in collected.iter_mut().zip(&means) {
+                        let words = [stream.next_u64(), stream.next_u64()];
+                        *collected = f64::from(digits.draw(mean_e.max(0.0), words));
                     }
-                    Switch::On => self.law.sample(mean_e, offset_e, &mut own()),
-                    Switch::Off => self.law.read(mean_e, offset_e, || normal.draw(noise, own)),
-                };
+                }
+                Switch::Off => {
+                    for (collected, mean_e) in collected.iter_mut().zip(&means) {
+                        *collected = mean_e.max(0.0);
+                    }
+                }
+            }
+            match offsets {
+                Some(offsets) => {
+                    for (offset_e, column_e) in offsets_e.iter_mut().zip(&offsets.columns) {
+                        *offset_e = offsets.rows[y] + column_e;
+                    }
+                }
+                None => offsets_e.fill(0.0),
+            }
+            for (x, noise) in noise.iter_mut().enumerate() {
+                *noise = normal.draw(stream.next_u64(), || own(x));
+            }
+            for (((dn, &collected_e), &noise), &offset_e) in
+                row.iter_mut().zip(&collected).zip(&noise).zip(&offsets_e)
+            {
+                *dn = self.law.read(collected_e, noise, offset_e);
+            }
+            if self.law.shot == Switch::On {
+                for (x, (dn, &mean_e)) in row.iter_mut().zip(&means).enumerate() {
+                    if mean_e >= PoissonDigits::END_E {
+                        *dn = self.law.sample(mean_e, offsets_e[x], &mut own(x));
+                    }
+                }
             }
         }
     }
