@@ -83,11 +83,20 @@ impl ExpectedImage {
     /// Multiplies the light of every pixel, background and signal, by its response.
     pub(crate) fn respond(&mut self, response: &[f32]) {
         let flat_e = self.flat_e;
-        for (field, &response) in self.field_mut().iter_mut().zip(response) {
-            *field = (flat_e + *field) * f64::from(response) - flat_e;
+        if self.field.is_empty() {
+            let pixels = response.iter().take(self.signal.len());
+            self.field.extend(pixels.map(|&response| flat_e * f64::from(response) - flat_e));
+            self.field.resize(self.signal.len(), 0.0);
+        } else {
+            for (field, &response) in self.field.iter_mut().zip(response) {
+                *field = (flat_e + *field) * f64::from(response) - flat_e;
+            }
         }
-        for (signal, &response) in self.signal.iter_mut().zip(response) {
-            *signal *= f64::from(response);
+        // Where nothing was drawn there is nothing to multiply.
+        for index in drawn_pixels(&self.drawn, self.columns, self.words_per_row) {
+            if let (Some(signal), Some(&response)) = (self.signal.get_mut(index), response.get(index)) {
+                *signal *= f64::from(response);
+            }
         }
     }
 
@@ -101,14 +110,18 @@ impl ExpectedImage {
 
     /// Adds to every pixel `share` of the light of all other pixels of its column.
     pub(crate) fn smear(&mut self, share: f64) {
-        let columns = self.columns.max(1);
-        let mut sums = vec![0.0; columns];
-        for (index, electrons) in self.iter().enumerate() {
-            sums[index % columns] += electrons;
+        let (mut sums, mut own) = (vec![0.0; self.columns], vec![0.0; self.columns]);
+        for y in 0..self.rows {
+            self.row(y, &mut own);
+            for (sum, own) in sums.iter_mut().zip(&own) {
+                *sum += own;
+            }
         }
-        let own: Vec<f64> = self.iter().collect();
-        for (row, own) in self.field_mut().chunks_exact_mut(columns).zip(own.chunks_exact(columns)) {
-            for ((field, own), sum) in row.iter_mut().zip(own).zip(&sums) {
+        self.field_mut();
+        for y in 0..self.rows {
+            self.row(y, &mut own);
+            let field = self.field.iter_mut().skip(y * self.columns);
+            for ((field, own), sum) in field.zip(&own).zip(&sums) {
                 *field += share * (sum - own);
             }
         }
@@ -174,14 +187,28 @@ impl ExpectedImage {
         self.signal.iter().zip(field).map(|(signal, field)| self.flat_e + field + signal)
     }
 
+    /// Expected electrons of the pixels of a row, background included; `out` is as long as a row.
+    pub(crate) fn row(&self, y: usize, out: &mut [f64]) {
+        let pixels = y * self.columns..(y + 1) * self.columns;
+        let signal = self.signal.get(pixels.clone()).unwrap_or_default();
+        match self.field.get(pixels) {
+            Some(field) => {
+                for ((out, signal), field) in out.iter_mut().zip(signal).zip(field) {
+                    *out = self.flat_e + field + signal;
+                }
+            }
+            None => {
+                for (out, signal) in out.iter_mut().zip(signal) {
+                    *out = self.flat_e + signal;
+                }
+            }
+        }
+    }
+
     /// Index (row by row) and electrons above the background of every pixel where something was drawn, in the order
     /// of the image.
     pub fn drawn(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.drawn.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(move |(i, &word)| {
-            let (row, column) = (i / self.words_per_row, i % self.words_per_row * 64);
-            let first = row * self.columns + column;
-            SetBits(word).map(move |bit| (first + bit, self.signal[first + bit]))
-        })
+        drawn_pixels(&self.drawn, self.columns, self.words_per_row).map(|index| (index, self.signal[index]))
     }
 
     /// Marks columns `from..to` of a row as drawn.
@@ -192,6 +219,14 @@ impl ExpectedImage {
             self.drawn[y * self.words_per_row + word] |= (u64::MAX >> (64 - length)) << start;
         }
     }
+}
+
+/// Indices, row by row, of the pixels that are marked in `words`.
+fn drawn_pixels(words: &[u64], columns: usize, words_per_row: usize) -> impl Iterator<Item = usize> {
+    words.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(move |(i, &word)| {
+        let first = i / words_per_row * columns + i % words_per_row * 64;
+        SetBits(word).map(move |bit| first + bit)
+    })
 }
 
 /// The places of the ones in a word, lowest first.

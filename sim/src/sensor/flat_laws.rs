@@ -3,31 +3,31 @@
 //! Most pixels of a frame have the same mean, hence the same law of their digital number: one table, one word a
 //! pixel. A pixel with a little signal s above the flat mean λ follows by superposition: Poisson(λ + s) is
 //! Poisson(λ) plus an independent n from Poisson(s), and given n its law is that of the flat mean with n electrons
-//! added for certain: one table for each n. Where every pixel has a mean of its own, the flat mean is the next lower
-//! one of a fixed grid, and the rest is the little signal.
+//! added for certain: one table for each n.
 
 use std::collections::BTreeMap;
 
 use super::alias::AliasTable;
+use super::own_means::OwnMeans;
 use super::pixel_law::PixelLaw;
+use super::poisson_digits::{FEW, PoissonDigits, few};
+use super::ziggurat::Ziggurat;
 
-/// Tables for the flat means met so far, kept from frame to frame. What they give does not depend on what they
+/// Tables for the means met so far, kept from frame to frame. What they give does not depend on what they
 /// keep: an empty one works as well, only slower.
 #[derive(Debug, Clone, Default)]
 pub struct FlatLaws {
     law: Option<PixelLaw>,
     /// By the bits of the mean.
     means: BTreeMap<u64, FlatLaw>,
-    /// By the electrons of the grid's means, made when first met.
-    grid: Vec<Option<FlatLaw>>,
+    own_means: OwnMeans,
+    digits: PoissonDigits,
+    normal: Ziggurat,
 }
 
 impl FlatLaws {
     /// Means kept at most; a shutter's ladder has fewer exposures.
     const MEANS: usize = 64;
-
-    /// Means from which on there is no grid, and pixels are drawn by the direct sampler.
-    pub(super) const GRID_END_E: f64 = 4096.0;
 
     /// Nothing kept yet.
     pub fn new() -> Self {
@@ -44,29 +44,22 @@ impl FlatLaws {
         self.means.entry(mean_e.to_bits()).or_insert_with(|| FlatLaw::new(*law, mean_e))
     }
 
-    /// A digital number of a pixel with a mean of its own, from 0 to less than [`FlatLaws::GRID_END_E`] electrons, from a
-    /// uniform word.
-    pub(super) fn draw(&mut self, law: &PixelLaw, mean_e: f64, word: u64) -> u16 {
+    /// The tables of pixels with a mean of their own.
+    pub(super) fn own_means(&mut self, law: &PixelLaw) -> &mut OwnMeans {
         if self.law != Some(*law) {
             self.forget(law);
         }
-        // The rest is below a step, and a step is at most FAINT_E; larger steps keep the tables few where they are long.
-        let whole = mean_e as usize;
-        let node = match whole {
-            0..64 => whole,
-            64..256 => whole & !1,
-            _ => whole & !3,
-        };
-        if node >= self.grid.len() {
-            self.grid.resize(node + 1, None);
-        }
-        let flat = self.grid[node].get_or_insert_with(|| FlatLaw::new(*law, node as f64));
-        flat.draw_faint(mean_e - node as f64, word)
+        &mut self.own_means
+    }
+
+    /// The tables of numbers of electrons and of the read noise, for pixels whose law no table holds.
+    pub(super) fn in_parts(&mut self) -> (&mut PoissonDigits, &Ziggurat) {
+        (&mut self.digits, &self.normal)
     }
 
     fn forget(&mut self, law: &PixelLaw) {
         self.means.clear();
-        self.grid.clear();
+        self.own_means = OwnMeans::default();
         self.law = Some(*law);
     }
 }
@@ -82,14 +75,12 @@ pub(super) struct FlatLaw {
 }
 
 impl FlatLaw {
-    /// Signals up to this have their tables. More than 24 electrons from a mean of 4 come with a probability of
-    /// 1.4e-12, far below the 2^-32 that a word resolves.
+    /// Signals up to this have their tables.
     pub(super) const FAINT_E: f64 = 4.0;
-    const MOST_ELECTRONS: usize = 24;
 
     fn new(law: PixelLaw, mean_e: f64) -> Self {
         let table = table(&law, mean_e, 0);
-        Self { law, mean_e, flat: table, more: vec![None; Self::MOST_ELECTRONS + 1] }
+        Self { law, mean_e, flat: table, more: vec![None; FEW + 1] }
     }
 
     /// The table of the pixels without signal.
@@ -100,8 +91,7 @@ impl FlatLaw {
     /// A digital number of a pixel with a signal of at most [`FlatLaw::FAINT_E`], from a uniform word: its upper half
     /// decides the number of signal electrons (to 2^-32), its lower half the digital number.
     pub(super) fn draw_faint(&mut self, signal_e: f64, word: u64) -> u16 {
-        let u = ((word >> 32) as f64 + 0.5) * (1.0 / 4_294_967_296.0);
-        let n = electrons_of(signal_e, u).min(Self::MOST_ELECTRONS);
+        let n = few(signal_e, (word >> 32) as u32);
         if n == 0 {
             return self.flat.draw(word as u32);
         }
@@ -109,24 +99,10 @@ impl FlatLaw {
     }
 }
 
-fn table(law: &PixelLaw, mean_e: f64, extra_e: u32) -> AliasTable {
+/// The table of a mean with `extra_e` electrons more.
+pub(super) fn table(law: &PixelLaw, mean_e: f64, extra_e: u32) -> AliasTable {
     let probabilities = law.probabilities(mean_e, extra_e);
     AliasTable::new(probabilities.first_dn, &probabilities.probabilities)
-}
-
-/// The smallest n with P(N ≤ n) ≥ u, for a Poisson number of a small mean.
-fn electrons_of(mean: f64, u: f64) -> usize {
-    // exp(−s) ≥ 1 − s + s²/2 − s³/6 from 0 to 1: no exponential for most pixels without a signal electron.
-    if mean <= 1.0 && u <= 1.0 - mean * (1.0 - mean * (0.5 - mean * (1.0 / 6.0))) {
-        return 0;
-    }
-    let (mut n, mut left, mut probability) = (0, u, libm::exp(-mean));
-    while left > probability && n < FlatLaw::MOST_ELECTRONS {
-        left -= probability;
-        n += 1;
-        probability *= mean / n as f64;
-    }
-    n
 }
 
 #[cfg(test)]
@@ -178,29 +154,6 @@ mod tests {
             );
             let p = chi_square_p(&counts, &from_zero(&law.probabilities(3.0 + signal_e, 0)));
             assert!(p > 1e-4, "signal {signal_e}: p = {p}");
-        }
-    }
-
-    #[test]
-    fn pixels_of_their_own_means_follow_the_law_of_the_direct_sampler() {
-        let law = PixelLaw::new(&SensorConfig { gain_e_per_dn: 1.0, read_noise_e: 1.2, ..twelve_bit() });
-        let mut laws = FlatLaws::new();
-        for (frame, mean_e) in [0.0, 0.3, 1.0, 17.9, 63.99, 65.5, 301.7, 4095.9].into_iter().enumerate() {
-            let streams = Seed { seed: 23, case: 0 }.streams(frame as u64, Effect::PixelNoise);
-            let n = 100_000;
-            let drawn =
-                counts_of((0..n).map(|place| usize::from(laws.draw(&law, mean_e, streams.word(place)))));
-            let p = chi_square_p(&drawn, &from_zero(&law.probabilities(mean_e, 0)));
-            assert!(p > 1e-4, "mean {mean_e}: p = {p}");
-            let mut stream = streams.at(n);
-            let sampled = counts_of((0..n).map(|_| usize::from(law.sample(mean_e, 0.0, &mut stream))));
-            let (mut chi2, mut bins) = (0.0, 0.0);
-            for (a, b) in drawn.iter().zip(&sampled).filter(|(a, b)| *a + *b >= 20) {
-                chi2 += (*a as f64 - *b as f64) * (*a as f64 - *b as f64) / (a + b) as f64;
-                bins += 1.0;
-            }
-            let p = super::super::pixel_law::tests::chi_square_tail(chi2, bins);
-            assert!(p > 1e-4, "mean {mean_e}: p = {p} against the sampler");
         }
     }
 

@@ -31,10 +31,13 @@ mod cosmic_rays;
 mod fixed_pattern;
 mod flat_laws;
 mod hot_pixels;
+mod own_means;
 mod pixel_law;
 mod poisson;
+mod poisson_digits;
 mod readout;
 mod telegraph;
+mod ziggurat;
 
 pub use blooming::BloomingConfig;
 pub use charge::{Charge, Opening};

@@ -3,6 +3,7 @@
 //! Collected electrons are Poisson, held at the full well; the read noise is normal; the converter rounds and
 //! clips. The law is here twice: as a sampler, and as the probability of every digital number.
 
+use super::alias::AliasTable;
 use super::config::{SensorConfig, Switch};
 use super::poisson::poisson;
 use crate::randomness::{Stream, normal};
@@ -61,14 +62,32 @@ impl PixelLaw {
         }
     }
 
+    /// A digital number of a pixel that collects a Poisson number of mean `mean_e` and `extra_e` electrons for certain.
+    pub(super) fn sample_more(&self, mean_e: f64, extra_e: f64, stream: &mut Stream) -> u16 {
+        let collected_e = self.collect(mean_e, stream) + extra_e;
+        self.convert(collected_e.min(self.full_well_e), 0.0, stream)
+    }
+
     /// The digital number of a pixel that holds `held_e` electrons: the second half of [`PixelLaw::sample`].
     pub(super) fn convert(&self, held_e: f64, offset_e: f64, stream: &mut Stream) -> u16 {
-        let noise_e = if self.read_noise_e > 0.0 { self.read_noise_e * normal(stream) } else { 0.0 };
-        self.digitise(self.amplified(held_e) + noise_e + offset_e)
+        let normal = if self.read_noise_e > 0.0 { normal(stream) } else { 0.0 };
+        self.read(held_e, normal, offset_e)
+    }
+
+    /// The digital number of the electrons that a pixel collected, its well perhaps full, with `normal` standard deviations of
+    /// read noise.
+    #[inline(always)]
+    pub(super) fn read(&self, collected_e: f64, normal: f64, offset_e: f64) -> u16 {
+        let held_e = self.amplified(collected_e.min(self.full_well_e));
+        self.digitise(held_e + self.read_noise_e * normal + offset_e)
     }
 
     /// Electrons as a linear amplifier would have to see them: e (1 − β e/full well).
+    #[inline(always)]
     fn amplified(&self, held_e: f64) -> f64 {
+        if self.non_linearity == 0.0 {
+            return held_e;
+        }
         held_e * (1.0 - self.non_linearity * held_e / self.full_well_e)
     }
 
@@ -91,9 +110,17 @@ impl PixelLaw {
     }
 
     /// The converter: floor(e/gain + bias + ½), clipped.
+    #[inline(always)]
     fn digitise(&self, electrons: f64) -> u16 {
-        let dn = (electrons / self.gain_e_per_dn + self.bias_dn + 0.5).floor();
+        let dn = electrons / self.gain_e_per_dn + self.bias_dn + 0.5;
+        // Above 0 the conversion is the floor.
         dn.clamp(0.0, f64::from(self.full_scale_dn)) as u16
+    }
+
+    /// How many digital numbers the law of a mean reaches, as if none were clipped.
+    pub(super) fn width_dn(&self, mean_e: f64) -> f64 {
+        let reach = PoissonReach::new(mean_e);
+        (reach.high - reach.low + 2.0 * NORMAL_REACH * self.read_noise_e) / self.gain_e_per_dn
     }
 
     /// The probability of every digital number when a Poisson number of mean `mean_e`, plus `extra_e` electrons for
@@ -210,6 +237,13 @@ fn poisson_atoms(mean: f64, reach: PoissonReach) -> Vec<(f64, f64)> {
     let probability = |k: f64| libm::exp(k * ln_mean - mean - libm::lgamma(k + 1.0));
     let count = (reach.high - reach.low) as usize + 1;
     (0..count).map(|i| reach.low + i as f64).map(|k| (k, probability(k))).collect()
+}
+
+/// The table of a Poisson law of a mean of at most 61,440 (its numbers have 16 bits).
+pub(super) fn poisson_table(mean: f64) -> AliasTable {
+    let reach = PoissonReach::new(mean);
+    let probabilities: Vec<f64> = poisson_atoms(mean, reach).into_iter().map(|(_, p)| p).collect();
+    AliasTable::new(reach.low as u16, &probabilities)
 }
 
 fn normal_cdf(z: f64) -> f64 {

@@ -8,7 +8,9 @@ use super::config::{SensorConfig, Switch};
 use super::fixed_pattern::FixedPattern;
 use super::flat_laws::{FlatLaw, FlatLaws};
 use super::hot_pixels::{HotPixel, hot_pixels};
+use super::own_means::OwnMeans;
 use super::pixel_law::PixelLaw;
+use super::poisson_digits::PoissonDigits;
 use crate::SimError;
 use crate::draw::ExpectedImage;
 use crate::randomness::{Effect, Seed, Streams, normal};
@@ -146,10 +148,10 @@ impl Sensor {
 
     /// Draws the digital number of every pixel.
     ///
-    /// A row has one stream, at place = row, of which every pixel takes 32 bits, or 64 where each has a mean of its own:
-    /// from them comes the number of a pixel with little signal or none. A pixel with much is drawn anew from an
-    /// address of its own, place = rows + index, so that what is in one pixel never changes the draw of another; so is
-    /// every pixel where rows and columns have offsets or where shot noise is off.
+    /// A row has one stream, at place = row, of which every pixel takes 32 bits, or 64 where each has a mean of its own, or
+    /// 192 where rows and columns have offsets: from them comes the number of nearly every pixel. One with much signal, or
+    /// whose bits do not decide, is drawn from an address of its own, place = rows + index, so that what is in one pixel
+    /// never changes the draw of another.
     ///
     /// # Errors
     /// [`SimError::Parameter`] when the image is not of the sensor's size.
@@ -176,7 +178,7 @@ impl Sensor {
         match &offsets {
             None if !expected.has_field() => self.draw_flat(expected, &streams, laws, raw),
             None if self.law.shot == Switch::On => self.draw_own_means(expected, &streams, laws, raw),
-            _ => self.draw_directly(expected, offsets.as_ref(), &streams, raw),
+            _ => self.draw_in_parts(expected, offsets.as_ref(), &streams, laws, raw),
         }
         if let Some(blooming) = &self.config.blooming {
             self.bloom(blooming, expected, offsets.as_ref(), &streams, raw);
@@ -227,32 +229,80 @@ impl Sensor {
         laws: &mut FlatLaws,
         raw: &mut RawImage,
     ) {
-        let mut means = expected.iter().enumerate();
+        let end_e = OwnMeans::end_e(&self.law);
+        if expected.flat_e() >= end_e {
+            return self.draw_in_parts(expected, None, streams, laws, raw);
+        }
+        let mut means = vec![0.0; self.columns];
         for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            expected.row(y, &mut means);
             let mut stream = streams.at(y as u64);
-            for (dn, (index, mean_e)) in row.iter_mut().zip(&mut means) {
+            let own_means = laws.own_means(&self.law);
+            for (x, (dn, &mean_e)) in row.iter_mut().zip(&means).enumerate() {
                 let word = stream.next_u64();
-                *dn = if mean_e < FlatLaws::GRID_END_E {
-                    laws.draw(&self.law, mean_e.max(0.0), word)
+                let own = || streams.at((self.rows + y * self.columns + x) as u64);
+                *dn = if mean_e < end_e {
+                    own_means.draw(&self.law, mean_e.max(0.0), word, own)
                 } else {
-                    self.law.sample(mean_e, 0.0, &mut streams.at((self.rows + index) as u64))
+                    self.law.sample(mean_e, 0.0, &mut own())
                 };
             }
         }
     }
 
-    /// Every pixel by the direct sampler, at its own address.
-    fn draw_directly(
+    /// The frame in which no table holds the law of a pixel, because rows and columns have offsets: electrons, then read
+    /// noise, then the converter.
+    fn draw_in_parts(
         &self,
         expected: &ExpectedImage,
         offsets: Option<&LineOffsets>,
         streams: &Streams,
+        laws: &mut FlatLaws,
         raw: &mut RawImage,
     ) {
-        for (index, (dn, mean_e)) in raw.dn.iter_mut().zip(expected.iter()).enumerate() {
-            let offset_e =
-                offsets.map_or(0.0, |offsets| offsets.at(index % self.columns, index / self.columns));
-            *dn = self.law.sample(mean_e.max(0.0), offset_e, &mut streams.at((self.rows + index) as u64));
+        let (digits, normal) = laws.in_parts();
+        let [mut means, mut collected, mut noise, mut offsets_e] = [(); 4].map(|()| vec![0.0; self.columns]);
+        for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            let own = |x: usize| streams.at((self.rows + y * self.columns + x) as u64);
+            let mut stream = streams.at(y as u64);
+            expected.row(y, &mut means);
+            // One step after the other over the row, each a short loop.
+            match self.law.shot {
+                Switch::On => {
+                    for (collected, &mean_e) in collected.iter_mut().zip(&means) {
+                        let words = [stream.next_u64(), stream.next_u64()];
+                        *collected = f64::from(digits.draw(mean_e.max(0.0), words));
+                    }
+                }
+                Switch::Off => {
+                    for (collected, mean_e) in collected.iter_mut().zip(&means) {
+                        *collected = mean_e.max(0.0);
+                    }
+                }
+            }
+            match offsets {
+                Some(offsets) => {
+                    for (offset_e, column_e) in offsets_e.iter_mut().zip(&offsets.columns) {
+                        *offset_e = offsets.rows[y] + column_e;
+                    }
+                }
+                None => offsets_e.fill(0.0),
+            }
+            for (x, noise) in noise.iter_mut().enumerate() {
+                *noise = normal.draw(stream.next_u64(), || own(x));
+            }
+            for (((dn, &collected_e), &noise), &offset_e) in
+                row.iter_mut().zip(&collected).zip(&noise).zip(&offsets_e)
+            {
+                *dn = self.law.read(collected_e, noise, offset_e);
+            }
+            if self.law.shot == Switch::On {
+                for (x, (dn, &mean_e)) in row.iter_mut().zip(&means).enumerate() {
+                    if mean_e >= PoissonDigits::END_E {
+                        *dn = self.law.sample(mean_e, offsets_e[x], &mut own(x));
+                    }
+                }
+            }
         }
     }
 

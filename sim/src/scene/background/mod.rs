@@ -325,16 +325,18 @@ impl BackgroundField {
     pub fn electrons_per_s(&self, out: &mut Vec<f64>) {
         out.clear();
         out.reserve(self.columns * self.rows);
+        let columns: Vec<(usize, f64)> = (0..self.columns).map(|x| between_nodes(x, self.columns)).collect();
         for y in 0..self.rows {
             let (row, down) = between_nodes(y, self.rows);
             let line: [f64; NODES] = std::array::from_fn(|i| {
                 let (above, below) = (self.e_per_s[row * NODES + i], self.e_per_s[(row + 1) * NODES + i]);
                 above + down * (below - above)
             });
-            out.extend((0..self.columns).map(|x| {
-                let (column, across) = between_nodes(x, self.columns);
-                line[column] + across * (line[column + 1] - line[column])
-            }));
+            out.extend(
+                columns
+                    .iter()
+                    .map(|&(column, across)| line[column] + across * (line[column + 1] - line[column])),
+            );
         }
     }
 }

@@ -1,0 +1,132 @@
+//! Poisson numbers of any mean from a few tables.
+
+use super::alias::AliasTable;
+use super::pixel_law::poisson_table;
+
+/// Poisson numbers of means from 0 to [`PoissonDigits::END_E`].
+///
+/// A mean is written in digits, λ = 4096 c + 64 b + a/4 + δ with whole a, b, c and 0 ≤ δ < ¼. Poisson(λ) is the sum of
+/// independent Poisson numbers of these four means: three from tables, to the 2^-32 of their words, the last by inversion.
+/// Tables are made when first met and are the same whatever the detector: 335 at most, 3 MB.
+#[derive(Debug, Clone)]
+pub(super) struct PoissonDigits {
+    quarters: Vec<Option<AliasTable>>,
+    sixty_fours: Vec<Option<AliasTable>>,
+    four_thousands: Vec<Option<AliasTable>>,
+}
+
+impl Default for PoissonDigits {
+    fn default() -> Self {
+        Self { quarters: vec![None; 256], sixty_fours: vec![None; 64], four_thousands: vec![None; 16] }
+    }
+}
+
+impl PoissonDigits {
+    /// Means from which on there are no tables, electrons: a number and its spread must fit 16 bits.
+    pub(super) const END_E: f64 = 65_536.0;
+
+    /// A Poisson number of a mean from 0 to less than [`PoissonDigits::END_E`] from two uniform words.
+    #[inline(always)]
+    pub(super) fn draw(&mut self, mean_e: f64, words: [u64; 2]) -> u32 {
+        let quarters = (mean_e * 4.0) as u32;
+        let rest_e = mean_e - 0.25 * f64::from(quarters);
+        let mut number = digit(&mut self.quarters, quarters % 256, 0.25, words[0] as u32);
+        if quarters >= 256 {
+            number += digit(&mut self.sixty_fours, quarters / 256 % 64, 64.0, words[1] as u32);
+            number += digit(&mut self.four_thousands, quarters / 16_384, 4096.0, (words[1] >> 32) as u32);
+        }
+        number + few(rest_e, (words[0] >> 32) as u32) as u32
+    }
+}
+
+/// A Poisson number of mean `digit` · `unit_e`.
+#[inline(always)]
+fn digit(tables: &mut [Option<AliasTable>], digit: u32, unit_e: f64, word: u32) -> u32 {
+    let Some(table) = tables.get_mut(digit as usize).filter(|_| digit > 0) else { return 0 };
+    let table = table.get_or_insert_with(|| poisson_table(f64::from(digit) * unit_e));
+    u32::from(table.draw(word))
+}
+
+/// More than 24 electrons from a mean of 4 come with a probability of 1.4e-12, far below the 2^-32 that a word resolves.
+pub(super) const FEW: usize = 24;
+
+/// A Poisson number of a mean of at most 4, and itself at most [`FEW`], from a uniform word: the smallest n with
+/// P(N ≤ n) ≥ u.
+#[inline(always)]
+pub(super) fn few(mean: f64, word: u32) -> usize {
+    let u = (f64::from(word) + 0.5) * (1.0 / 4_294_967_296.0);
+    // Bounds from Taylor's series, whose terms alternate and fall up to 1, decide nearly always when the mean is small,
+    // without an exponential and without a branch between 0 and 1: exp(−s) lies between 1 − s + s²/2 and s³/6 less, and
+    // (1 + s) exp(−s) ≥ 1 − s²/2.
+    let half_square = 0.5 * mean * mean;
+    let none_to = 1.0 - mean + half_square;
+    let none_from = none_to - half_square * mean * (1.0 / 3.0);
+    if (mean <= 1.0) & ((u <= none_from) | ((u > none_to) & (u <= 1.0 - half_square))) {
+        usize::from(u > none_from)
+    } else {
+        by_inversion(mean, u)
+    }
+}
+
+/// [`few`] where the bounds leave it open.
+fn by_inversion(mean: f64, u: f64) -> usize {
+    let (mut n, mut left, mut probability) = (0, u, libm::exp(-mean));
+    while left > probability && n < FEW {
+        left -= probability;
+        n += 1;
+        probability *= mean / n as f64;
+    }
+    n
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pixel_law::tests::{chi_square_p, counts_of};
+    use super::*;
+    use crate::randomness::{Effect, Seed};
+    use rand::Rng;
+    use statrs::distribution::{Discrete, Poisson};
+
+    #[test]
+    fn its_numbers_follow_the_probability_mass() {
+        let mut digits = PoissonDigits::default();
+        for (place, mean_e) in
+            [0.0, 0.1, 0.25, 3.3, 20.0, 63.99, 64.1, 700.3, 4095.9, 4096.0, 12_345.6, 65_535.9]
+                .into_iter()
+                .enumerate()
+        {
+            let mut stream = Seed { seed: 32, case: 0 }.stream(0, Effect::PixelNoise, place as u64);
+            let counts = counts_of((0..300_000).map(|_| {
+                let words = [stream.next_u64(), stream.next_u64()];
+                digits.draw(mean_e, words) as usize
+            }));
+            if mean_e == 0.0 {
+                assert_eq!(counts, [300_000]);
+                continue;
+            }
+            let law = Poisson::new(mean_e).unwrap();
+            let expected: Vec<f64> = (0..counts.len() + 100).map(|k| law.pmf(k as u64)).collect();
+            let p = chi_square_p(&counts, &expected);
+            assert!(p > 1e-4, "mean {mean_e}: p = {p}");
+        }
+    }
+
+    #[test]
+    fn the_bounds_save_exponentials_and_change_nothing() {
+        for mean in [1e-9, 0.01, 0.24, 0.6, 1.0, 1.7, 4.0] {
+            let poisson = Poisson::new(mean).unwrap();
+            for i in 0..100_000_u32 {
+                let word = i * 42_949;
+                let u = (f64::from(word) + 0.5) / 4_294_967_296.0;
+                let (mut n, mut up_to) = (0, poisson.pmf(0));
+                while u > up_to {
+                    n += 1;
+                    up_to += poisson.pmf(n);
+                }
+                assert_eq!(few(mean, word) as u64, n, "{mean}, {u}");
+            }
+        }
+        assert_eq!((few(0.0, 0), few(0.0, u32::MAX)), (0, 0));
+        assert!(few(4.0, u32::MAX) <= FEW);
+    }
+}

@@ -1,0 +1,188 @@
+//! Normal numbers by the ziggurat: nearly always one word, one multiplication and one comparison.
+
+use rand::Rng;
+
+use crate::randomness::{Stream, uniform};
+
+/// Layers of equal area that cover exp(−x²/2), x ≥ 0: 255 rectangles, and the lowest one with the tail.
+const LAYERS: usize = 256;
+/// Where the tail begins: the abscissa for which 256 layers of equal area end at the top (Marsaglia & Tsang 2000).
+const TAIL_FROM: f64 = 3.654_152_885_361_008_8;
+
+/// A sampler of the standard normal law (Marsaglia & Tsang, "The ziggurat method for generating random variables",
+/// Journal of Statistical Software 5(8), 2000), on words of 64 bits: the lowest eight choose the layer, the highest 53 the
+/// number, so that neither tells of the other (Doornik 2005).
+#[derive(Debug, Clone)]
+pub(super) struct Ziggurat {
+    layers: Box<[Layer; LAYERS]>,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Layer {
+    /// The layer ends here …
+    width: f64,
+    /// … and up to here it lies below the curve altogether.
+    inner: f64,
+    /// The curve at both places.
+    low: f64,
+    high: f64,
+}
+
+impl Default for Ziggurat {
+    fn default() -> Self {
+        let tail =
+            libm::sqrt(std::f64::consts::FRAC_PI_2) * libm::erfc(TAIL_FROM * std::f64::consts::FRAC_1_SQRT_2);
+        let area = TAIL_FROM * density(TAIL_FROM) + tail;
+        let mut layers = Box::new([Layer::default(); LAYERS]);
+        // The lowest layer as a rectangle of its area: what falls beyond the inner end is drawn from the tail.
+        let mut width = area / density(TAIL_FROM);
+        let mut inner = TAIL_FROM;
+        for (i, layer) in layers.iter_mut().enumerate() {
+            *layer = Layer { width, inner, low: density(width), high: density(inner) };
+            width = inner;
+            let top = density(inner) + area / inner;
+            inner = if i + 2 < LAYERS { libm::sqrt(-2.0 * libm::log(top)) } else { 0.0 };
+        }
+        Self { layers }
+    }
+}
+
+fn density(x: f64) -> f64 {
+    libm::exp(-0.5 * x * x)
+}
+
+impl Ziggurat {
+    /// A normal number of mean 0 and standard deviation 1 from a uniform word. One word in a hundred does not decide: then
+    /// the rest comes from the stream that `more` gives.
+    #[inline(always)]
+    pub(super) fn draw(&self, word: u64, more: impl FnOnce() -> Stream) -> f64 {
+        let layer = &self.layers[(word % LAYERS as u64) as usize];
+        let x = signed_unit(word) * layer.width;
+        if x.abs() < layer.inner { x } else { self.draw_on(word, &mut more()) }
+    }
+
+    /// The number when the first word lies outside of the sure part of its layer.
+    #[cold]
+    fn draw_on(&self, mut word: u64, stream: &mut Stream) -> f64 {
+        loop {
+            let index = (word % LAYERS as u64) as usize;
+            let layer = &self.layers[index];
+            let x = signed_unit(word) * layer.width;
+            if x.abs() < layer.inner {
+                return x;
+            }
+            if index == 0 {
+                return tail(stream).copysign(x);
+            }
+            if layer.low + uniform(stream) * (layer.high - layer.low) < density(x) {
+                return x;
+            }
+            word = stream.next_u64();
+        }
+    }
+}
+
+/// A uniform number in (−1, 1) of the highest 53 bits.
+#[inline(always)]
+fn signed_unit(word: u64) -> f64 {
+    ((word as i64 >> 11) as f64 + 0.5) * (1.0 / 4_503_599_627_370_496.0)
+}
+
+/// A normal number beyond [`TAIL_FROM`] (Marsaglia 1964).
+fn tail(stream: &mut Stream) -> f64 {
+    loop {
+        let x = -libm::log(uniform(stream)) / TAIL_FROM;
+        let y = -libm::log(uniform(stream));
+        if 2.0 * y > x * x {
+            return TAIL_FROM + x;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pixel_law::tests::{chi_square_p, counts_of};
+    use super::*;
+    use crate::randomness::{Effect, Seed};
+
+    /// Numbers as the readout draws them: a word of a row, and more from another place.
+    fn numbers(frame: u64, n: u64) -> impl Iterator<Item = f64> {
+        let streams = Seed { seed: 31, case: 0 }.streams(frame, Effect::PixelNoise);
+        let (ziggurat, mut row) = (Ziggurat::default(), streams.at(0));
+        (1..=n).map(move |place| ziggurat.draw(row.next_u64(), || streams.at(place)))
+    }
+
+    fn cdf(x: f64) -> f64 {
+        0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
+    }
+
+    #[test]
+    fn its_layers_have_equal_areas_and_end_at_the_top() {
+        let layers = Ziggurat::default().layers;
+        let area = layers[0].width * layers[0].high;
+        for layer in &layers[1..] {
+            // The abscissa of the tail is known to 17 digits, and the error grows from layer to layer.
+            assert!((layer.width * (layer.high - layer.low) / area - 1.0).abs() < 1e-11, "{layer:?}");
+        }
+        assert_eq!(layers[LAYERS - 1].inner, 0.0);
+    }
+
+    #[test]
+    fn its_numbers_follow_the_normal_law_in_fine_bins() {
+        // From −5 to 5 in steps of 1/50, far narrower than most layers.
+        let bin = |x: f64| ((x + 5.0) * 50.0).floor().clamp(0.0, 499.0) as usize;
+        let counts = counts_of(numbers(0, 4_000_000).map(bin));
+        let edge = |i: usize| cdf(i as f64 / 50.0 - 5.0);
+        let law: Vec<f64> = (0..500).map(|i| edge(i + 1) - edge(i)).collect();
+        let p = chi_square_p(&counts, &law);
+        assert!(p > 1e-4, "p = {p}");
+    }
+
+    #[test]
+    fn its_tail_is_as_heavy_as_the_normal_law() {
+        // 2 Φ(−3.6541…) = 2.6e-4: of four million a thousand, in 40 bins of 1/40 and the rest.
+        let n = 4_000_000;
+        let beyond: Vec<f64> = numbers(1, n).map(f64::abs).filter(|x| *x > TAIL_FROM).collect();
+        let tail = |x: f64| 2.0 * cdf(-x);
+        let expected = n as f64 * tail(TAIL_FROM);
+        assert!((beyond.len() as f64 - expected).abs() < 5.0 * expected.sqrt(), "{}", beyond.len());
+        let counts = counts_of(beyond.iter().map(|x| ((x - TAIL_FROM) * 40.0) as usize));
+        let edge = |i: usize| tail(TAIL_FROM + i as f64 / 40.0) / tail(TAIL_FROM);
+        let law: Vec<f64> = (0..80).map(|i| edge(i) - edge(i + 1)).collect();
+        assert!(chi_square_p(&counts, &law) > 1e-4);
+    }
+
+    #[test]
+    fn its_moments_are_those_of_the_normal_law() {
+        let n = 4_000_000;
+        let mut moments = [0.0; 4];
+        for x in numbers(2, n) {
+            let mut power = 1.0;
+            for moment in &mut moments {
+                power *= x;
+                *moment += power / n as f64;
+            }
+        }
+        // Variances of the powers are 1, 2, 15 and 96; five standard errors.
+        for ((moment, expected), variance) in
+            moments.iter().zip([0.0, 1.0, 0.0, 3.0]).zip([1.0, 2.0, 15.0, 96.0_f64])
+        {
+            assert!((moment - expected).abs() < 5.0 * (variance / n as f64).sqrt(), "{moments:?}");
+        }
+    }
+
+    #[test]
+    fn a_word_that_decides_asks_for_no_more() {
+        let ziggurat = Ziggurat::default();
+        let mut row = Seed { seed: 31, case: 0 }.stream(3, Effect::PixelNoise, 0);
+        let mut asked = 0;
+        for _ in 0..100_000 {
+            ziggurat.draw(row.next_u64(), || {
+                asked += 1;
+                Seed { seed: 31, case: 0 }.stream(3, Effect::PixelNoise, 1)
+            });
+        }
+        // 1.2 % for 256 layers.
+        assert!((1000..1500).contains(&asked), "{asked}");
+    }
+}
