@@ -13,12 +13,12 @@ use super::belonging::{holds, merged_with, reach_px, target};
 /// 3. the reason that the pipeline itself gives: [`Cause::PipelineFailed`], [`Cause::SaturatedFrame`],
 ///    [`Cause::NoPreviousFrame`], and an empty frame as [`Cause::BelowThreshold`];
 /// 4. when the pipeline tells its clusters, the label of the one nearest to the target and within its reach of
-///    max(`radius_px`, 1.5) px; where there is none, a cluster at the Moon, a star, planet, hot pixel or track that touches the target
+///    max(`radius_px`, 1.5) px; where there is none, a cluster at a star, planet, the Moon, a hot pixel or track that touches the target
 ///    (distance up to the sum of the reaches), and where that is missing too, [`Cause::BelowThreshold`];
-/// 5. by the truth alone, the visible Moon, star, planet, hot pixel or track that touches the target;
+/// 5. by the truth alone, the visible star, planet, Moon, hot pixel or track that touches the target;
 /// 6. [`Cause::Unexplained`].
 ///
-/// A wrong answer whose chosen cluster holds the target but more light of the Moon, a star, planet, hot pixel or track was merged with it.
+/// A wrong answer whose chosen cluster holds the target but more light of a star, planet, the Moon, a hot pixel or track was merged with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Cause {
     /// The measurements have no row for the frame.

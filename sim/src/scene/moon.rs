@@ -22,7 +22,7 @@ const LIGHT_SPEED_KM_S: f64 = 299_792.458;
 const ECLIPSE_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
 /// Cells across the disk for the fraction of its light that is seen, when Earth or shadow may take some.
 const FRACTION_CELLS: usize = 128;
-/// Sides of a cell in the image, px: of a disk with few points, and of one with more.
+/// Side of a cell in the image, px, where the number of points allows it; else it is a whole number of pixels.
 const FINE_CELL_PX: f64 = 0.5;
 /// Places a cell is looked at along each side, at most, and all cells of the image together.
 const SAMPLES: f64 = 32.0;
@@ -198,7 +198,8 @@ impl LitMoon {
         let lit_px = std::f64::consts::PI * radius_px * radius_px * lit;
         let limit = count_limit.max(1) as f64;
         let cell_px = if lit_px / (FINE_CELL_PX * FINE_CELL_PX) <= limit {
-            FINE_CELL_PX
+            // A disk within a pixel has no grid to be in step with.
+            FINE_CELL_PX.min(0.5 * radius_px)
         } else {
             (lit_px / limit).sqrt().ceil()
         };
@@ -288,4 +289,174 @@ impl LitMoon {
 /// Angle between two vectors, rad.
 fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     libm::atan2(a.cross(b).norm(), a.dot(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::{Psf, PsfConfig, Stamp};
+    use crate::truth::clock;
+    use crate::truth::moon::lommel_seeliger_phase;
+    use contract::Camera;
+
+    /// The Moon at `utc` from 7000 km off the centre of the Earth, at `degrees` from the direction to it.
+    fn seen_from(utc: &str, degrees: f64) -> LitMoon {
+        let time = clock::parse_utc(utc).unwrap();
+        let towards = moon::moon_position_km(clock::tdb_j2000_s(time)).normalize();
+        let across = towards.cross(&Vector3::z()).normalize();
+        let (sin, cos) = libm::sincos(degrees.to_radians());
+        let chaser = State {
+            position_km: (towards * cos + across * sin) * 7_000.0,
+            velocity_km_s: towards.cross(&across) * 7.5,
+        };
+        let observer = Observer::new(time, chaser.position_km, chaser.velocity_km_s).unwrap();
+        LitMoon::new(clock::tdb_j2000_s(time), &chaser, &observer).unwrap()
+    }
+
+    /// The same disk with the Sun at `phase_deg` from the observer.
+    fn at_phase(phase_deg: f64) -> LitMoon {
+        let moon = seen_from("2020-01-01T00:00:00Z", 90.0);
+        let (sin, cos) = libm::sincos(phase_deg.to_radians());
+        let sun = moon.across[0] * sin - moon.towards * cos;
+        LitMoon { sun, phase_rad: phase_deg.to_radians(), ..moon }
+    }
+
+    /// A camera of 200 × 200 pixels that looks at the Moon, whose disk has this radius, px, and its points.
+    fn drawn(moon: &LitMoon, radius_px: f64, count_limit: usize) -> Vec<ImagePoint> {
+        let camera = Camera {
+            columns: 200,
+            rows: 200,
+            focal_length_mm: radius_px / moon.tan_radius * 0.01,
+            pixel_width_um: 10.0,
+            pixel_height_um: 10.0,
+            principal_x_px: 99.7,
+            principal_y_px: 100.1,
+            radial: [0.0; 3],
+            tangential: [0.0; 2],
+        };
+        let to_icrs = [moon.across[0], moon.across[1], *moon.apparent.vector()];
+        let matrix = nalgebra::Matrix3::from_columns(&to_icrs).transpose();
+        let turn = nalgebra::UnitQuaternion::from_matrix(&matrix);
+        let camera_from_icrs = Rotation::from_wxyz([turn.w, turn.i, turn.j, turn.k]).unwrap();
+        let mut points = Vec::new();
+        moon.image(camera_from_icrs, &Projection::new(&camera).unwrap(), count_limit, &mut points);
+        points
+    }
+
+    #[test]
+    fn the_earths_motion_about_the_sun_does_not_move_the_moon() {
+        let moon = seen_from("2020-01-01T00:00:00Z", 90.0);
+        let geometric = Direction::from_vector(moon.centre_km).unwrap();
+        // 5.2″ of the orbit, 0.7″ of the Moon's own motion.
+        let apparent = geometric.separation(&moon.apparent).arcsec();
+        assert!((4.0..6.0).contains(&apparent), "{apparent}″");
+        // Light time in the frame of the Sun: up to 20.5″.
+        assert!(geometric.separation(&moon.astrometric).arcsec() < 21.5);
+        assert!(moon.apparent.separation(&moon.astrometric).arcsec() > 3.0);
+    }
+
+    /// The light of the disk at a phase over that of the full disk, as the closed form for a far observer has it.
+    #[test]
+    fn the_disk_is_a_lommel_seeliger_sphere() {
+        let light = |moon: &LitMoon| {
+            let n = 1000;
+            let place = |i: i32| moon.tan_radius * (2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0);
+            (0..n * n)
+                .filter_map(|i| moon.radiance(&Vector2::new(place(i % n), place(i / n))))
+                .map(|(radiance, _)| radiance)
+                .sum::<f64>()
+        };
+        let full = light(&at_phase(0.0));
+        for phase_deg in [20.0, 60.0, 90.0, 130.0] {
+            let ratio = light(&at_phase(phase_deg)) / full;
+            let expected = lommel_seeliger_phase(f64::to_radians(phase_deg));
+            // The limb is seen from 220 radii: 0.3° of the surface is missing at it.
+            assert!((ratio / expected - 1.0).abs() < 0.015, "{phase_deg}°: {ratio}, expected {expected}");
+        }
+    }
+
+    #[test]
+    fn the_points_add_up_to_one_at_every_phase_and_size() {
+        for phase_deg in [0.0, 30.0, 90.0, 150.0, 175.0] {
+            for radius_px in [0.05, 0.7, 10.4, 90.0] {
+                let points = drawn(&at_phase(phase_deg), radius_px, 1 << 18);
+                let sum: f64 = points.iter().map(|point| point.share).sum();
+                assert!((sum - 1.0).abs() < 1e-9, "{phase_deg}°, {radius_px} px: {sum}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_full_disk_is_even_and_as_large_as_it_should_be() {
+        let points = drawn(&at_phase(0.0), 30.0, 1 << 18);
+        let mut stamp = Stamp::new();
+        let mut psf = Psf::new(&PsfConfig::Gaussian { sigma_px: 0.4 }).unwrap();
+        psf.stamp_extended(&points, 1.0, 1e-12, (200, 200), &mut stamp);
+        let level = 1.0 / (std::f64::consts::PI * 900.0);
+        let mut lit = 0.0;
+        for (x, y, row) in stamp.rows() {
+            for (i, &share) in row.iter().enumerate() {
+                let radius = libm::hypot((x + i) as f64 - 99.7, y as f64 - 100.1);
+                // 2e-3: the light of a far Sun meets the sight of a near Moon at 0.3°, which brightens the limb.
+                assert!(radius > 27.0 || (share / level - 1.0).abs() < 4e-3, "{}", share / level);
+                lit += (share / level).min(1.0);
+            }
+        }
+        assert!((lit / (std::f64::consts::PI * 900.0) - 1.0).abs() < 2e-3, "{lit} px");
+    }
+
+    #[test]
+    fn a_large_disk_keeps_to_its_number_of_points() {
+        for (phase_deg, radius_px) in [(0.0, 150.0), (90.0, 150.0), (0.0, 900.0)] {
+            let points = drawn(&at_phase(phase_deg), radius_px, 10_000).len();
+            // Cells that are lit in part count whole: the rim.
+            assert!((1_000..11_500).contains(&points), "{points} points");
+        }
+    }
+
+    #[test]
+    fn behind_the_earth_it_gives_no_light_and_at_its_limb_half() {
+        let full = seen_from("2020-01-01T00:00:00Z", 90.0);
+        assert_eq!(full.seen_fraction(), 1.0);
+        assert_eq!(seen_from("2020-01-01T00:00:00Z", 180.0).magnitude, f64::INFINITY);
+        let limb_deg = 180.0 - libm::asin(shadow::EARTH_RADIUS_KM / 7_000.0).to_degrees();
+        // The parallax of 7000 km brings it back to the limb.
+        let mut moon = seen_from("2020-01-01T00:00:00Z", limb_deg - 0.95);
+        moon.sun = -moon.towards;
+        let disk =
+            shadow::visible_fraction(&moon.observer_km, &(moon.observer_km + moon.centre_km), MOON_RADIUS_KM);
+        assert!((0.02..0.98).contains(&disk), "{disk}");
+        assert!((moon.seen_fraction() - disk).abs() < 0.01, "{} {disk}", moon.seen_fraction());
+    }
+
+    /// Espenak & Meeus, Five Millennium Catalog of Lunar Eclipses: total at 2018-07-27 20:21:44 UTC; 2019-07-16 21:30:44 UTC partial, umbral
+    /// magnitude 0.653.
+    #[test]
+    fn eclipses_are_those_of_the_catalogue() {
+        assert_eq!(seen_from("2018-07-27T20:21:44Z", 90.0).magnitude, f64::INFINITY);
+        let partial = seen_from("2019-07-16T21:30:44Z", 90.0);
+        let to_axis = -partial.earth_to_sun_km.normalize();
+        let axis = Vector2::new(partial.across[0].dot(&to_axis), partial.across[1].dot(&to_axis));
+        // From the Earth's centre, and not 7000 km beside it, the shadow is centred opposite to the Sun.
+        let parallax = Vector2::new(
+            partial.across[0].dot(&partial.observer_km),
+            partial.across[1].dot(&partial.observer_km),
+        ) / partial.centre_km.norm();
+        let along = (axis - parallax).normalize() * partial.tan_radius;
+        let dark = (0..1000)
+            .filter(|i| partial.seen_radiance(&(along * (f64::from(*i) / 499.5 - 1.0) * 0.9999)) == 0.0)
+            .count();
+        // The catalogue's shadow is 1 to 2 % larger, for the atmosphere: 0.03 of the Moon's diameter; 0.02° of the ephemeris is 0.04.
+        assert!((dark as f64 / 1000.0 - 0.653).abs() < 0.08, "{dark}");
+        let bright = seen_from("2019-07-15T21:30:44Z", 90.0).magnitude;
+        assert!(partial.magnitude > bright + 0.5 && partial.magnitude.is_finite());
+    }
+
+    #[test]
+    fn the_new_moon_is_next_to_nothing() {
+        // New on 2020-01-24 at 21:42 UTC, 3° from the Sun.
+        let new = seen_from("2020-01-24T21:42:00Z", 90.0);
+        assert!(new.phase_rad.to_degrees() > 174.0);
+        assert!(new.magnitude > -3.5, "{}", new.magnitude);
+    }
 }
