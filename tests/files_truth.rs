@@ -46,9 +46,15 @@ fn frame(i: u64) -> FrameTruth {
 
 fn object(frame: u64, i: u64) -> ObjectTruth {
     let seed = frame * 1000 + i;
-    let kind =
-        [ObjectKind::Target, ObjectKind::Star, ObjectKind::HotPixel, ObjectKind::CosmicRay][i as usize % 4];
-    let star = matches!(kind, ObjectKind::Target | ObjectKind::Star);
+    let kind = [
+        ObjectKind::Target,
+        ObjectKind::Star,
+        ObjectKind::Planet,
+        ObjectKind::Moon,
+        ObjectKind::HotPixel,
+        ObjectKind::CosmicRay,
+    ][i as usize % 6];
+    let star = !matches!(kind, ObjectKind::HotPixel | ObjectKind::CosmicRay);
     ObjectTruth {
         frame,
         kind,

@@ -7,13 +7,18 @@ use nalgebra::Vector3;
 use crate::draw::ExpectedImage;
 use crate::onboard::{RoiExtractor, downlink};
 use crate::optics::{self, ImagePoint, Projection, Psf, Stamp};
-use crate::scene::{Appearance, BackgroundField, CameraMotion, Lighting, Source, planets};
+use crate::scene::{Appearance, BackgroundField, CameraMotion, Lighting, Source, moon::LitMoon, planets};
 use crate::sensor::{FlatLaws, Opening, RawImage, Switch, Track};
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, clock, shadow};
 use crate::{SimError, Simulator};
 
 /// Points that the image of a source is made of, at most: its body's and those of its trail, multiplied.
 const POINTS: usize = 1 << 18;
+/// The same of the Moon: a disk of 1150 px has a point in every pixel.
+const MOON_POINTS: usize = 1 << 20;
+/// The share of the Moon's light below which the shutter control leaves a pixel out: a hundredth of what a pixel of a disk of
+/// 1150 px has.
+const MOON_FLOOR: f64 = 1e-8;
 
 /// One frame with all that belongs to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,8 +29,8 @@ pub struct Exposure {
     pub telemetry: Telemetry,
     /// The truth about the frame.
     pub truth: FrameTruth,
-    /// The truth about every object in it: the target, then stars, planets, hot pixels and tracks of particles, each by
-    /// number.
+    /// The truth about every object in it: the target, then stars, planets, the Moon, hot pixels and tracks of
+    /// particles, each by number.
     pub objects: Vec<ObjectTruth>,
 }
 
@@ -39,7 +44,7 @@ pub struct SimulatedCamera<'a> {
     raw: RawImage,
     regions: Option<RoiExtractor>,
     sources: Vec<Source>,
-    /// The target's body in the middle of the exposure.
+    /// The target's body, or the Moon, in the middle of the exposure.
     body: Vec<ImagePoint>,
     trail: Vec<ImagePoint>,
     points: Vec<ImagePoint>,
@@ -64,6 +69,8 @@ struct Moment {
     target_position: Option<PixelPoint>,
     target_from_icrs: Option<Rotation<Target, Icrs>>,
     appearance: Appearance,
+    /// `None` without the Solar System.
+    moon: Option<LitMoon>,
 }
 
 impl Moment {
@@ -122,7 +129,7 @@ impl<'a> SimulatedCamera<'a> {
             |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
             &mut self.sources,
         );
-        if simulator.planets == Switch::On {
+        if simulator.solar_system == Switch::On {
             planets::look(
                 clock::tdb_j2000_s(time),
                 &moment.observer,
@@ -133,6 +140,7 @@ impl<'a> SimulatedCamera<'a> {
                 &mut self.sources,
             );
         }
+        self.look_at_moon(&moment, &camera, exposure_s);
         let background = simulator.background.as_ref().map(|background| {
             let (position_km, sun_km) = (&moment.states.chaser.position_km, &moment.observer.sun_km());
             background.field(time, position_km, sun_km, moment.camera_from_icrs)
@@ -224,6 +232,10 @@ impl<'a> SimulatedCamera<'a> {
             magnitude,
             electrons_per_s: magnitude.map_or(0.0, |m| simulator.radiometry.sunlit(m)),
         };
+        let moon = match simulator.solar_system {
+            Switch::On => LitMoon::new(clock::tdb_j2000_s(time), &states.chaser, &observer),
+            Switch::Off => None,
+        };
         Ok(Moment {
             states,
             observer,
@@ -236,6 +248,7 @@ impl<'a> SimulatedCamera<'a> {
             target_position,
             target_from_icrs,
             appearance,
+            moon,
         })
     }
 
@@ -280,7 +293,7 @@ impl<'a> SimulatedCamera<'a> {
             &simulator.projection,
             target.map_or(0.0, |_| moment.target.electrons_per_s * spread),
         );
-        if simulator.planets == Switch::On {
+        if simulator.solar_system == Switch::On {
             brightest = planets::brightest(
                 clock::tdb_j2000_s(time),
                 &moment.observer,
@@ -290,8 +303,41 @@ impl<'a> SimulatedCamera<'a> {
                 brightest,
             );
         }
-        let peak = (brightest > 0.0).then_some(brightest * peak_share);
-        Ok(simulator.shutter.exposure_s(peak))
+        let peak = (brightest * peak_share).max(self.moon_peak_e_per_s(&moment));
+        Ok(simulator.shutter.exposure_s((peak > 0.0).then_some(peak)))
+    }
+
+    /// Electrons a second in the brightest pixel of the Moon, from its image without the camera's motion; 0 when it is not
+    /// in the field.
+    fn moon_peak_e_per_s(&self, moment: &Moment) -> f64 {
+        let simulator = self.simulator;
+        let Some(moon) = &moment.moon else { return 0.0 };
+        let still = CameraMotion::still(moment.camera_from_icrs);
+        let Some(source) = moon.source(&still, &simulator.projection, &simulator.radiometry, |_| 0.0) else {
+            return 0.0;
+        };
+        let (mut points, mut stamp) = (Vec::new(), Stamp::new());
+        moon.image(still.middle, &simulator.projection, MOON_POINTS, &mut points);
+        let detector = simulator.projection.detector();
+        self.psf.clone().stamp_extended(&points, 1.0, MOON_FLOOR, detector, &mut stamp);
+        stamp.truth(0.0, 0.0).peak_electrons * source.electrons_per_s
+    }
+
+    /// Appends the Moon when its image comes onto the detector, and takes away the stars and planets behind it.
+    fn look_at_moon(&mut self, moment: &Moment, camera: &CameraMotion, exposure_s: f64) {
+        let simulator = self.simulator;
+        let Some(moon) = &moment.moon else { return };
+        self.sources.retain(|source| {
+            let far = matches!(source.kind, ObjectKind::Star | ObjectKind::Planet);
+            let hidden = |astrometric| far && moon.hides(&moment.observer.apparent_of(astrometric));
+            !source.astrometric.is_some_and(hidden)
+        });
+        self.sources.extend(moon.source(
+            camera,
+            &simulator.projection,
+            &simulator.radiometry,
+            |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
+        ));
     }
 
     /// Draws the expected image and the digital numbers, keeps a stamp of every object that has light on the detector,
@@ -339,11 +385,16 @@ impl<'a> SimulatedCamera<'a> {
             trail.clear();
             optics::trail(begin, source.position, end, trail);
             body.clear();
-            if source.kind == ObjectKind::Target {
-                let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
-                moment.appearance.image(&place, POINTS / trail.len(), body);
-            } else {
-                body.push(ImagePoint { position: source.position, share: 1.0 });
+            match (source.kind, &moment.moon) {
+                (ObjectKind::Target, _) => {
+                    let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
+                    moment.appearance.image(&place, POINTS / trail.len(), body);
+                }
+                (ObjectKind::Moon, Some(moon)) => {
+                    let limit = MOON_POINTS / trail.len();
+                    moon.image(moment.camera_from_icrs, &simulator.projection, limit, body);
+                }
+                _ => body.push(ImagePoint { position: source.position, share: 1.0 }),
             }
             carry_along(body, source.position, trail, points);
             psf.stamp_extended(points, electrons, Psf::FLOOR_E, (columns, rows), stamp);

@@ -52,8 +52,8 @@ pub struct Simulation {
     pub roi: Option<RoiConfig>,
     /// The target as a source of light.
     pub target: TargetConfig,
-    /// Whether planets are in the field.
-    pub planets: Switch,
+    /// Whether Moon and planets are in the field.
+    pub solar_system: Switch,
 }
 
 /// A simulation that was checked and prepared; shared by all threads.
@@ -75,7 +75,7 @@ pub struct Simulator {
     pub(crate) roi: Option<RoiConfig>,
     pub(crate) seed: Seed,
     pub(crate) target: Spacecraft,
-    pub(crate) planets: Switch,
+    pub(crate) solar_system: Switch,
     pub(crate) radiometry: Radiometry,
     pub(crate) background: Option<Background>,
 }
@@ -133,7 +133,7 @@ impl Simulator {
             roi: simulation.roi.clone(),
             seed,
             target,
-            planets: simulation.planets,
+            solar_system: simulation.solar_system,
             radiometry,
         })
     }

@@ -86,7 +86,7 @@ fn towards(reference: &Reference) -> Simulation {
     simulation.attitude = looking_at(reference.direction.ra().degrees(), reference.direction.dec().degrees());
     simulation.orbit.epoch_utc = utc.clone();
     simulation.schedule[0].start_utc = utc;
-    simulation.planets = Switch::On;
+    simulation.solar_system = Switch::On;
     simulation
 }
 
@@ -129,7 +129,7 @@ fn a_planet_is_where_de421_has_it_in_the_image_and_in_the_table() {
 fn without_the_switch_there_are_no_planets_and_all_else_is_as_it_was() {
     let reference = references().into_iter().find(|r| r.planet == Planet::Venus).unwrap();
     let on = towards(&reference);
-    let off = Simulation { planets: Switch::Off, ..on.clone() };
+    let off = Simulation { solar_system: Switch::Off, ..on.clone() };
     let [on, off] = [on, off].map(|simulation| simulator(&simulation).camera().unwrap().expose(0).unwrap());
     assert!(planets(&off).is_empty() && !planets(&on).is_empty());
     let others: Vec<_> = on.objects.iter().filter(|object| object.kind != ObjectKind::Planet).collect();
@@ -147,7 +147,7 @@ fn the_shutter_follows_a_planet() {
         step_factor: 1.2,
         lag_s: 0.0,
     };
-    let off = Simulation { planets: Switch::Off, ..on.clone() };
+    let off = Simulation { solar_system: Switch::Off, ..on.clone() };
     let [on, off] = [on, off].map(|simulation| simulator(&simulation).camera().unwrap().expose(0).unwrap());
     assert!(on.truth.exposure_s < 0.1 * off.truth.exposure_s, "{} s", on.truth.exposure_s);
     // 0.5 of the saturation of 40,550 electrons, within a step of the ladder.

@@ -63,9 +63,9 @@ pub struct Scenario {
     pub roi: Option<RoiConfig>,
     /// The target spacecraft as a source of light.
     pub target: TargetConfig,
-    /// Whether the planets are drawn, "on" or "off" (the default). They are in no star list.
+    /// Whether the Moon and the planets are drawn, "on" or "off" (the default). They are in no star list.
     #[serde(default = "off")]
-    pub planets: Switch,
+    pub solar_system: Switch,
     /// Parameters of the pipeline `far_range`.
     #[serde(default)]
     pub far_range: FarRangeConfig,
@@ -103,7 +103,7 @@ impl Scenario {
             shutter: self.shutter.clone(),
             roi: self.roi.clone(),
             target: self.target.clone(),
-            planets: self.planets,
+            solar_system: self.solar_system,
         }
     }
 

@@ -174,8 +174,15 @@ fn group_score(sequences: &[&[&FrameVerdict]]) -> GroupScore {
             _ => None,
         }),
         wrong_taken: counts(
-            &[Taken::Star(0), Taken::Planet(0), Taken::HotPixel(0), Taken::CosmicRay(0), Taken::Nothing]
-                .map(Taken::code),
+            &[
+                Taken::Star(0),
+                Taken::Planet(0),
+                Taken::Moon,
+                Taken::HotPixel(0),
+                Taken::CosmicRay(0),
+                Taken::Nothing,
+            ]
+            .map(Taken::code),
             frames().filter_map(|frame| match frame.verdict {
                 Verdict::Wrong { taken, .. } => Some(taken.code()),
                 _ => None,

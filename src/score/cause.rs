@@ -13,12 +13,12 @@ use super::belonging::{holds, merged_with, reach_px, target};
 /// 3. the reason that the pipeline itself gives: [`Cause::PipelineFailed`], [`Cause::SaturatedFrame`],
 ///    [`Cause::NoPreviousFrame`], and an empty frame as [`Cause::BelowThreshold`];
 /// 4. when the pipeline tells its clusters, the label of the one nearest to the target and within its reach of
-///    max(`radius_px`, 1.5) px; where there is none, a cluster at a star, planet, hot pixel or track that touches the target
+///    max(`radius_px`, 1.5) px; where there is none, a cluster at a star, planet, the Moon, a hot pixel or track that touches the target
 ///    (distance up to the sum of the reaches), and where that is missing too, [`Cause::BelowThreshold`];
-/// 5. by the truth alone, the visible star, planet, hot pixel or track that touches the target;
+/// 5. by the truth alone, the visible star, planet, Moon, hot pixel or track that touches the target;
 /// 6. [`Cause::Unexplained`].
 ///
-/// A wrong answer whose chosen cluster holds the target but more light of a star, planet, hot pixel or track was merged with it.
+/// A wrong answer whose chosen cluster holds the target but more light of a star, planet, the Moon, a hot pixel or track was merged with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Cause {
     /// The measurements have no row for the frame.
@@ -41,6 +41,8 @@ pub enum Cause {
     MergedWithStar,
     /// Its image touches a visible planet's: one cluster, which was taken for another place.
     MergedWithPlanet,
+    /// Its image touches the visible Moon's: one cluster, which was taken for another place.
+    MergedWithMoon,
     /// Its cluster was labelled as a star though no visible star touches it: a wrong identification.
     TakenForStar,
     /// Its cluster was labelled as a hotspot, or it touches a hot pixel.
@@ -59,7 +61,7 @@ pub enum Cause {
 
 impl Cause {
     /// Every cause, in the order of precedence.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::NotReported,
         Self::OutsideField,
         Self::InEclipse,
@@ -70,6 +72,7 @@ impl Cause {
         Self::NoPreviousFrame,
         Self::MergedWithStar,
         Self::MergedWithPlanet,
+        Self::MergedWithMoon,
         Self::TakenForStar,
         Self::TakenForHotspot,
         Self::MergedWithCosmicRay,
@@ -92,6 +95,7 @@ impl Cause {
             Self::NoPreviousFrame => "no_previous_frame",
             Self::MergedWithStar => "merged_with_star",
             Self::MergedWithPlanet => "merged_with_planet",
+            Self::MergedWithMoon => "merged_with_moon",
             Self::TakenForStar => "taken_for_star",
             Self::TakenForHotspot => "taken_for_hotspot",
             Self::MergedWithCosmicRay => "merged_with_cosmic_ray",
@@ -112,6 +116,7 @@ impl Cause {
         match kind {
             ObjectKind::Star => Self::MergedWithStar,
             ObjectKind::Planet => Self::MergedWithPlanet,
+            ObjectKind::Moon => Self::MergedWithMoon,
             ObjectKind::HotPixel => Self::TakenForHotspot,
             ObjectKind::CosmicRay => Self::MergedWithCosmicRay,
             ObjectKind::Target => Self::Unexplained,
@@ -180,8 +185,9 @@ fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[
         .min_by(|a, b| distance(a).total_cmp(&distance(b)));
     match nearest.map(|cluster| cluster.label) {
         Some(Label::Star(_)) => Some(match neighbour {
-            Some(other) if other.kind == ObjectKind::Star => Cause::MergedWithStar,
-            Some(other) if other.kind == ObjectKind::Planet => Cause::MergedWithPlanet,
+            Some(other) if matches!(other.kind, ObjectKind::Star | ObjectKind::Planet | ObjectKind::Moon) => {
+                Cause::of_outshining(other.kind)
+            }
             _ => Cause::TakenForStar,
         }),
         Some(Label::Hotspot) => Some(Cause::TakenForHotspot),
@@ -323,10 +329,14 @@ mod tests {
     }
 
     #[test]
-    fn a_planet_at_the_target_is_a_merger_of_its_own() {
-        let planet = ObjectTruth { kind: ObjectKind::Planet, ..star_at(5, right_of_target(2.0), 5000.0) };
-        assert_eq!(of(&no_target(), std::slice::from_ref(&planet)), Cause::MergedWithPlanet);
-        assert_eq!(of(&labelled(Label::Star(5)), &[planet]), Cause::MergedWithPlanet);
+    fn a_planet_or_the_moon_at_the_target_is_a_merger_of_its_own() {
+        for (kind, cause) in
+            [(ObjectKind::Planet, Cause::MergedWithPlanet), (ObjectKind::Moon, Cause::MergedWithMoon)]
+        {
+            let other = ObjectTruth { kind, ..star_at(5, right_of_target(2.0), 5000.0) };
+            assert_eq!(of(&no_target(), std::slice::from_ref(&other)), cause);
+            assert_eq!(of(&labelled(Label::Star(5)), &[other]), cause);
+        }
     }
 
     #[test]

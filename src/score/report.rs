@@ -143,7 +143,7 @@ pub struct Score {
     pub misses: IndexMap<String, u64>,
     /// Wrong answers, by the cause that kept the target itself from being taken.
     pub wrong: IndexMap<String, u64>,
-    /// Wrong answers, by what was taken: `star`, `planet`, `hot_pixel`, `nothing`.
+    /// Wrong answers, by what was taken: `star`, `planet`, `moon`, `hot_pixel`, `cosmic_ray`, `nothing`.
     pub wrong_taken: IndexMap<String, u64>,
 }
 

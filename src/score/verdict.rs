@@ -49,6 +49,8 @@ pub enum Taken {
     Star(u32),
     /// The planet of this number, 1 to 8.
     Planet(u32),
+    /// The Moon.
+    Moon,
     /// The hot pixel of this number: row × columns + column.
     HotPixel(u32),
     /// The track of this number in the frame.
@@ -63,16 +65,18 @@ impl Taken {
         match self {
             Self::Star(_) => "star",
             Self::Planet(_) => "planet",
+            Self::Moon => "moon",
             Self::HotPixel(_) => "hot_pixel",
             Self::CosmicRay(_) => "cosmic_ray",
             Self::Nothing => "nothing",
         }
     }
 
-    /// The number of the star, planet, hot pixel or track.
+    /// The number of the star, planet, hot pixel or track; 0 for the Moon.
     pub fn id(self) -> Option<u32> {
         match self {
             Self::Star(id) | Self::Planet(id) | Self::HotPixel(id) | Self::CosmicRay(id) => Some(id),
+            Self::Moon => Some(0),
             Self::Nothing => None,
         }
     }
@@ -241,6 +245,7 @@ fn taken(object: &ObjectTruth) -> Taken {
     match object.kind {
         ObjectKind::Star => Taken::Star(object.id),
         ObjectKind::Planet => Taken::Planet(object.id),
+        ObjectKind::Moon => Taken::Moon,
         ObjectKind::HotPixel => Taken::HotPixel(object.id),
         ObjectKind::CosmicRay => Taken::CosmicRay(object.id),
         ObjectKind::Target => Taken::Nothing,

@@ -1,6 +1,7 @@
-//! What is in the field: stars, planets and the target, as sources with a place and a rate of electrons.
+//! What is in the field: stars, planets, the Moon and the target, as sources with a place and a rate of electrons.
 
 mod background;
+pub(crate) mod moon;
 pub(crate) mod planets;
 mod spacecraft;
 mod star_field;
@@ -44,7 +45,7 @@ impl CameraMotion {
     }
 }
 
-/// A point-like source of electrons on the detector.
+/// A source of electrons on the detector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source {
     /// What it is.
@@ -52,7 +53,7 @@ pub struct Source {
     /// Number within its kind.
     pub id: u32,
     /// Where it is in the middle of the exposure; may lie off the detector by as much as its image reaches. Of the target:
-    /// where the origin of its body frame is.
+    /// where the origin of its body frame is; of the Moon: where the centre of its disk is.
     pub position: PixelPoint,
     /// Where it is at the begin and at the end of the exposure.
     pub ends: [PixelPoint; 2],

@@ -1,8 +1,17 @@
-//! Where the Moon is, to a few hundredths of a degree.
+//! The Moon: where it is, to a few hundredths of a degree, and how bright.
 
 use nalgebra::Vector3;
 
 use super::ecliptic;
+
+/// Mean radius of the Moon, km (IAU Working Group on Cartographic Coordinates 2015).
+pub const MOON_RADIUS_KM: f64 = 1_737.4;
+/// Mean distance of the Moon, km, for which [`moon_magnitude`] holds.
+pub const MOON_MEAN_DISTANCE_KM: f64 = 384_400.0;
+/// Colour index B−V of its light (Cox 2000, Allen's Astrophysical Quantities, Table 12.6).
+pub const MOON_B_V: f64 = 0.92;
+/// Phase angle up to which the magnitude is that of the observed law, degrees.
+const LAST_PHASE_DEG: f64 = 150.0;
 
 /// Seconds in a Julian century.
 const CENTURY_S: f64 = 36_525.0 * 86_400.0;
@@ -109,9 +118,54 @@ pub fn moon_position_km(tdb_j2000_s: f64) -> Vector3<f64> {
     ecliptic::to_icrs(Vector3::new(cos_b * cos_l, cos_b * sin_l, sin_b) * (distance_m / 1000.0))
 }
 
+/// V magnitude of the Moon at mean distance with the Sun at 1 au, `phase_deg` (0 to 180) from full: Krisciunas & Schaefer (1991, PASP
+/// 103, 1033, Eq. 9, after Allen). Beyond 150°, where that law would leave light to a new Moon, it fades as a
+/// Lommel–Seeliger sphere does; infinite at 180°.
+pub fn moon_magnitude(phase_deg: f64) -> f64 {
+    let observed = |phase_deg: f64| {
+        let square = phase_deg * phase_deg;
+        -12.73 + 0.026 * phase_deg.abs() + 4e-9 * square * square
+    };
+    if phase_deg <= LAST_PHASE_DEG {
+        return observed(phase_deg);
+    }
+    let faded =
+        lommel_seeliger_phase(phase_deg.to_radians()) / lommel_seeliger_phase(LAST_PHASE_DEG.to_radians());
+    observed(LAST_PHASE_DEG) - 2.5 * libm::log10(faded)
+}
+
+/// Phase law of a Lommel–Seeliger sphere, 1 at full phase, 0 at π: 1 − sin(α/2) tan(α/2) ln cot(α/4) (Fairbairn 2005, JRASC 99, 92).
+pub(crate) fn lommel_seeliger_phase(phase_rad: f64) -> f64 {
+    if phase_rad <= 0.0 {
+        return 1.0;
+    }
+    let (sin, cos) = libm::sincos(0.5 * phase_rad);
+    if cos <= 0.0 {
+        return 0.0;
+    }
+    (1.0 + sin * sin / cos * libm::log(libm::tan(0.25 * phase_rad))).max(0.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Allen, Astrophysical Quantities: full −12.7, quarter −10.1 (Krisciunas & Schaefer: −10.13 from the formula).
+    #[test]
+    fn the_moon_has_its_known_magnitudes() {
+        assert_eq!(moon_magnitude(0.0), -12.73);
+        assert!((moon_magnitude(90.0) + 10.13).abs() < 0.01);
+    }
+
+    #[test]
+    fn the_new_moon_fades_to_nothing_without_a_step() {
+        assert!((moon_magnitude(150.0) - moon_magnitude(150.001)).abs() < 1e-3);
+        let magnitudes: Vec<f64> = (0..180).map(|degrees| moon_magnitude(f64::from(degrees))).collect();
+        assert!(magnitudes.windows(2).all(|pair| pair[0] < pair[1]));
+        // The observed law, drawn out to here, would leave −3.97.
+        assert!(moon_magnitude(179.0) > -2.0, "{}", moon_magnitude(179.0));
+        assert!(moon_magnitude(180.0) > 10.0);
+    }
 
     /// Meeus, Example 47.a: 1992 April 12, 0h TD: longitude 133.162655°, latitude −3.229126°, 368 409.7 km, of date.
     #[test]

@@ -119,6 +119,8 @@ pub enum ObjectKind {
     Star,
     /// A planet; `id` is its number from the Sun outwards, 1 to 8.
     Planet,
+    /// The Moon; `id` is 0.
+    Moon,
     /// A hot pixel; `id` is row × columns + column.
     HotPixel,
     /// The track of a charged particle; `id` counts those of the frame from 0.
@@ -132,6 +134,7 @@ impl ObjectKind {
             Self::Target => "target",
             Self::Star => "star",
             Self::Planet => "planet",
+            Self::Moon => "moon",
             Self::HotPixel => "hot_pixel",
             Self::CosmicRay => "cosmic_ray",
         }
@@ -139,7 +142,7 @@ impl ObjectKind {
 
     /// Reads [`ObjectKind::code`].
     pub fn parse(code: &str) -> Option<Self> {
-        [Self::Target, Self::Star, Self::Planet, Self::HotPixel, Self::CosmicRay]
+        [Self::Target, Self::Star, Self::Planet, Self::Moon, Self::HotPixel, Self::CosmicRay]
             .into_iter()
             .find(|kind| kind.code() == code)
     }
@@ -152,7 +155,7 @@ pub struct ObjectTruth {
     pub frame: u64,
     /// What it is.
     pub kind: ObjectKind,
-    /// Number within its kind; 0 for the target.
+    /// Number within its kind; 0 for the target and the Moon.
     pub id: u32,
     /// Where the centre of its image is (energy centroid of the image that an even, unlimited detector would have; the
     /// middle of a particle's track on the detector).

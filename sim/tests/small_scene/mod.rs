@@ -76,7 +76,7 @@ pub(crate) fn still() -> Simulation {
         shutter: ShutterConfig::Fixed { exposure_s: 0.25 },
         roi: None,
         target: TargetConfig::LambertSphere { radius_m: 0.1, albedo: 0.3 },
-        planets: Switch::Off,
+        solar_system: Switch::Off,
     }
 }
 

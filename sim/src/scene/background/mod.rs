@@ -16,15 +16,12 @@ use serde::{Deserialize, Serialize};
 use crate::SimError;
 use crate::error::require;
 use crate::optics::{Projection, Radiometry, SUN_V_MAG_AT_1_AU, Vignetting};
+use crate::truth::moon::{MOON_MEAN_DISTANCE_KM, MOON_RADIUS_KM};
 use crate::truth::{clock, moon, shadow};
 use stray::Ray;
 
 /// Kilometres in an astronomical unit (IAU 2012 Resolution B2, exact).
 const AU_KM: f64 = 149_597_870.7;
-/// Mean radius of the Moon, km (IAU Working Group on Cartographic Coordinates 2015).
-const MOON_RADIUS_KM: f64 = 1_737.4;
-/// Mean distance of the Moon for which its magnitude holds, km.
-const MOON_MEAN_DISTANCE_KM: f64 = 384_400.0;
 /// Square degrees in a steradian.
 const SQUARE_DEGREES_PER_SR: f64 = (180.0 / std::f64::consts::PI) * (180.0 / std::f64::consts::PI);
 
@@ -259,7 +256,7 @@ impl Background {
                 libm::atan2(moon_to_sun_km.cross(&-to_moon_km).norm(), moon_to_sun_km.dot(&-to_moon_km))
                     .to_degrees();
             let nearness = MOON_MEAN_DISTANCE_KM / to_moon_km.norm();
-            let magnitude = stray::moon_magnitude(phase_deg) - SUN_V_MAG_AT_1_AU;
+            let magnitude = moon::moon_magnitude(phase_deg) - SUN_V_MAG_AT_1_AU;
             let seen = shadow::visible_fraction(position_km, &moon_km, MOON_RADIUS_KM);
             moon_rays.push(Ray {
                 direction: to_moon_km.normalize(),

@@ -55,13 +55,6 @@ pub(super) struct Ray {
     pub(super) suns: f64,
 }
 
-/// V magnitude of the Moon at mean distance with the Sun at 1 au, `phase_deg` from full (Krisciunas & Schaefer 1991, PASP 103, 1033, Eq. 9,
-/// after Allen).
-pub(super) fn moon_magnitude(phase_deg: f64) -> f64 {
-    let square = phase_deg * phase_deg;
-    -12.73 + 0.026 * phase_deg.abs() + 4e-9 * square * square
-}
-
 /// Rings, and patches of a ring, into which the Earth's disk is divided: equal solid angles.
 const RINGS: usize = 10;
 const SECTORS: usize = 20;
@@ -155,12 +148,5 @@ mod tests {
         let zenith = Vector3::new(1.0, 2.0, -2.0).normalize();
         assert!((irradiance(1.000_01, zenith) / 0.6 - 1.0).abs() < 0.01);
         assert_eq!(irradiance(0.9, zenith), 0.0);
-    }
-
-    /// Allen, Astrophysical Quantities: full −12.7, quarter −10.1 (Krisciunas & Schaefer: −10.13 from the formula).
-    #[test]
-    fn the_moon_has_its_known_magnitudes() {
-        assert_eq!(moon_magnitude(0.0), -12.73);
-        assert!((moon_magnitude(90.0) + 10.13).abs() < 0.01);
     }
 }

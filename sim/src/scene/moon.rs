@@ -1,0 +1,462 @@
+//! The Moon in the field: a sphere in sunlight, resolved.
+//!
+//! Its surface scatters by the law of Lommel and Seeliger, radiance ∝ μ₀/(μ₀ + μ) with the cosines of incidence and emission
+//! (Hapke 1963, J. Geophys. Res. 68, 4571; Fairbairn 2005, JRASC 99, 92): the full Moon is even up to its limb, as the real one is and a
+//! Lambert sphere is not. The light of the whole disk is that of [`moon::moon_magnitude`].
+
+use contract::{CameraFrame, Direction, Icrs, PixelPoint, Rotation};
+use nalgebra::{Matrix2, Vector2, Vector3};
+
+use super::star_field::is_within;
+use super::{CameraMotion, Source};
+use crate::optics::{ImagePoint, Projection, Radiometry};
+use crate::truth::moon::{self, MOON_B_V, MOON_MEAN_DISTANCE_KM, MOON_RADIUS_KM};
+use crate::truth::{ObjectKind, Observer, State, aberrate, shadow};
+
+/// Kilometres in an astronomical unit (IAU 2012 Resolution B2, exact).
+const AU_KM: f64 = 149_597_870.7;
+/// The speed of light, km/s.
+const LIGHT_SPEED_KM_S: f64 = 299_792.458;
+/// Within this angle of the point opposite to the Sun the Earth's shadow may be on the Moon, rad: from the Earth the penumbra
+/// spans 1.3° about it at most, the Moon 0.3°.
+const ECLIPSE_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
+/// Cells across the disk for the fraction of its light that is seen, when Earth or shadow may take some.
+const FRACTION_CELLS: usize = 128;
+/// Side of a cell in the image, px, where the number of points allows it; else it is a whole number of pixels.
+const FINE_CELL_PX: f64 = 0.5;
+/// Places a cell is looked at along each side, at most, and all cells of the image together.
+const SAMPLES: f64 = 32.0;
+const ALL_SAMPLES: f64 = (1 << 22) as f64;
+
+/// The Moon as an observer sees it at one moment.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LitMoon {
+    /// Its centre from the observer, km, ICRS axes, geometric.
+    centre_km: Vector3<f64>,
+    /// Unit vectors: to its centre, and two across that make a plane tangent to the sky.
+    towards: Vector3<f64>,
+    across: [Vector3<f64>; 2],
+    /// Tangent of its radius as seen.
+    tan_radius: f64,
+    /// Unit vector from its centre to the Sun.
+    sun: Vector3<f64>,
+    /// From the centre of the Earth, km: the observer and the Sun.
+    observer_km: Vector3<f64>,
+    earth_to_sun_km: Vector3<f64>,
+    /// Whether the Earth's shadow may be on it.
+    near_shadow: bool,
+    /// Cosine of the Earth's radius as seen, when the Earth is before the Moon.
+    earth_cos: Option<f64>,
+    phase_rad: f64,
+    astrometric: Direction<Icrs>,
+    apparent: Direction<Icrs>,
+    magnitude: f64,
+}
+
+impl LitMoon {
+    /// The Moon at `tdb_j2000_s` from `chaser`, which `observer` is; `None` from inside of it.
+    ///
+    /// Light time belongs to its aberration: the Moon goes about the Sun with the Earth, at 30 km/s, and the 20″ by which it moves on
+    /// while light is under way are those by which the Earth's motion turns the light. What the Moon moves about the Earth
+    /// in that time (0.7″) is counted too. The geometry of light and shadow is that of one moment.
+    pub(crate) fn new(tdb_j2000_s: f64, chaser: &State, observer: &Observer) -> Option<Self> {
+        let centre_km = moon::moon_position_km(tdb_j2000_s) - chaser.position_km;
+        let distance_km = centre_km.norm();
+        if distance_km <= MOON_RADIUS_KM {
+            return None;
+        }
+        let light_s = distance_km / LIGHT_SPEED_KM_S;
+        let velocity_km_s = observer.barycentric_velocity_km_s();
+        let earth_km_s = velocity_km_s - chaser.velocity_km_s;
+        let retarded_km =
+            moon::moon_position_km(tdb_j2000_s - light_s) - chaser.position_km - earth_km_s * light_s;
+        let astrometric = Direction::from_vector(retarded_km).ok()?;
+
+        let towards = centre_km / distance_km;
+        // The coordinate axis that the Moon is farthest from makes the first direction across.
+        let axis = if towards.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
+        let first = towards.cross(&axis).normalize();
+        let sun_km = observer.sun_km() - centre_km;
+        let earth_to_sun_km = chaser.position_km + observer.sun_km();
+        let earth_to_moon_km = chaser.position_km + centre_km;
+        let sine = MOON_RADIUS_KM / distance_km;
+        let earth_sine = shadow::EARTH_RADIUS_KM / chaser.position_km.norm();
+        let mut lit = Self {
+            centre_km,
+            towards,
+            across: [first, towards.cross(&first)],
+            tan_radius: sine / (1.0 - sine * sine).sqrt(),
+            sun: sun_km.normalize(),
+            observer_km: chaser.position_km,
+            earth_to_sun_km,
+            near_shadow: angle(&earth_to_moon_km, &-earth_to_sun_km) < ECLIPSE_RAD,
+            earth_cos: (chaser.position_km.norm() < distance_km)
+                .then(|| (1.0 - earth_sine * earth_sine).max(0.0).sqrt()),
+            phase_rad: angle(&sun_km, &-centre_km),
+            astrometric,
+            // Too near for the light deflection of a star: it passes no Sun.
+            apparent: aberrate(astrometric, &(velocity_km_s / LIGHT_SPEED_KM_S)),
+            magnitude: f64::INFINITY,
+        };
+        let far = distance_km / MOON_MEAN_DISTANCE_KM * (sun_km.norm() / AU_KM);
+        lit.magnitude = moon::moon_magnitude(lit.phase_rad.to_degrees()) + 5.0 * libm::log10(far)
+            - 2.5 * libm::log10(lit.seen_fraction());
+        Some(lit)
+    }
+
+    /// The Moon as a source of light at the place of its disk's centre; `None` when no light comes from it, and when its image,
+    /// `reach_px` of its electrons a second wider than the disk, does not come onto the detector.
+    pub(crate) fn source(
+        &self,
+        camera: &CameraMotion,
+        projection: &Projection,
+        radiometry: &Radiometry,
+        reach_px: impl Fn(f64) -> f64,
+    ) -> Option<Source> {
+        if !self.magnitude.is_finite() {
+            return None;
+        }
+        let electrons_per_s = radiometry.star(self.magnitude, Some(MOON_B_V), None);
+        let position = projection.project(&(camera.middle * self.apparent))?;
+        let place = self.place(camera.middle, projection);
+        let [half_width, half_height] = self.half_sides_px(&self.scale(&place)?);
+        let margin_px = half_width.max(half_height) + camera.reach_px(projection) + reach_px(electrons_per_s);
+        is_within(position, projection, margin_px).then(|| Source {
+            kind: ObjectKind::Moon,
+            id: 0,
+            position,
+            ends: camera.ends.map(|end| projection.project(&(end * self.apparent)).unwrap_or(position)),
+            astrometric: Some(self.astrometric),
+            magnitude: Some(self.magnitude),
+            electrons_per_s,
+        })
+    }
+
+    /// Whether it stands before a far source that an ideal camera sees in the direction `apparent`.
+    pub(crate) fn hides(&self, apparent: &Direction<Icrs>) -> bool {
+        angle(self.apparent.vector(), apparent.vector()) < libm::atan(self.tan_radius)
+    }
+
+    /// Appends the points of its undisturbed image: the sunlit part that is seen, `count_limit` points or so at most, their
+    /// shares adding up to 1 as far as the image has a place for them. Nothing when no light comes from it.
+    ///
+    /// The points stand on a grid in step with the pixels. Whatever the PSF, the pixels' shares of all points of such a grid add
+    /// up to the same in every pixel: an even disk is drawn even. A cell at limb or terminator counts by the part of it that is
+    /// lit, at the mean of its light. Only of a disk with more than `count_limit` pixels are the cells larger than
+    /// a pixel, and show as grains where the PSF is narrow.
+    pub(crate) fn image(
+        &self,
+        camera_from_icrs: Rotation<CameraFrame, Icrs>,
+        projection: &Projection,
+        count_limit: usize,
+        points: &mut Vec<ImagePoint>,
+    ) {
+        let place = self.place(camera_from_icrs, projection);
+        let Some(scale) = self.scale(&place) else { return };
+        let (Some(centre), Some(to_sky)) = (place(Vector2::zeros()), scale.try_inverse()) else { return };
+        let sides_px = self.half_sides_px(&scale);
+        let radius_px = self.tan_radius * scale.determinant().abs().sqrt();
+        let (cell_px, samples) = self.cells(radius_px, count_limit);
+
+        // Cells lie between the edges of pixels, which are at half numbers.
+        let cells = |at: f64, half_px: f64| {
+            let first = ((at - half_px + 0.5) / cell_px).floor();
+            let last = ((at + half_px + 0.5) / cell_px).floor();
+            (0..=(last - first) as usize).map(move |i| (first + i as f64) * cell_px - 0.5)
+        };
+        let first = points.len();
+        let mut total = 0.0;
+        for top in cells(centre.y, sides_px[1]) {
+            for left in cells(centre.x, sides_px[0]) {
+                let (mut light, mut mean) = (0.0, Vector2::zeros());
+                for j in 0..samples {
+                    for i in 0..samples {
+                        let within = |i: usize| (i as f64 + 0.5) / samples as f64 * cell_px;
+                        let offset = Vector2::new(left + within(i) - centre.x, top + within(j) - centre.y);
+                        let at = to_sky * offset;
+                        let radiance = self.seen_radiance(&at);
+                        light += radiance;
+                        mean += at * radiance;
+                    }
+                }
+                if light > 0.0 {
+                    let share = light / (samples * samples) as f64;
+                    total += share;
+                    // The grid is laid by a linear map; its distortion over the disk is in the place of each point.
+                    points.extend(place(mean / light).map(|position| ImagePoint { position, share }));
+                }
+            }
+        }
+        if total > 0.0 {
+            points[first..].iter_mut().for_each(|point| point.share /= total);
+        }
+    }
+
+    /// Side of a cell, px, and places along it that are looked at: a few across the lit part, however thin.
+    fn cells(&self, radius_px: f64, count_limit: usize) -> (f64, usize) {
+        let lit = 0.5 * (1.0 + libm::cos(self.phase_rad));
+        let lit_px = std::f64::consts::PI * radius_px * radius_px * lit;
+        let limit = count_limit.max(1) as f64;
+        let cell_px = if lit_px / (FINE_CELL_PX * FINE_CELL_PX) <= limit {
+            // A disk within a pixel has no grid to be in step with.
+            FINE_CELL_PX.min(0.5 * radius_px)
+        } else {
+            (lit_px / limit).sqrt().ceil()
+        };
+        let wanted = (4.0 * cell_px / (2.0 * radius_px * lit)).ceil().clamp(4.0, SAMPLES);
+        let affordable = (ALL_SAMPLES.sqrt() * cell_px / (2.0 * radius_px)).floor().max(1.0);
+        (cell_px, wanted.min(affordable) as usize)
+    }
+
+    /// From the plane tangent to the sky at the Moon's centre to the image, aberration included: its difference over
+    /// the disk, 0.1″, is nothing.
+    fn place<'a>(
+        &'a self,
+        camera_from_icrs: Rotation<CameraFrame, Icrs>,
+        projection: &'a Projection,
+    ) -> impl Fn(Vector2<f64>) -> Option<PixelPoint> + 'a {
+        move |at| {
+            let direction = self.apparent.vector() + self.across[0] * at.x + self.across[1] * at.y;
+            projection.project(&(camera_from_icrs * Direction::from_vector(direction).ok()?))
+        }
+    }
+
+    /// Pixels a radian at the Moon's centre: what the tangent plane's axes are in the image.
+    fn scale(&self, place: &impl Fn(Vector2<f64>) -> Option<PixelPoint>) -> Option<Matrix2<f64>> {
+        let step = 0.01 * self.tan_radius;
+        let derivative = |along: Vector2<f64>| {
+            let (before, after) = (place(-step * along)?, place(step * along)?);
+            Some(Vector2::new(after.x - before.x, after.y - before.y) / (2.0 * step))
+        };
+        Some(Matrix2::from_columns(&[derivative(Vector2::x())?, derivative(Vector2::y())?]))
+    }
+
+    /// Half the width and half the height of the disk's image, px.
+    fn half_sides_px(&self, scale: &Matrix2<f64>) -> [f64; 2] {
+        [0, 1].map(|axis| self.tan_radius * scale.row(axis).norm())
+    }
+
+    /// The fraction of the light of its disk that neither the Earth nor its shadow takes away.
+    fn seen_fraction(&self) -> f64 {
+        let separation = angle(&self.towards, &-self.observer_km);
+        let apart = self
+            .earth_cos
+            .is_none_or(|cos| separation > libm::acos(cos.min(1.0)) + libm::atan(self.tan_radius));
+        if apart && !self.near_shadow {
+            return 1.0;
+        }
+        let place = |i: usize| self.tan_radius * (2.0 * (i as f64 + 0.5) / FRACTION_CELLS as f64 - 1.0);
+        let (mut seen, mut all) = (0.0, 0.0);
+        for j in 0..FRACTION_CELLS {
+            for i in 0..FRACTION_CELLS {
+                let at = Vector2::new(place(i), place(j));
+                all += self.radiance(&at).map_or(0.0, |(radiance, _)| radiance);
+                seen += self.seen_radiance(&at);
+            }
+        }
+        if all > 0.0 { seen / all } else { 0.0 }
+    }
+
+    /// The radiance at a place of the tangent plane, less what Earth and shadow take.
+    fn seen_radiance(&self, at: &Vector2<f64>) -> f64 {
+        let Some((radiance, point_km)) = self.radiance(at) else { return 0.0 };
+        let nadir = point_km.dot(&-self.observer_km) / (point_km.norm() * self.observer_km.norm());
+        if self.earth_cos.is_some_and(|cos| nadir > cos) {
+            return 0.0;
+        }
+        if self.near_shadow {
+            return radiance * shadow::sunlit_fraction(&(self.observer_km + point_km), &self.earth_to_sun_km);
+        }
+        radiance
+    }
+
+    /// μ₀/(μ₀ + μ) at a place of the tangent plane, and the point of the surface that is seen there, km from the observer; `None` off the
+    /// sunlit part of the disk. Solid angles of equal areas of the plane are equal to 1e-5.
+    fn radiance(&self, at: &Vector2<f64>) -> Option<(f64, Vector3<f64>)> {
+        let ray = (self.towards + self.across[0] * at.x + self.across[1] * at.y).normalize();
+        let along_km = ray.dot(&self.centre_km);
+        let depth2 = along_km * along_km - self.centre_km.norm_squared() + MOON_RADIUS_KM * MOON_RADIUS_KM;
+        if depth2 < 0.0 {
+            return None;
+        }
+        let point_km = ray * (along_km - depth2.sqrt());
+        let normal = (point_km - self.centre_km) / MOON_RADIUS_KM;
+        let (incidence, emission) = (normal.dot(&self.sun), -normal.dot(&ray));
+        (incidence > 0.0).then(|| (incidence / (incidence + emission.max(0.0)), point_km))
+    }
+}
+
+/// Angle between two vectors, rad.
+fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    libm::atan2(a.cross(b).norm(), a.dot(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::{Psf, PsfConfig, Stamp};
+    use crate::truth::clock;
+    use crate::truth::moon::lommel_seeliger_phase;
+    use contract::Camera;
+
+    /// The Moon at `utc` from 7000 km off the centre of the Earth, at `degrees` from the direction to it.
+    fn seen_from(utc: &str, degrees: f64) -> LitMoon {
+        let time = clock::parse_utc(utc).unwrap();
+        let towards = moon::moon_position_km(clock::tdb_j2000_s(time)).normalize();
+        let across = towards.cross(&Vector3::z()).normalize();
+        let (sin, cos) = libm::sincos(degrees.to_radians());
+        let chaser = State {
+            position_km: (towards * cos + across * sin) * 7_000.0,
+            velocity_km_s: towards.cross(&across) * 7.5,
+        };
+        let observer = Observer::new(time, chaser.position_km, chaser.velocity_km_s).unwrap();
+        LitMoon::new(clock::tdb_j2000_s(time), &chaser, &observer).unwrap()
+    }
+
+    /// The same disk with the Sun at `phase_deg` from the observer.
+    fn at_phase(phase_deg: f64) -> LitMoon {
+        let moon = seen_from("2020-01-01T00:00:00Z", 90.0);
+        let (sin, cos) = libm::sincos(phase_deg.to_radians());
+        let sun = moon.across[0] * sin - moon.towards * cos;
+        LitMoon { sun, phase_rad: phase_deg.to_radians(), ..moon }
+    }
+
+    /// A camera of 200 × 200 pixels that looks at the Moon, whose disk has this radius, px, and its points.
+    fn drawn(moon: &LitMoon, radius_px: f64, count_limit: usize) -> Vec<ImagePoint> {
+        let camera = Camera {
+            columns: 200,
+            rows: 200,
+            focal_length_mm: radius_px / moon.tan_radius * 0.01,
+            pixel_width_um: 10.0,
+            pixel_height_um: 10.0,
+            principal_x_px: 99.7,
+            principal_y_px: 100.1,
+            radial: [0.0; 3],
+            tangential: [0.0; 2],
+        };
+        let to_icrs = [moon.across[0], moon.across[1], *moon.apparent.vector()];
+        let matrix = nalgebra::Matrix3::from_columns(&to_icrs).transpose();
+        let turn = nalgebra::UnitQuaternion::from_matrix(&matrix);
+        let camera_from_icrs = Rotation::from_wxyz([turn.w, turn.i, turn.j, turn.k]).unwrap();
+        let mut points = Vec::new();
+        moon.image(camera_from_icrs, &Projection::new(&camera).unwrap(), count_limit, &mut points);
+        points
+    }
+
+    #[test]
+    fn the_earths_motion_about_the_sun_does_not_move_the_moon() {
+        let moon = seen_from("2020-01-01T00:00:00Z", 90.0);
+        let geometric = Direction::from_vector(moon.centre_km).unwrap();
+        // 5.2″ of the orbit, 0.7″ of the Moon's own motion.
+        let apparent = geometric.separation(&moon.apparent).arcsec();
+        assert!((4.0..6.0).contains(&apparent), "{apparent}″");
+        // Light time in the frame of the Sun: up to 20.5″.
+        assert!(geometric.separation(&moon.astrometric).arcsec() < 21.5);
+        assert!(moon.apparent.separation(&moon.astrometric).arcsec() > 3.0);
+    }
+
+    /// The light of the disk at a phase over that of the full disk, as the closed form for a far observer has it.
+    #[test]
+    fn the_disk_is_a_lommel_seeliger_sphere() {
+        let light = |moon: &LitMoon| {
+            let n = 1000;
+            let place = |i: i32| moon.tan_radius * (2.0 * (f64::from(i) + 0.5) / f64::from(n) - 1.0);
+            (0..n * n)
+                .filter_map(|i| moon.radiance(&Vector2::new(place(i % n), place(i / n))))
+                .map(|(radiance, _)| radiance)
+                .sum::<f64>()
+        };
+        let full = light(&at_phase(0.0));
+        for phase_deg in [20.0, 60.0, 90.0, 130.0] {
+            let ratio = light(&at_phase(phase_deg)) / full;
+            let expected = lommel_seeliger_phase(f64::to_radians(phase_deg));
+            // The limb is seen from 220 radii: 0.3° of the surface is missing at it.
+            assert!((ratio / expected - 1.0).abs() < 0.015, "{phase_deg}°: {ratio}, expected {expected}");
+        }
+    }
+
+    #[test]
+    fn the_points_add_up_to_one_at_every_phase_and_size() {
+        for phase_deg in [0.0, 30.0, 90.0, 150.0, 175.0] {
+            for radius_px in [0.05, 0.7, 10.4, 90.0] {
+                let points = drawn(&at_phase(phase_deg), radius_px, 1 << 18);
+                let sum: f64 = points.iter().map(|point| point.share).sum();
+                assert!((sum - 1.0).abs() < 1e-9, "{phase_deg}°, {radius_px} px: {sum}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_full_disk_is_even_and_as_large_as_it_should_be() {
+        let points = drawn(&at_phase(0.0), 30.0, 1 << 18);
+        let mut stamp = Stamp::new();
+        let mut psf = Psf::new(&PsfConfig::Gaussian { sigma_px: 0.4 }).unwrap();
+        psf.stamp_extended(&points, 1.0, 1e-12, (200, 200), &mut stamp);
+        let level = 1.0 / (std::f64::consts::PI * 900.0);
+        let mut lit = 0.0;
+        for (x, y, row) in stamp.rows() {
+            for (i, &share) in row.iter().enumerate() {
+                let radius = libm::hypot((x + i) as f64 - 99.7, y as f64 - 100.1);
+                // 2e-3: the light of a far Sun meets the sight of a near Moon at 0.3°, which brightens the limb.
+                assert!(radius > 27.0 || (share / level - 1.0).abs() < 4e-3, "{}", share / level);
+                lit += (share / level).min(1.0);
+            }
+        }
+        assert!((lit / (std::f64::consts::PI * 900.0) - 1.0).abs() < 2e-3, "{lit} px");
+    }
+
+    #[test]
+    fn a_large_disk_keeps_to_its_number_of_points() {
+        for (phase_deg, radius_px) in [(0.0, 150.0), (90.0, 150.0), (0.0, 900.0)] {
+            let points = drawn(&at_phase(phase_deg), radius_px, 10_000).len();
+            // Cells that are lit in part count whole: the rim.
+            assert!((1_000..11_500).contains(&points), "{points} points");
+        }
+    }
+
+    #[test]
+    fn behind_the_earth_it_gives_no_light_and_at_its_limb_half() {
+        let full = seen_from("2020-01-01T00:00:00Z", 90.0);
+        assert_eq!(full.seen_fraction(), 1.0);
+        assert_eq!(seen_from("2020-01-01T00:00:00Z", 180.0).magnitude, f64::INFINITY);
+        let limb_deg = 180.0 - libm::asin(shadow::EARTH_RADIUS_KM / 7_000.0).to_degrees();
+        // The parallax of 7000 km brings it back to the limb.
+        let mut moon = seen_from("2020-01-01T00:00:00Z", limb_deg - 0.95);
+        moon.sun = -moon.towards;
+        let disk =
+            shadow::visible_fraction(&moon.observer_km, &(moon.observer_km + moon.centre_km), MOON_RADIUS_KM);
+        assert!((0.02..0.98).contains(&disk), "{disk}");
+        assert!((moon.seen_fraction() - disk).abs() < 0.01, "{} {disk}", moon.seen_fraction());
+    }
+
+    /// Espenak & Meeus, Five Millennium Catalog of Lunar Eclipses: total at 2018-07-27 20:21:44 UTC; 2019-07-16 21:30:44 UTC partial, umbral
+    /// magnitude 0.653.
+    #[test]
+    fn eclipses_are_those_of_the_catalogue() {
+        assert_eq!(seen_from("2018-07-27T20:21:44Z", 90.0).magnitude, f64::INFINITY);
+        let partial = seen_from("2019-07-16T21:30:44Z", 90.0);
+        let to_axis = -partial.earth_to_sun_km.normalize();
+        let axis = Vector2::new(partial.across[0].dot(&to_axis), partial.across[1].dot(&to_axis));
+        // From the Earth's centre, and not 7000 km beside it, the shadow is centred opposite to the Sun.
+        let parallax = Vector2::new(
+            partial.across[0].dot(&partial.observer_km),
+            partial.across[1].dot(&partial.observer_km),
+        ) / partial.centre_km.norm();
+        let along = (axis - parallax).normalize() * partial.tan_radius;
+        let dark = (0..1000)
+            .filter(|i| partial.seen_radiance(&(along * (f64::from(*i) / 499.5 - 1.0) * 0.9999)) == 0.0)
+            .count();
+        // The catalogue's shadow is 1 to 2 % larger, for the atmosphere: 0.03 of the Moon's diameter; 0.02° of the ephemeris is 0.04.
+        assert!((dark as f64 / 1000.0 - 0.653).abs() < 0.08, "{dark}");
+        let bright = seen_from("2019-07-15T21:30:44Z", 90.0).magnitude;
+        assert!(partial.magnitude > bright + 0.5 && partial.magnitude.is_finite());
+    }
+
+    #[test]
+    fn the_new_moon_is_next_to_nothing() {
+        // New on 2020-01-24 at 21:42 UTC, 3° from the Sun.
+        let new = seen_from("2020-01-24T21:42:00Z", 90.0);
+        assert!(new.phase_rad.to_degrees() > 174.0);
+        assert!(new.magnitude > -3.5, "{}", new.magnitude);
+    }
+}
