@@ -1,19 +1,19 @@
 //! Truth → scene → optics → sensor → on board: one frame, in one function.
 
+use std::collections::BTreeSet;
+
 use contract::{Body, CameraFrame, Direction, Frame, Icrs, PixelPoint, Rotation, Target, Telemetry};
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 
 use crate::draw::ExpectedImage;
 use crate::onboard::{RoiExtractor, downlink};
-use crate::optics::{self, ImagePoint, Projection, Psf, Stamp};
+use crate::optics::{ImagePoint, Projection, Psf, Stamp};
+use crate::painter::Painter;
 use crate::scene::{Appearance, BackgroundField, CameraMotion, Lighting, Source, planets};
-use crate::sensor::{FlatLaws, Opening, RawImage, Switch, Track};
+use crate::sensor::{FlatLaws, InterlaceConfig, Opening, RawImage, Switch, Track};
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, clock, shadow};
 use crate::{SimError, Simulator};
-
-/// Points that the image of a source is made of, at most: its body's and those of its trail, multiplied.
-const POINTS: usize = 1 << 18;
 
 /// One frame with all that belongs to it.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,19 +33,16 @@ pub struct Exposure {
 #[derive(Debug)]
 pub struct SimulatedCamera<'a> {
     simulator: &'a Simulator,
-    psf: Psf,
+    painter: Painter,
     image: ExpectedImage,
     laws: FlatLaws,
     raw: RawImage,
     regions: Option<RoiExtractor>,
-    sources: Vec<Source>,
-    /// The target's body in the middle of the exposure.
-    body: Vec<ImagePoint>,
-    trail: Vec<ImagePoint>,
-    points: Vec<ImagePoint>,
-    /// Background of the scene, electrons a second, pixel by pixel.
-    field: Vec<f64>,
+    /// Background of the scene, electrons a second, pixel by pixel; in the second place that of the second field.
+    backgrounds: [Vec<f64>; 2],
     stamps: Vec<Stamp>,
+    /// The image of an object as the scene was in the first and in the second field.
+    halves: [Stamp; 2],
     /// The image of an object whose wells overflow.
     bloomed: Stamp,
 }
@@ -75,23 +72,48 @@ impl Moment {
     }
 }
 
+/// What the camera sees while its shutter is open.
+struct View {
+    /// In the middle of the opening.
+    moment: Moment,
+    camera: CameraMotion,
+    /// Target, stars and planets, each by number.
+    sources: Vec<Source>,
+    background: Option<BackgroundField>,
+}
+
+impl View {
+    /// The background of every pixel, electrons a second; `false` when there is none of it.
+    fn look_around(&self, out: &mut Vec<f64>) -> bool {
+        if let Some(background) = &self.background {
+            background.electrons_per_s(out);
+        }
+        self.background.is_some()
+    }
+}
+
+/// What is drawn of a frame.
+enum Drawn {
+    /// The scene in the middle of the frame.
+    Whole,
+    /// The scenes in the middle of either field, with the same sources, in the same order, as the middle of the frame.
+    Fields(InterlaceConfig, Box<[View; 2]>),
+}
+
 impl<'a> SimulatedCamera<'a> {
     pub(crate) fn new(simulator: &'a Simulator) -> Result<Self, SimError> {
         let (columns, rows) = simulator.projection.detector();
         let regions = simulator.roi.as_ref().map(|roi| RoiExtractor::new(roi, columns, rows)).transpose()?;
         Ok(Self {
             simulator,
-            psf: simulator.psf.clone(),
+            painter: Painter::new(simulator.psf.clone()),
             image: simulator.sensor.new_expected(),
             laws: FlatLaws::new(),
             raw: simulator.sensor.new_raw(),
             regions,
-            sources: Vec::new(),
-            body: Vec::new(),
-            trail: Vec::new(),
-            points: Vec::new(),
-            field: Vec::new(),
+            backgrounds: [Vec::new(), Vec::new()],
             stamps: Vec::new(),
+            halves: [Stamp::new(), Stamp::new()],
             bloomed: Stamp::new(),
         })
     }
@@ -108,41 +130,13 @@ impl<'a> SimulatedCamera<'a> {
             expected: "a frame of the schedule",
         })?;
         let exposure_s = self.exposure_s(time, number)?;
-        let mut moment = self.moment(time, number)?;
-        let camera = self.motion(&mut moment, time, exposure_s, number)?;
-
-        self.sources.clear();
-        if moment.target_position.is_some() {
-            self.sources.push(moment.target);
-        }
-        simulator.stars.look(
-            &moment.observer,
-            &camera,
-            &simulator.projection,
-            |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
-            &mut self.sources,
-        );
-        if simulator.planets == Switch::On {
-            planets::look(
-                clock::tdb_j2000_s(time),
-                &moment.observer,
-                &camera,
-                &simulator.projection,
-                &simulator.radiometry,
-                |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
-                &mut self.sources,
-            );
-        }
-        let background = simulator.background.as_ref().map(|background| {
-            let (position_km, sun_km) = (&moment.states.chaser.position_km, &moment.observer.sun_km());
-            background.field(time, position_km, sun_km, moment.camera_from_icrs)
-        });
+        let (mut view, drawn) = self.views(time, exposure_s, number)?;
         let opening = Opening { seed: simulator.seed, middle_s: clock::tt_j2000_s(time), exposure_s };
         let tracks = simulator.cosmic_rays.as_ref().map_or_else(Vec::new, |rays| {
-            let rate = rays.rate_per_cm2_s(time, &moment.states.chaser.position_km);
+            let rate = rays.rate_per_cm2_s(time, &view.moment.states.chaser.position_km);
             rays.tracks(&simulator.seed, number, exposure_s, rate)
         });
-        let mut objects = self.draw(&moment, number, &opening, background.as_ref(), &tracks)?;
+        let mut objects = self.draw(&mut view, &drawn, number, &opening, &tracks)?;
         let windows = self.regions.as_mut().map(|regions| regions.extract(&self.raw));
         if let Some(windows) = &windows {
             for (object, stamp) in objects.iter_mut().zip(&self.stamps) {
@@ -150,6 +144,7 @@ impl<'a> SimulatedCamera<'a> {
             }
         }
 
+        let moment = view.moment;
         let truth = FrameTruth {
             frame: number,
             group: group.to_owned(),
@@ -165,7 +160,7 @@ impl<'a> SimulatedCamera<'a> {
             phase_deg: moment.phase_rad.to_degrees(),
             shadow: shadow::classify(moment.sunlit_fraction),
             sunlit_fraction: moment.sunlit_fraction,
-            background_e_per_s: background.map_or(0.0, |field| field.mean_e_per_s()),
+            background_e_per_s: view.background.map_or(0.0, |field| field.mean_e_per_s()),
             target_from_icrs: moment.target_from_icrs,
             target_position: moment.target_position,
             target_visibility: Visibility::of_snr(
@@ -239,6 +234,60 @@ impl<'a> SimulatedCamera<'a> {
         })
     }
 
+    /// What the camera sees about the middle of a frame, and what of it is drawn.
+    fn views(&self, time: Epoch, exposure_s: f64, number: u64) -> Result<(View, Drawn), SimError> {
+        let mut middle = self.view(time, exposure_s, number)?;
+        let Some(interlace) = self.simulator.sensor.config().interlace else {
+            self.look(&mut middle, time, exposure_s);
+            return Ok((middle, Drawn::Whole));
+        };
+        let times = interlace.offsets_s().map(|offset_s| time + offset_s * Unit::Second);
+        let mut first = self.view(times[0], exposure_s, number)?;
+        let mut second = self.view(times[1], exposure_s, number)?;
+        // An object at the edge may have light in one field alone: all look out as far as any of them sees.
+        let cameras = [middle.camera, first.camera, second.camera];
+        for (view, time) in [(&mut middle, time), (&mut first, times[0]), (&mut second, times[1])] {
+            cameras.iter().for_each(|other| view.camera.widen_to(other));
+            self.look(view, time, exposure_s);
+        }
+        keep_common([&mut middle.sources, &mut first.sources, &mut second.sources]);
+        Ok((middle, Drawn::Fields(interlace, Box::new([first, second]))))
+    }
+
+    /// The camera with its shutter open about `time`, before it has looked.
+    fn view(&self, time: Epoch, exposure_s: f64, number: u64) -> Result<View, SimError> {
+        let mut moment = self.moment(time, number)?;
+        let camera = self.motion(&mut moment, time, exposure_s, number)?;
+        Ok(View { moment, camera, sources: Vec::new(), background: None })
+    }
+
+    /// Finds all that has light on the detector while the shutter is open.
+    fn look(&self, view: &mut View, time: Epoch, exposure_s: f64) {
+        let simulator = self.simulator;
+        let View { moment, camera, sources, background } = view;
+        let reach_px =
+            |rate_e_per_s: f64| self.painter.psf().reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E);
+        if moment.target_position.is_some() {
+            sources.push(moment.target);
+        }
+        simulator.stars.look(&moment.observer, camera, &simulator.projection, reach_px, sources);
+        if simulator.planets == Switch::On {
+            planets::look(
+                clock::tdb_j2000_s(time),
+                &moment.observer,
+                camera,
+                &simulator.projection,
+                &simulator.radiometry,
+                reach_px,
+                sources,
+            );
+        }
+        *background = simulator.background.as_ref().map(|background| {
+            let (position_km, sun_km) = (&moment.states.chaser.position_km, &moment.observer.sun_km());
+            background.field(time, position_km, sun_km, moment.camera_from_icrs)
+        });
+    }
+
     /// How the camera turns during the exposure about the middle `moment`, and where its target is at both ends.
     fn motion(
         &self,
@@ -271,7 +320,7 @@ impl<'a> SimulatedCamera<'a> {
         let (columns, rows) = simulator.projection.detector();
         let target = moment.target_position.filter(|position| position.is_on_detector(columns, rows));
         // A body that spans pixels has a lower peak than a point of its light.
-        let peak_share = self.psf.peak_share();
+        let peak_share = self.painter.psf().peak_share();
         let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
         let spread = moment.appearance.peak_share(&place, peak_share) / peak_share;
         let mut brightest = simulator.stars.brightest(
@@ -298,59 +347,64 @@ impl<'a> SimulatedCamera<'a> {
     /// and tells its truth.
     fn draw(
         &mut self,
-        moment: &Moment,
+        view: &mut View,
+        drawn: &Drawn,
         number: u64,
         opening: &Opening,
-        background: Option<&BackgroundField>,
         tracks: &[Track],
     ) -> Result<Vec<ObjectTruth>, SimError> {
-        let Self {
-            simulator,
-            psf,
-            image,
-            field,
-            laws,
-            raw,
-            sources,
-            body,
-            trail,
-            points,
-            stamps,
-            bloomed,
-            ..
-        } = self;
+        let Self { simulator, painter, image, backgrounds, laws, raw, stamps, halves, bloomed, .. } = self;
         let sensor = &simulator.sensor;
         let (columns, rows) = image.size();
         let hot_pixels = sensor.hot_pixels();
-        let detected = sources.len() + hot_pixels.len() + tracks.len();
+        let detected = view.sources.len() + hot_pixels.len() + tracks.len();
         stamps.resize_with(stamps.len().max(detected), Stamp::new);
-        let (lit, own) = stamps.split_at_mut(sources.len());
+        let (lit, own) = stamps.split_at_mut(view.sources.len());
         let (hot, struck) = own.split_at_mut(hot_pixels.len());
 
         image.clear(sensor.sky_electrons(opening.exposure_s));
-        if let Some(background) = background {
-            background.electrons_per_s(field);
-            image.set_field(Some(field), opening.exposure_s);
-        }
-        for (source, stamp) in sources.iter_mut().zip(lit) {
+        let [background, later] = backgrounds;
+        let has_background = match drawn {
+            Drawn::Whole => view.look_around(background),
+            Drawn::Fields(interlace, fields) => {
+                let [first, second] = &**fields;
+                let has_background = first.look_around(background) && second.look_around(later);
+                if has_background {
+                    interlace.weave(background, later, columns);
+                }
+                has_background
+            }
+        };
+        image.set_field(has_background.then_some(background), opening.exposure_s);
+        let mut paint = |view: &View, index: usize, stamp: &mut Stamp| {
+            let source = &view.sources[index];
             let transmission = simulator.vignetting.transmission(source.position);
             let electrons = source.electrons_per_s * opening.exposure_s * transmission;
-            let [begin, end] = source.ends;
-            trail.clear();
-            optics::trail(begin, source.position, end, trail);
-            body.clear();
-            if source.kind == ObjectKind::Target {
-                let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
-                moment.appearance.image(&place, POINTS / trail.len(), body);
-            } else {
-                body.push(ImagePoint { position: source.position, share: 1.0 });
+            let resolve = |most: usize, body: &mut Vec<ImagePoint>| {
+                if source.kind == ObjectKind::Target {
+                    let place = |point_m: &Vector3<f64>| view.moment.place_of(point_m, &simulator.projection);
+                    view.moment.appearance.image(&place, most, body);
+                } else {
+                    body.push(ImagePoint { position: source.position, share: 1.0 });
+                }
+            };
+            painter.paint(source, electrons, resolve, (columns, rows), stamp);
+        };
+        for (index, stamp) in lit.iter_mut().enumerate() {
+            match drawn {
+                Drawn::Whole => paint(view, index, stamp),
+                Drawn::Fields(interlace, fields) => {
+                    let [first, second] = &**fields;
+                    paint(first, index, &mut halves[0]);
+                    paint(second, index, &mut halves[1]);
+                    stamp.weave(&halves[0], &halves[1], |row| interlace.is_first(row));
+                }
             }
-            carry_along(body, source.position, trail, points);
-            psf.stamp_extended(points, electrons, Psf::FLOOR_E, (columns, rows), stamp);
-            source.position = stamp.centre();
+            view.sources[index].position = stamp.centre();
             image.add(stamp);
             sensor.respond(stamp);
         }
+        let sources = &mut view.sources;
         let mut charge = sensor.collect(image, opening);
         for (pixel, stamp) in hot_pixels.iter().zip(hot) {
             // The sensor itself collects it; here it is only described.
@@ -414,15 +468,13 @@ fn of_the_detector(kind: ObjectKind, id: usize, stamp: &Stamp) -> Source {
     }
 }
 
-/// The points of an image that moves as a whole: each point of the `body` along the `trail` that `centre` makes.
-fn carry_along(body: &[ImagePoint], centre: PixelPoint, trail: &[ImagePoint], points: &mut Vec<ImagePoint>) {
-    points.clear();
-    for along in trail {
-        points.extend(body.iter().map(|point| {
-            // From the trail outwards: a point at the centre is on it to the bit.
-            let (dx, dy) = (point.position.x - centre.x, point.position.y - centre.y);
-            let position = PixelPoint::new(along.position.x + dx, along.position.y + dy);
-            ImagePoint { position, share: along.share * point.share }
-        }));
+/// Keeps the sources that are in all three lists, each in its order. What is missing in one has no light in any of the
+/// exposures: each list was asked for all that comes near enough.
+fn keep_common(mut lists: [&mut Vec<Source>; 3]) {
+    let names =
+        |list: &Vec<Source>| list.iter().map(|source| (source.kind, source.id)).collect::<BTreeSet<_>>();
+    let known = lists.each_ref().map(|list| names(list));
+    for list in &mut lists {
+        list.retain(|source| known.iter().all(|names| names.contains(&(source.kind, source.id))));
     }
 }

@@ -9,6 +9,7 @@ mod error;
 mod expose;
 pub mod onboard;
 pub mod optics;
+mod painter;
 pub mod randomness;
 pub mod scene;
 pub mod sensor;
