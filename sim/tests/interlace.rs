@@ -11,7 +11,7 @@ use boresight_sim::draw::ExpectedImage;
 use boresight_sim::onboard::ShutterConfig;
 use boresight_sim::scene::TargetConfig;
 use boresight_sim::sensor::{InterlaceConfig, RowParity, TelegraphConfig};
-use boresight_sim::truth::{ObjectKind, ObjectTruth};
+use boresight_sim::truth::{ControlConfig, ObjectKind, ObjectTruth};
 use boresight_sim::{Exposure, Simulation};
 use small_scene::{restless, simulator, still};
 
@@ -35,17 +35,20 @@ fn turning() -> Simulation {
     simulation
 }
 
-/// The same with nothing but stars, bright enough to stand apart, before a pinhole.
-fn bright_stars() -> Simulation {
+/// A pinhole with the same motion and nothing but the brightest star of the field.
+fn one_star() -> Simulation {
     let mut simulation = turning();
-    simulation.catalog.magnitude_limit = Some(8.0);
     simulation.camera.radial = [0.0; 3];
     simulation.camera.tangential = [0.0; 2];
     simulation.target = TargetConfig::LambertSphere { radius_m: 0.1, albedo: 0.0 };
     simulation.background.zodiacal = false;
+    simulation.attitude.control = ControlConfig::default();
     simulation.sensor.background_e_per_s = 0.0;
     simulation.sensor.dark_current_e_per_s = 0.0;
     simulation.sensor.hot_pixels.count = 0;
+    let stars = expose(&simulation, 0).0.objects;
+    let brightest = stars.into_iter().max_by(|a, b| a.electrons.total_cmp(&b.electrons)).unwrap();
+    simulation.catalog.magnitude_limit = brightest.magnitude;
     simulation
 }
 
@@ -120,7 +123,7 @@ fn mean_column(image: &ExpectedImage, about: &ObjectTruth, parity: usize) -> f64
 #[test]
 fn even_and_odd_rows_are_displaced_by_rate_times_interval() {
     for (first_field, sign) in [(RowParity::Even, 1.0), (RowParity::Odd, -1.0)] {
-        let simulation = interlaced(bright_stars(), INTERVAL_S, first_field);
+        let simulation = interlaced(one_star(), INTERVAL_S, first_field);
         let (exposure, image) = expose(&simulation, 0);
         let truth = &exposure.truth;
         // The boresight turns at |r × v|/r² about the orbit's normal.
@@ -128,14 +131,7 @@ fn even_and_odd_rows_are_displaced_by_rate_times_interval() {
             truth.position_km.cross(&truth.velocity_km_s).norm() / truth.position_km.norm_squared();
         let normal = truth.position_km.cross(&truth.velocity_km_s).normalize();
         // Stars go the other way: −ω × s, and a pinhole makes of it the motion of the image.
-        let star = exposure
-            .objects
-            .iter()
-            .filter(|object| {
-                (20.0..140.0).contains(&object.position.x) && (20.0..100.0).contains(&object.position.y)
-            })
-            .max_by(|a, b| a.electrons.total_cmp(&b.electrons))
-            .unwrap();
+        let [star] = &exposure.objects[..] else { unreachable!("one star was asked for") };
         let seen = |s: &nalgebra::Vector3<f64>| truth.camera_from_icrs.rotate(s);
         let s = seen(star.astrometric.unwrap().vector());
         let motion = -seen(&normal).cross(&s) * rate_rad_s;
@@ -143,10 +139,9 @@ fn even_and_odd_rows_are_displaced_by_rate_times_interval() {
         let speed_px_s = focal_px * (motion.x * s.z - s.x * motion.z) / (s.z * s.z);
         let displaced_px = mean_column(&image, star, 1) - mean_column(&image, star, 0);
         assert!(speed_px_s.abs() > 2.4, "{speed_px_s} px/s");
-        // Halos of other stars pull by some 0.01 px; the control drifts by 60″ (0.7 px) in minutes, 0.01 px in 2 s; the
-        // precession of the orbit adds 1e-3.
+        // The precession of the orbit adds 1e-3 of the rate, 0.005 px; what the box cuts of the halo takes 0.003 px.
         let expected_px = sign * speed_px_s * INTERVAL_S;
-        assert!((displaced_px - expected_px).abs() < 0.05, "{displaced_px} px, expected {expected_px}");
+        assert!((displaced_px - expected_px).abs() < 0.01, "{displaced_px} px, expected {expected_px}");
     }
 }
 
