@@ -1,18 +1,18 @@
 //! Truth → scene → optics → sensor → on board: one frame, in one function.
 
-use std::collections::BTreeSet;
-
-use contract::{Body, CameraFrame, Direction, Frame, Icrs, PixelPoint, Rotation, Target, Telemetry};
+use contract::{Frame, Telemetry};
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 
 use crate::draw::ExpectedImage;
+use crate::moment::Moment;
 use crate::onboard::{RoiExtractor, downlink};
-use crate::optics::{ImagePoint, Projection, Psf, Stamp};
+use crate::optics::{ImagePoint, Stamp};
 use crate::painter::Painter;
-use crate::scene::{Appearance, BackgroundField, CameraMotion, Lighting, Source, planets};
-use crate::sensor::{FlatLaws, InterlaceConfig, Opening, RawImage, Switch, Track};
-use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, clock, shadow};
+use crate::scene::{Source, planets};
+use crate::sensor::{FlatLaws, Opening, RawImage, Switch, Track};
+use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility, clock, shadow};
+use crate::view::{Drawn, View};
 use crate::{SimError, Simulator};
 
 /// One frame with all that belongs to it.
@@ -47,59 +47,6 @@ pub struct SimulatedCamera<'a> {
     bloomed: Stamp,
 }
 
-/// Where everything is at one moment.
-struct Moment {
-    states: States,
-    observer: Observer,
-    body_from_icrs: Rotation<Body, Icrs>,
-    camera_from_icrs: Rotation<CameraFrame, Icrs>,
-    line_of_sight: Direction<Icrs>,
-    sunlit_fraction: f64,
-    phase_rad: f64,
-    /// The target, and where the origin of its body frame is in the image; `None` behind the camera.
-    target: Source,
-    target_position: Option<PixelPoint>,
-    target_from_icrs: Option<Rotation<Target, Icrs>>,
-    appearance: Appearance,
-}
-
-impl Moment {
-    /// Where a point of the target's body frame, m, is in the image: each point in its own direction.
-    fn place_of(&self, point_m: &Vector3<f64>, projection: &Projection) -> Option<PixelPoint> {
-        let turned_m = self.target_from_icrs.map_or(*point_m, |turn| turn.inverse().rotate(point_m));
-        let from_chaser_km = self.states.line_of_sight_km() + turned_m / 1000.0;
-        projection.project(&(self.camera_from_icrs * Direction::from_vector(from_chaser_km).ok()?))
-    }
-}
-
-/// What the camera sees while its shutter is open.
-struct View {
-    /// In the middle of the opening.
-    moment: Moment,
-    camera: CameraMotion,
-    /// Target, stars and planets, each by number.
-    sources: Vec<Source>,
-    background: Option<BackgroundField>,
-}
-
-impl View {
-    /// The background of every pixel, electrons a second; `false` when there is none of it.
-    fn look_around(&self, out: &mut Vec<f64>) -> bool {
-        if let Some(background) = &self.background {
-            background.electrons_per_s(out);
-        }
-        self.background.is_some()
-    }
-}
-
-/// What is drawn of a frame.
-enum Drawn {
-    /// The scene in the middle of the frame.
-    Whole,
-    /// The scenes in the middle of either field, with the same sources, in the same order, as the middle of the frame.
-    Fields(InterlaceConfig, Box<[View; 2]>),
-}
-
 impl<'a> SimulatedCamera<'a> {
     pub(crate) fn new(simulator: &'a Simulator) -> Result<Self, SimError> {
         let (columns, rows) = simulator.projection.detector();
@@ -130,7 +77,7 @@ impl<'a> SimulatedCamera<'a> {
             expected: "a frame of the schedule",
         })?;
         let exposure_s = self.exposure_s(time, number)?;
-        let (mut view, drawn) = self.views(time, exposure_s, number)?;
+        let (mut view, drawn) = View::of_frame(simulator, self.painter.psf(), time, exposure_s, number)?;
         let opening = Opening { seed: simulator.seed, middle_s: clock::tt_j2000_s(time), exposure_s };
         let tracks = simulator.cosmic_rays.as_ref().map_or_else(Vec::new, |rays| {
             let rate = rays.rate_per_cm2_s(time, &view.moment.states.chaser.position_km);
@@ -187,136 +134,12 @@ impl<'a> SimulatedCamera<'a> {
         &self.image
     }
 
-    /// Where everything is at `time`, with the attitude of frame `number`.
-    fn moment(&self, time: Epoch, number: u64) -> Result<Moment, SimError> {
-        let simulator = self.simulator;
-        let states = simulator.trajectory.at(time);
-        let body_from_icrs = simulator.attitude.truth(&states, number);
-        let camera_from_icrs = simulator.camera_from_body * body_from_icrs;
-        let observer = Observer::new(time, states.chaser.position_km, states.chaser.velocity_km_s)?;
-
-        let line_of_sight_km = states.line_of_sight_km();
-        let line_of_sight = Direction::from_vector(line_of_sight_km)?;
-        let earth_to_sun_km = states.chaser.position_km + observer.sun_km();
-        let sunlit_fraction = shadow::sunlit_fraction(&states.target.position_km, &earth_to_sun_km);
-        let lighting = Lighting {
-            chaser_km: -line_of_sight_km,
-            sun_km: earth_to_sun_km - states.target.position_km,
-            sunlit_fraction,
-        };
-        let target_from_icrs = simulator.target.attitude(&states);
-        let appearance = simulator.target.appearance(&lighting, target_from_icrs);
-        let magnitude = appearance.magnitude();
-        // The target moves with the chaser: light time cancels aberration, so it is seen where it is.
-        let target_position = simulator.projection.project(&(camera_from_icrs * line_of_sight));
-        let target = Source {
-            kind: ObjectKind::Target,
-            id: 0,
-            position: target_position.unwrap_or_default(),
-            ends: [target_position.unwrap_or_default(); 2],
-            astrometric: Some(line_of_sight),
-            // In the umbra there is no light, and no magnitude.
-            magnitude,
-            electrons_per_s: magnitude.map_or(0.0, |m| simulator.radiometry.sunlit(m)),
-        };
-        Ok(Moment {
-            states,
-            observer,
-            body_from_icrs,
-            camera_from_icrs,
-            line_of_sight,
-            sunlit_fraction,
-            phase_rad: lighting.phase_rad(),
-            target,
-            target_position,
-            target_from_icrs,
-            appearance,
-        })
-    }
-
-    /// What the camera sees about the middle of a frame, and what of it is drawn.
-    fn views(&self, time: Epoch, exposure_s: f64, number: u64) -> Result<(View, Drawn), SimError> {
-        let mut middle = self.view(time, exposure_s, number)?;
-        let Some(interlace) = self.simulator.sensor.config().interlace else {
-            self.look(&mut middle, time, exposure_s);
-            return Ok((middle, Drawn::Whole));
-        };
-        let times = interlace.offsets_s().map(|offset_s| time + offset_s * Unit::Second);
-        let mut first = self.view(times[0], exposure_s, number)?;
-        let mut second = self.view(times[1], exposure_s, number)?;
-        // An object at the edge may have light in one field alone: all look out as far as any of them sees.
-        let cameras = [middle.camera, first.camera, second.camera];
-        for (view, time) in [(&mut middle, time), (&mut first, times[0]), (&mut second, times[1])] {
-            cameras.iter().for_each(|other| view.camera.widen_to(other));
-            self.look(view, time, exposure_s);
-        }
-        keep_common([&mut middle.sources, &mut first.sources, &mut second.sources]);
-        Ok((middle, Drawn::Fields(interlace, Box::new([first, second]))))
-    }
-
-    /// The camera with its shutter open about `time`, before it has looked.
-    fn view(&self, time: Epoch, exposure_s: f64, number: u64) -> Result<View, SimError> {
-        let mut moment = self.moment(time, number)?;
-        let camera = self.motion(&mut moment, time, exposure_s, number)?;
-        Ok(View { moment, camera, sources: Vec::new(), background: None })
-    }
-
-    /// Finds all that has light on the detector while the shutter is open.
-    fn look(&self, view: &mut View, time: Epoch, exposure_s: f64) {
-        let simulator = self.simulator;
-        let View { moment, camera, sources, background } = view;
-        let reach_px =
-            |rate_e_per_s: f64| self.painter.psf().reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E);
-        if moment.target_position.is_some() {
-            sources.push(moment.target);
-        }
-        simulator.stars.look(&moment.observer, camera, &simulator.projection, reach_px, sources);
-        if simulator.planets == Switch::On {
-            planets::look(
-                clock::tdb_j2000_s(time),
-                &moment.observer,
-                camera,
-                &simulator.projection,
-                &simulator.radiometry,
-                reach_px,
-                sources,
-            );
-        }
-        *background = simulator.background.as_ref().map(|background| {
-            let (position_km, sun_km) = (&moment.states.chaser.position_km, &moment.observer.sun_km());
-            background.field(time, position_km, sun_km, moment.camera_from_icrs)
-        });
-    }
-
-    /// How the camera turns during the exposure about the middle `moment`, and where its target is at both ends.
-    fn motion(
-        &self,
-        moment: &mut Moment,
-        time: Epoch,
-        exposure_s: f64,
-        number: u64,
-    ) -> Result<CameraMotion, SimError> {
-        let simulator = self.simulator;
-        let mut camera = CameraMotion::still(moment.camera_from_icrs);
-        if simulator.attitude.motion_smear() == Switch::On {
-            for (end, side) in [-0.5, 0.5].into_iter().enumerate() {
-                let states = simulator.trajectory.at(time + side * exposure_s * Unit::Second);
-                camera.ends[end] = simulator.camera_from_body * simulator.attitude.truth(&states, number);
-                let line_of_sight = Direction::from_vector(states.line_of_sight_km())?;
-                if let Some(position) = simulator.projection.project(&(camera.ends[end] * line_of_sight)) {
-                    moment.target.ends[end] = position;
-                }
-            }
-        }
-        Ok(camera)
-    }
-
     /// The exposure time that the shutter control chooses: it follows the brightest object on the detector, as it
     /// was a lag before the exposure.
     fn exposure_s(&self, time: Epoch, number: u64) -> Result<f64, SimError> {
         let simulator = self.simulator;
         let time = time - simulator.shutter.lag_s() * Unit::Second;
-        let moment = self.moment(time, number)?;
+        let moment = Moment::at(simulator, time, number)?;
         let (columns, rows) = simulator.projection.detector();
         let target = moment.target_position.filter(|position| position.is_on_detector(columns, rows));
         // A body that spans pixels has a lower peak than a point of its light.
@@ -365,10 +188,10 @@ impl<'a> SimulatedCamera<'a> {
         image.clear(sensor.sky_electrons(opening.exposure_s));
         let [background, later] = backgrounds;
         let has_background = match drawn {
-            Drawn::Whole => view.look_around(background),
+            Drawn::Whole => view.background_e_per_s(background),
             Drawn::Fields(interlace, fields) => {
                 let [first, second] = &**fields;
-                let has_background = first.look_around(background) && second.look_around(later);
+                let has_background = first.background_e_per_s(background) && second.background_e_per_s(later);
                 if has_background {
                     interlace.weave(background, later, columns);
                 }
@@ -465,16 +288,5 @@ fn of_the_detector(kind: ObjectKind, id: usize, stamp: &Stamp) -> Source {
         astrometric: None,
         magnitude: None,
         electrons_per_s: 0.0,
-    }
-}
-
-/// Keeps the sources that are in all three lists, each in its order. What is missing in one has no light in any of the
-/// exposures: each list was asked for all that comes near enough.
-fn keep_common(mut lists: [&mut Vec<Source>; 3]) {
-    let names =
-        |list: &Vec<Source>| list.iter().map(|source| (source.kind, source.id)).collect::<BTreeSet<_>>();
-    let known = lists.each_ref().map(|list| names(list));
-    for list in &mut lists {
-        list.retain(|source| known.iter().all(|names| names.contains(&(source.kind, source.id))));
     }
 }

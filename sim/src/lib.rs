@@ -7,6 +7,7 @@ pub mod catalog;
 pub mod draw;
 mod error;
 mod expose;
+mod moment;
 pub mod onboard;
 pub mod optics;
 mod painter;
@@ -15,6 +16,7 @@ pub mod scene;
 pub mod sensor;
 mod simulator;
 pub mod truth;
+mod view;
 
 pub use error::SimError;
 pub use expose::{Exposure, SimulatedCamera};
