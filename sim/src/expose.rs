@@ -1,15 +1,18 @@
 //! Truth → scene → optics → sensor → on board: one frame, in one function.
 
-use contract::{Body, CameraFrame, Direction, Frame, Icrs, PixelPoint, Rotation, Target, Telemetry};
+use contract::{Frame, Telemetry};
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 
 use crate::draw::ExpectedImage;
+use crate::moment::Moment;
 use crate::onboard::{RoiExtractor, downlink};
-use crate::optics::{self, ImagePoint, Projection, Psf, Stamp};
-use crate::scene::{Appearance, BackgroundField, CameraMotion, Lighting, Source, moon::LitMoon, planets};
+use crate::optics::{ImagePoint, Stamp};
+use crate::painter::Painter;
+use crate::scene::{CameraMotion, Source, planets};
 use crate::sensor::{FlatLaws, Opening, RawImage, Switch, Track};
-use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Observer, States, Visibility, clock, shadow};
+use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility, clock, shadow};
+use crate::view::{Drawn, View};
 use crate::{SimError, Simulator};
 
 /// Points that the image of a source is made of, at most: its body's and those of its trail, multiplied.
@@ -29,8 +32,8 @@ pub struct Exposure {
     pub telemetry: Telemetry,
     /// The truth about the frame.
     pub truth: FrameTruth,
-    /// The truth about every object in it: the target, then stars, planets, the Moon, hot pixels and tracks of
-    /// particles, each by number.
+    /// The truth about every object in it: the target, then stars, planets, the Moon, hot pixels and tracks of particles, each by
+    /// number.
     pub objects: Vec<ObjectTruth>,
 }
 
@@ -38,48 +41,18 @@ pub struct Exposure {
 #[derive(Debug)]
 pub struct SimulatedCamera<'a> {
     simulator: &'a Simulator,
-    psf: Psf,
+    painter: Painter,
     image: ExpectedImage,
     laws: FlatLaws,
     raw: RawImage,
     regions: Option<RoiExtractor>,
-    sources: Vec<Source>,
-    /// The target's body, or the Moon, in the middle of the exposure.
-    body: Vec<ImagePoint>,
-    trail: Vec<ImagePoint>,
-    points: Vec<ImagePoint>,
-    /// Background of the scene, electrons a second, pixel by pixel.
-    field: Vec<f64>,
+    /// Background of the scene, electrons a second, pixel by pixel; in the second place that of the second field.
+    backgrounds: [Vec<f64>; 2],
     stamps: Vec<Stamp>,
+    /// The image of an object as the scene was in the first and in the second field.
+    halves: [Stamp; 2],
     /// The image of an object whose wells overflow.
     bloomed: Stamp,
-}
-
-/// Where everything is at one moment.
-struct Moment {
-    states: States,
-    observer: Observer,
-    body_from_icrs: Rotation<Body, Icrs>,
-    camera_from_icrs: Rotation<CameraFrame, Icrs>,
-    line_of_sight: Direction<Icrs>,
-    sunlit_fraction: f64,
-    phase_rad: f64,
-    /// The target, and where the origin of its body frame is in the image; `None` behind the camera.
-    target: Source,
-    target_position: Option<PixelPoint>,
-    target_from_icrs: Option<Rotation<Target, Icrs>>,
-    appearance: Appearance,
-    /// `None` without the Solar System.
-    moon: Option<LitMoon>,
-}
-
-impl Moment {
-    /// Where a point of the target's body frame, m, is in the image: each point in its own direction.
-    fn place_of(&self, point_m: &Vector3<f64>, projection: &Projection) -> Option<PixelPoint> {
-        let turned_m = self.target_from_icrs.map_or(*point_m, |turn| turn.inverse().rotate(point_m));
-        let from_chaser_km = self.states.line_of_sight_km() + turned_m / 1000.0;
-        projection.project(&(self.camera_from_icrs * Direction::from_vector(from_chaser_km).ok()?))
-    }
 }
 
 impl<'a> SimulatedCamera<'a> {
@@ -88,17 +61,14 @@ impl<'a> SimulatedCamera<'a> {
         let regions = simulator.roi.as_ref().map(|roi| RoiExtractor::new(roi, columns, rows)).transpose()?;
         Ok(Self {
             simulator,
-            psf: simulator.psf.clone(),
+            painter: Painter::new(simulator.psf.clone()),
             image: simulator.sensor.new_expected(),
             laws: FlatLaws::new(),
             raw: simulator.sensor.new_raw(),
             regions,
-            sources: Vec::new(),
-            body: Vec::new(),
-            trail: Vec::new(),
-            points: Vec::new(),
-            field: Vec::new(),
+            backgrounds: [Vec::new(), Vec::new()],
             stamps: Vec::new(),
+            halves: [Stamp::new(), Stamp::new()],
             bloomed: Stamp::new(),
         })
     }
@@ -115,42 +85,13 @@ impl<'a> SimulatedCamera<'a> {
             expected: "a frame of the schedule",
         })?;
         let exposure_s = self.exposure_s(time, number)?;
-        let mut moment = self.moment(time, number)?;
-        let camera = self.motion(&mut moment, time, exposure_s, number)?;
-
-        self.sources.clear();
-        if moment.target_position.is_some() {
-            self.sources.push(moment.target);
-        }
-        simulator.stars.look(
-            &moment.observer,
-            &camera,
-            &simulator.projection,
-            |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
-            &mut self.sources,
-        );
-        if simulator.solar_system == Switch::On {
-            planets::look(
-                clock::tdb_j2000_s(time),
-                &moment.observer,
-                &camera,
-                &simulator.projection,
-                &simulator.radiometry,
-                |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
-                &mut self.sources,
-            );
-        }
-        self.look_at_moon(&moment, &camera, exposure_s);
-        let background = simulator.background.as_ref().map(|background| {
-            let (position_km, sun_km) = (&moment.states.chaser.position_km, &moment.observer.sun_km());
-            background.field(time, position_km, sun_km, moment.camera_from_icrs)
-        });
+        let (mut view, drawn) = View::of_frame(simulator, self.painter.psf(), time, exposure_s, number)?;
         let opening = Opening { seed: simulator.seed, middle_s: clock::tt_j2000_s(time), exposure_s };
         let tracks = simulator.cosmic_rays.as_ref().map_or_else(Vec::new, |rays| {
-            let rate = rays.rate_per_cm2_s(time, &moment.states.chaser.position_km);
+            let rate = rays.rate_per_cm2_s(time, &view.moment.states.chaser.position_km);
             rays.tracks(&simulator.seed, number, exposure_s, rate)
         });
-        let mut objects = self.draw(&moment, number, &opening, background.as_ref(), &tracks)?;
+        let mut objects = self.draw(&mut view, &drawn, number, &opening, &tracks)?;
         let windows = self.regions.as_mut().map(|regions| regions.extract(&self.raw));
         if let Some(windows) = &windows {
             for (object, stamp) in objects.iter_mut().zip(&self.stamps) {
@@ -158,6 +99,7 @@ impl<'a> SimulatedCamera<'a> {
             }
         }
 
+        let moment = view.moment;
         let truth = FrameTruth {
             frame: number,
             group: group.to_owned(),
@@ -173,7 +115,7 @@ impl<'a> SimulatedCamera<'a> {
             phase_deg: moment.phase_rad.to_degrees(),
             shadow: shadow::classify(moment.sunlit_fraction),
             sunlit_fraction: moment.sunlit_fraction,
-            background_e_per_s: background.map_or(0.0, |field| field.mean_e_per_s()),
+            background_e_per_s: view.background.map_or(0.0, |field| field.mean_e_per_s()),
             target_from_icrs: moment.target_from_icrs,
             target_position: moment.target_position,
             target_visibility: Visibility::of_snr(
@@ -200,91 +142,16 @@ impl<'a> SimulatedCamera<'a> {
         &self.image
     }
 
-    /// Where everything is at `time`, with the attitude of frame `number`.
-    fn moment(&self, time: Epoch, number: u64) -> Result<Moment, SimError> {
-        let simulator = self.simulator;
-        let states = simulator.trajectory.at(time);
-        let body_from_icrs = simulator.attitude.truth(&states, number);
-        let camera_from_icrs = simulator.camera_from_body * body_from_icrs;
-        let observer = Observer::new(time, states.chaser.position_km, states.chaser.velocity_km_s)?;
-
-        let line_of_sight_km = states.line_of_sight_km();
-        let line_of_sight = Direction::from_vector(line_of_sight_km)?;
-        let earth_to_sun_km = states.chaser.position_km + observer.sun_km();
-        let sunlit_fraction = shadow::sunlit_fraction(&states.target.position_km, &earth_to_sun_km);
-        let lighting = Lighting {
-            chaser_km: -line_of_sight_km,
-            sun_km: earth_to_sun_km - states.target.position_km,
-            sunlit_fraction,
-        };
-        let target_from_icrs = simulator.target.attitude(&states);
-        let appearance = simulator.target.appearance(&lighting, target_from_icrs);
-        let magnitude = appearance.magnitude();
-        // The target moves with the chaser: light time cancels aberration, so it is seen where it is.
-        let target_position = simulator.projection.project(&(camera_from_icrs * line_of_sight));
-        let target = Source {
-            kind: ObjectKind::Target,
-            id: 0,
-            position: target_position.unwrap_or_default(),
-            ends: [target_position.unwrap_or_default(); 2],
-            astrometric: Some(line_of_sight),
-            // In the umbra there is no light, and no magnitude.
-            magnitude,
-            electrons_per_s: magnitude.map_or(0.0, |m| simulator.radiometry.sunlit(m)),
-        };
-        let moon = match simulator.solar_system {
-            Switch::On => LitMoon::new(clock::tdb_j2000_s(time), &states.chaser, &observer),
-            Switch::Off => None,
-        };
-        Ok(Moment {
-            states,
-            observer,
-            body_from_icrs,
-            camera_from_icrs,
-            line_of_sight,
-            sunlit_fraction,
-            phase_rad: lighting.phase_rad(),
-            target,
-            target_position,
-            target_from_icrs,
-            appearance,
-            moon,
-        })
-    }
-
-    /// How the camera turns during the exposure about the middle `moment`, and where its target is at both ends.
-    fn motion(
-        &self,
-        moment: &mut Moment,
-        time: Epoch,
-        exposure_s: f64,
-        number: u64,
-    ) -> Result<CameraMotion, SimError> {
-        let simulator = self.simulator;
-        let mut camera = CameraMotion::still(moment.camera_from_icrs);
-        if simulator.attitude.motion_smear() == Switch::On {
-            for (end, side) in [-0.5, 0.5].into_iter().enumerate() {
-                let states = simulator.trajectory.at(time + side * exposure_s * Unit::Second);
-                camera.ends[end] = simulator.camera_from_body * simulator.attitude.truth(&states, number);
-                let line_of_sight = Direction::from_vector(states.line_of_sight_km())?;
-                if let Some(position) = simulator.projection.project(&(camera.ends[end] * line_of_sight)) {
-                    moment.target.ends[end] = position;
-                }
-            }
-        }
-        Ok(camera)
-    }
-
     /// The exposure time that the shutter control chooses: it follows the brightest object on the detector, as it
     /// was a lag before the exposure.
     fn exposure_s(&self, time: Epoch, number: u64) -> Result<f64, SimError> {
         let simulator = self.simulator;
         let time = time - simulator.shutter.lag_s() * Unit::Second;
-        let moment = self.moment(time, number)?;
+        let moment = Moment::at(simulator, time, number)?;
         let (columns, rows) = simulator.projection.detector();
         let target = moment.target_position.filter(|position| position.is_on_detector(columns, rows));
         // A body that spans pixels has a lower peak than a point of its light.
-        let peak_share = self.psf.peak_share();
+        let peak_share = self.painter.psf().peak_share();
         let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
         let spread = moment.appearance.peak_share(&place, peak_share) / peak_share;
         let mut brightest = simulator.stars.brightest(
@@ -319,89 +186,75 @@ impl<'a> SimulatedCamera<'a> {
         let (mut points, mut stamp) = (Vec::new(), Stamp::new());
         moon.image(still.middle, &simulator.projection, MOON_POINTS, &mut points);
         let detector = simulator.projection.detector();
-        self.psf.clone().stamp_extended(&points, 1.0, MOON_FLOOR, detector, &mut stamp);
+        self.painter.psf().clone().stamp_extended(&points, 1.0, MOON_FLOOR, detector, &mut stamp);
         stamp.truth(0.0, 0.0).peak_electrons * source.electrons_per_s
-    }
-
-    /// Appends the Moon when its image comes onto the detector, and takes away the stars and planets behind it.
-    fn look_at_moon(&mut self, moment: &Moment, camera: &CameraMotion, exposure_s: f64) {
-        let simulator = self.simulator;
-        let Some(moon) = &moment.moon else { return };
-        self.sources.retain(|source| {
-            let far = matches!(source.kind, ObjectKind::Star | ObjectKind::Planet);
-            let hidden = |astrometric| far && moon.hides(&moment.observer.apparent_of(astrometric));
-            !source.astrometric.is_some_and(hidden)
-        });
-        self.sources.extend(moon.source(
-            camera,
-            &simulator.projection,
-            &simulator.radiometry,
-            |rate_e_per_s| self.psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E),
-        ));
     }
 
     /// Draws the expected image and the digital numbers, keeps a stamp of every object that has light on the detector,
     /// and tells its truth.
     fn draw(
         &mut self,
-        moment: &Moment,
+        view: &mut View,
+        drawn: &Drawn,
         number: u64,
         opening: &Opening,
-        background: Option<&BackgroundField>,
         tracks: &[Track],
     ) -> Result<Vec<ObjectTruth>, SimError> {
-        let Self {
-            simulator,
-            psf,
-            image,
-            field,
-            laws,
-            raw,
-            sources,
-            body,
-            trail,
-            points,
-            stamps,
-            bloomed,
-            ..
-        } = self;
+        let Self { simulator, painter, image, backgrounds, laws, raw, stamps, halves, bloomed, .. } = self;
         let sensor = &simulator.sensor;
         let (columns, rows) = image.size();
         let hot_pixels = sensor.hot_pixels();
-        let detected = sources.len() + hot_pixels.len() + tracks.len();
+        let detected = view.sources.len() + hot_pixels.len() + tracks.len();
         stamps.resize_with(stamps.len().max(detected), Stamp::new);
-        let (lit, own) = stamps.split_at_mut(sources.len());
+        let (lit, own) = stamps.split_at_mut(view.sources.len());
         let (hot, struck) = own.split_at_mut(hot_pixels.len());
 
         image.clear(sensor.sky_electrons(opening.exposure_s));
-        if let Some(background) = background {
-            background.electrons_per_s(field);
-            image.set_field(Some(field), opening.exposure_s);
-        }
-        for (source, stamp) in sources.iter_mut().zip(lit) {
+        let [background, later] = backgrounds;
+        let has_background = match drawn {
+            Drawn::Whole => view.background_e_per_s(background),
+            Drawn::Fields(interlace, fields) => {
+                let [first, second] = &**fields;
+                let has_background = first.background_e_per_s(background) && second.background_e_per_s(later);
+                if has_background {
+                    interlace.weave(background, later, columns);
+                }
+                has_background
+            }
+        };
+        image.set_field(has_background.then_some(background), opening.exposure_s);
+        let mut paint = |view: &View, index: usize, stamp: &mut Stamp| {
+            let source = &view.sources[index];
             let transmission = simulator.vignetting.transmission(source.position);
             let electrons = source.electrons_per_s * opening.exposure_s * transmission;
-            let [begin, end] = source.ends;
-            trail.clear();
-            optics::trail(begin, source.position, end, trail);
-            body.clear();
-            match (source.kind, &moment.moon) {
+            let resolve = |along: usize, body: &mut Vec<ImagePoint>| match (source.kind, &view.moment.moon) {
                 (ObjectKind::Target, _) => {
-                    let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
-                    moment.appearance.image(&place, POINTS / trail.len(), body);
+                    let place = |point_m: &Vector3<f64>| view.moment.place_of(point_m, &simulator.projection);
+                    view.moment.appearance.image(&place, POINTS / along, body);
                 }
                 (ObjectKind::Moon, Some(moon)) => {
-                    let limit = MOON_POINTS / trail.len();
-                    moon.image(moment.camera_from_icrs, &simulator.projection, limit, body);
+                    let limit = MOON_POINTS / along;
+                    moon.image(view.moment.camera_from_icrs, &simulator.projection, limit, body);
                 }
                 _ => body.push(ImagePoint { position: source.position, share: 1.0 }),
+            };
+            painter.paint(source, electrons, resolve, (columns, rows), stamp);
+        };
+        for (index, stamp) in lit.iter_mut().enumerate() {
+            match drawn {
+                Drawn::Whole => paint(view, index, stamp),
+                Drawn::Fields(interlace, fields) => {
+                    let [first, second] = &**fields;
+                    paint(first, index, &mut halves[0]);
+                    paint(second, index, &mut halves[1]);
+                    stamp.weave(&halves[0], &halves[1], |row| interlace.is_first(row));
+                }
             }
-            carry_along(body, source.position, trail, points);
-            psf.stamp_extended(points, electrons, Psf::FLOOR_E, (columns, rows), stamp);
-            source.position = stamp.centre();
+            view.sources[index].position = stamp.centre();
             image.add(stamp);
             sensor.respond(stamp);
         }
+        let sources = &mut view.sources;
         let mut charge = sensor.collect(image, opening);
         for (pixel, stamp) in hot_pixels.iter().zip(hot) {
             // The sensor itself collects it; here it is only described.
@@ -462,18 +315,5 @@ fn of_the_detector(kind: ObjectKind, id: usize, stamp: &Stamp) -> Source {
         astrometric: None,
         magnitude: None,
         electrons_per_s: 0.0,
-    }
-}
-
-/// The points of an image that moves as a whole: each point of the `body` along the `trail` that `centre` makes.
-fn carry_along(body: &[ImagePoint], centre: PixelPoint, trail: &[ImagePoint], points: &mut Vec<ImagePoint>) {
-    points.clear();
-    for along in trail {
-        points.extend(body.iter().map(|point| {
-            // From the trail outwards: a point at the centre is on it to the bit.
-            let (dx, dy) = (point.position.x - centre.x, point.position.y - centre.y);
-            let position = PixelPoint::new(along.position.x + dx, along.position.y + dy);
-            ImagePoint { position, share: along.share * point.share }
-        }));
     }
 }

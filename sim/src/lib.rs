@@ -7,13 +7,16 @@ pub mod catalog;
 pub mod draw;
 mod error;
 mod expose;
+mod moment;
 pub mod onboard;
 pub mod optics;
+mod painter;
 pub mod randomness;
 pub mod scene;
 pub mod sensor;
 mod simulator;
 pub mod truth;
+mod view;
 
 pub use error::SimError;
 pub use expose::{Exposure, SimulatedCamera};

@@ -94,7 +94,8 @@ impl Simulator {
         let trajectory = Trajectory::new(&simulation.orbit)?;
         let schedule = Schedule::new(&simulation.schedule)?;
         let shutter = Shutter::new(&simulation.shutter, simulation.sensor.saturation_e())?;
-        check_times(&schedule, &trajectory, shutter.lag_s())?;
+        let half_interval_s = simulation.sensor.interlace.map_or(0.0, |interlace| interlace.offsets_s()[1]);
+        check_times(&schedule, &trajectory, shutter.lag_s(), half_interval_s)?;
         let projection = Projection::new(&simulation.camera)?;
         let vignetting = Vignetting::new(&simulation.optics, &simulation.camera)?;
         let (columns, rows) = projection.detector();
@@ -163,10 +164,15 @@ impl Simulator {
 }
 
 /// Checks that the chaser can see from where it is: at the time that the shutter control looks at for the first frame,
-/// and at the first and last frame. All others lie between.
-fn check_times(schedule: &Schedule, trajectory: &Trajectory, lag_s: f64) -> Result<(), SimError> {
+/// and at the first and last frame, whose fields are exposed `half_interval_s` before and after. All others lie between.
+fn check_times(
+    schedule: &Schedule,
+    trajectory: &Trajectory,
+    lag_s: f64,
+    half_interval_s: f64,
+) -> Result<(), SimError> {
     let last = schedule.frame_count().saturating_sub(1);
-    for (number, earlier_s) in [(0, lag_s), (0, 0.0), (last, 0.0)] {
+    for (number, earlier_s) in [(0, lag_s), (0, half_interval_s), (last, -half_interval_s)] {
         let Some((_, time)) = schedule.frame(number) else { continue };
         let states = trajectory.at(time - earlier_s * Unit::Second);
         let chaser = states.chaser;

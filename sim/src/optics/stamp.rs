@@ -53,6 +53,27 @@ impl Stamp {
         self.electrons.resize(self.columns * self.rows, 0.0);
     }
 
+    /// Makes this the image of an object in an interlaced frame: the rows for which `in_first` holds are those of `first`,
+    /// the others those of `second`. Its centre is the middle between their centres.
+    pub(crate) fn weave(&mut self, first: &Self, second: &Self, in_first: impl Fn(usize) -> bool) {
+        let fields = [(first, true), (second, false)];
+        let windows = || fields.iter().filter_map(|(stamp, _)| stamp.window());
+        let x = windows().map(|w| w.x).min().unwrap_or(0);
+        let y = windows().map(|w| w.y).min().unwrap_or(0);
+        let right = windows().map(|w| w.x + w.columns).max().unwrap_or(0);
+        let bottom = windows().map(|w| w.y + w.rows).max().unwrap_or(0);
+        let middle = |a: f64, b: f64| 0.5 * (a + b);
+        let centre =
+            PixelPoint::new(middle(first.centre.x, second.centre.x), middle(first.centre.y, second.centre.y));
+        self.reset(centre, (x, right), (y, bottom));
+        for (stamp, is_first) in fields {
+            for (start, row, electrons) in stamp.rows().filter(|(_, row, _)| in_first(*row) == is_first) {
+                let at = (row - self.y) * self.columns + start - self.x;
+                self.electrons[at..at + electrons.len()].copy_from_slice(electrons);
+            }
+        }
+    }
+
     /// Adds electrons to a pixel; outside the stamp nothing happens.
     pub(crate) fn add(&mut self, x: usize, y: usize, electrons: f64) {
         if (self.x..self.x + self.columns).contains(&x) && (self.y..self.y + self.rows).contains(&y) {
@@ -162,6 +183,26 @@ mod tests {
         assert!((truth.snr - snr).abs() < 1e-12);
         // The noise is 5 e⁻: pixels one away exceed it, the diagonal one does not.
         assert_eq!(truth.radius_px, 1.0);
+    }
+
+    #[test]
+    fn a_woven_stamp_has_alternate_rows_of_both_images() {
+        let (first, mut second, mut woven) = (two_by_two(), Stamp::new(), Stamp::new());
+        second.reset(PixelPoint::new(13.0, 21.0), (12, 14), (20, 23));
+        second.electrons.copy_from_slice(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        woven.weave(&first, &second, |row| row % 2 == 0);
+        let rows: Vec<_> = woven.rows().map(|(x, y, row)| (x, y, row.to_vec())).collect();
+        assert_eq!(rows[0], (10, 20, vec![100.0, 30.0, 0.0, 0.0]));
+        assert_eq!(rows[1], (10, 21, vec![0.0, 0.0, 3.0, 4.0]));
+        assert_eq!(rows[2], (10, 22, vec![0.0; 4]));
+        assert_eq!(woven.centre(), PixelPoint::new(11.5, 20.5));
+        // An image off the detector has no rows to give.
+        woven.weave(&first, &Stamp::new(), |row| row % 2 == 1);
+        assert_eq!(woven.rows().map(|(_, _, row)| row.iter().sum()).collect::<Vec<f64>>(), [0.0, 20.0]);
+        woven.weave(&Stamp::new(), &Stamp::new(), |_| true);
+        assert_eq!(woven.window(), None);
+        woven.weave(&first, &first, |row| row % 2 == 1);
+        assert_eq!(woven, first);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::randomness::Seed;
 pub struct Opening {
     /// Seed of what switches in time.
     pub seed: Seed,
-    /// Middle of the exposure, s of TT since J2000.0.
+    /// Middle of the exposure, s of TT since J2000.0; of an interlaced frame the middle between its two fields.
     pub middle_s: f64,
     /// Exposure time, s.
     pub exposure_s: f64,
@@ -88,7 +88,9 @@ impl Sensor {
             Some(telegraph) => {
                 let place = (pixel.y * self.size().0 + pixel.x) as u64;
                 let half_s = 0.5 * opening.exposure_s;
-                let (from_s, to_s) = (opening.middle_s - half_s, opening.middle_s + half_s);
+                let middle_s =
+                    opening.middle_s + self.config().interlace.map_or(0.0, |i| i.offset_s(pixel.y));
+                let (from_s, to_s) = (middle_s - half_s, middle_s + half_s);
                 electrons * telegraph.level(&opening.seed, place, from_s, to_s)
             }
             None => electrons,

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::blooming::BloomingConfig;
 use super::cosmic_rays::CosmicRayConfig;
 use super::fixed_pattern::FixedPatternConfig;
+use super::interlace::InterlaceConfig;
 use super::telegraph::TelegraphConfig;
 use crate::SimError;
 use crate::error::require;
@@ -169,6 +170,9 @@ pub struct SensorConfig {
     /// Charged particles; without the table there are none.
     #[serde(default)]
     pub cosmic_rays: Option<CosmicRayConfig>,
+    /// Interlaced readout; without the table all rows are exposed at once.
+    #[serde(default)]
+    pub interlace: Option<InterlaceConfig>,
 }
 
 /// An ideal detector to build upon: 16 bits, an electron a digital number, nothing collected but light, no noise of
@@ -192,6 +196,7 @@ impl Default for SensorConfig {
             fixed_pattern: FixedPatternConfig::default(),
             line_noise: LineNoiseConfig::default(),
             cosmic_rays: None,
+            interlace: None,
         }
     }
 }
@@ -228,6 +233,7 @@ impl SensorConfig {
         require("sensor.line_noise.row_e", self.line_noise.row_e, "0 to 500", within(0.0, 500.0))?;
         require("sensor.line_noise.column_e", self.line_noise.column_e, "0 to 500", within(0.0, 500.0))?;
         self.fixed_pattern.check()?;
+        self.interlace.map_or(Ok(()), |interlace| interlace.check())?;
         hot.telegraph.map_or(Ok(()), |telegraph| telegraph.check())?;
         self.cosmic_rays.as_ref().map_or(Ok(()), CosmicRayConfig::check)?;
         self.blooming.map_or(Ok(()), |blooming| blooming.check())

@@ -74,9 +74,10 @@ pub struct FrameTruth {
     pub frame: u64,
     /// Name of the group (a day, a portion) it belongs to.
     pub group: String,
-    /// Middle of the exposure.
+    /// Middle of the exposure; of an interlaced frame the middle between those of its two fields. All else in this table is
+    /// as it was then.
     pub time: Epoch,
-    /// Exposure time, s.
+    /// Exposure time, s; of an interlaced frame that of each field.
     pub exposure_s: f64,
     /// True attitude of the chaser.
     pub body_from_icrs: Rotation<Body, Icrs>,
@@ -158,7 +159,7 @@ pub struct ObjectTruth {
     /// Number within its kind; 0 for the target and the Moon.
     pub id: u32,
     /// Where the centre of its image is (energy centroid of the image that an even, unlimited detector would have; the
-    /// middle of a particle's track on the detector).
+    /// middle of a particle's track on the detector). In an interlaced frame the middle between those of its two fields.
     pub position: PixelPoint,
     /// Direction without aberration, proper motion and parallax applied; `None` for what the detector makes.
     pub astrometric: Option<Direction<Icrs>>,

@@ -1,0 +1,60 @@
+//! Draws the image of one source: its body, carried along its trail, through the point-spread function.
+
+use contract::PixelPoint;
+
+use crate::optics::{self, ImagePoint, Psf, Stamp};
+use crate::scene::Source;
+
+/// A point-spread function with the buffers that sources reuse.
+#[derive(Debug)]
+pub(crate) struct Painter {
+    psf: Psf,
+    /// The body in the middle of the exposure.
+    body: Vec<ImagePoint>,
+    trail: Vec<ImagePoint>,
+    points: Vec<ImagePoint>,
+}
+
+impl Painter {
+    pub(crate) fn new(psf: Psf) -> Self {
+        Self { psf, body: Vec::new(), trail: Vec::new(), points: Vec::new() }
+    }
+
+    /// The point-spread function it draws with.
+    pub(crate) fn psf(&self) -> &Psf {
+        &self.psf
+    }
+
+    /// Makes `stamp` the image of a source that gives `electrons` to a detector of (columns, rows). `resolve` appends the
+    /// points of its body, shares adding up to 1; it is told how many points the trail has, each of which takes them all.
+    pub(crate) fn paint(
+        &mut self,
+        source: &Source,
+        electrons: f64,
+        resolve: impl FnOnce(usize, &mut Vec<ImagePoint>),
+        detector: (usize, usize),
+        stamp: &mut Stamp,
+    ) {
+        let Self { psf, body, trail, points } = self;
+        let [begin, end] = source.ends;
+        trail.clear();
+        optics::trail(begin, source.position, end, trail);
+        body.clear();
+        resolve(trail.len(), body);
+        carry_along(body, source.position, trail, points);
+        psf.stamp_extended(points, electrons, Psf::FLOOR_E, detector, stamp);
+    }
+}
+
+/// The points of an image that moves as a whole: each point of the `body` along the `trail` that `centre` makes.
+fn carry_along(body: &[ImagePoint], centre: PixelPoint, trail: &[ImagePoint], points: &mut Vec<ImagePoint>) {
+    points.clear();
+    for along in trail {
+        points.extend(body.iter().map(|point| {
+            // From the trail outwards: a point at the centre is on it to the bit.
+            let (dx, dy) = (point.position.x - centre.x, point.position.y - centre.y);
+            let position = PixelPoint::new(along.position.x + dx, along.position.y + dy);
+            ImagePoint { position, share: along.share * point.share }
+        }));
+    }
+}

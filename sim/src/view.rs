@@ -1,0 +1,119 @@
+//! What the camera sees while its shutter is open: of a frame as a whole, or of either field of an interlaced one.
+
+use std::collections::BTreeSet;
+
+use hifitime::{Epoch, Unit};
+
+use crate::moment::Moment;
+use crate::optics::Psf;
+use crate::scene::{BackgroundField, CameraMotion, Source, planets};
+use crate::sensor::{InterlaceConfig, Switch};
+use crate::truth::{ObjectKind, clock};
+use crate::{SimError, Simulator};
+
+/// What the camera sees while its shutter is open.
+pub(crate) struct View {
+    time: Epoch,
+    /// Where everything is at that time, the middle of the exposure.
+    pub(crate) moment: Moment,
+    camera: CameraMotion,
+    /// Target, stars, planets and the Moon, each by number.
+    pub(crate) sources: Vec<Source>,
+    pub(crate) background: Option<BackgroundField>,
+}
+
+/// What is drawn of a frame.
+pub(crate) enum Drawn {
+    /// The scene in the middle of the frame.
+    Whole,
+    /// The scenes in the middle of either field, with the same sources, in the same order, as the middle of the frame.
+    Fields(InterlaceConfig, Box<[View; 2]>),
+}
+
+impl View {
+    /// What the camera sees about the middle of frame `number`, and what of it is drawn.
+    pub(crate) fn of_frame(
+        simulator: &Simulator,
+        psf: &Psf,
+        time: Epoch,
+        exposure_s: f64,
+        number: u64,
+    ) -> Result<(Self, Drawn), SimError> {
+        let mut middle = Self::unseen(simulator, time, exposure_s, number)?;
+        let Some(interlace) = simulator.sensor.config().interlace else {
+            middle.look(simulator, psf, exposure_s);
+            return Ok((middle, Drawn::Whole));
+        };
+        let [first_s, second_s] = interlace.offsets_s();
+        let mut first = Self::unseen(simulator, time + first_s * Unit::Second, exposure_s, number)?;
+        let mut second = Self::unseen(simulator, time + second_s * Unit::Second, exposure_s, number)?;
+        // An object at the edge may have light in one field alone: all look out as far as any of them sees.
+        let cameras = [middle.camera, first.camera, second.camera];
+        for view in [&mut middle, &mut first, &mut second] {
+            cameras.iter().for_each(|other| view.camera.widen_to(other));
+            view.look(simulator, psf, exposure_s);
+        }
+        keep_common([&mut middle.sources, &mut first.sources, &mut second.sources]);
+        Ok((middle, Drawn::Fields(interlace, Box::new([first, second]))))
+    }
+
+    /// The background of every pixel, electrons a second, row by row; `false` when there is none of it.
+    pub(crate) fn background_e_per_s(&self, out: &mut Vec<f64>) -> bool {
+        if let Some(background) = &self.background {
+            background.electrons_per_s(out);
+        }
+        self.background.is_some()
+    }
+
+    /// The camera with its shutter open about `time`, before it has looked.
+    fn unseen(simulator: &Simulator, time: Epoch, exposure_s: f64, number: u64) -> Result<Self, SimError> {
+        let mut moment = Moment::at(simulator, time, number)?;
+        let camera = moment.motion(simulator, time, exposure_s, number)?;
+        Ok(Self { time, moment, camera, sources: Vec::new(), background: None })
+    }
+
+    /// Finds all that has light on the detector while the shutter is open.
+    fn look(&mut self, simulator: &Simulator, psf: &Psf, exposure_s: f64) {
+        let Self { time, moment, camera, sources, background } = self;
+        let reach_px = |rate_e_per_s: f64| psf.reach_px(rate_e_per_s * exposure_s, Psf::FLOOR_E);
+        if moment.target_position.is_some() {
+            sources.push(moment.target);
+        }
+        simulator.stars.look(&moment.observer, camera, &simulator.projection, reach_px, sources);
+        if simulator.solar_system == Switch::On {
+            planets::look(
+                clock::tdb_j2000_s(*time),
+                &moment.observer,
+                camera,
+                &simulator.projection,
+                &simulator.radiometry,
+                reach_px,
+                sources,
+            );
+        }
+        if let Some(moon) = &moment.moon {
+            // What is behind it is not seen.
+            sources.retain(|source| {
+                let far = matches!(source.kind, ObjectKind::Star | ObjectKind::Planet);
+                let hidden = |astrometric| far && moon.hides(&moment.observer.apparent_of(astrometric));
+                !source.astrometric.is_some_and(hidden)
+            });
+            sources.extend(moon.source(camera, &simulator.projection, &simulator.radiometry, reach_px));
+        }
+        *background = simulator.background.as_ref().map(|background| {
+            let (position_km, sun_km) = (&moment.states.chaser.position_km, &moment.observer.sun_km());
+            background.field(*time, position_km, sun_km, moment.camera_from_icrs)
+        });
+    }
+}
+
+/// Keeps the sources that are in all three lists, each in its order. What is missing in one has no light in any of the
+/// exposures: each list was asked for all that comes near enough.
+fn keep_common(mut lists: [&mut Vec<Source>; 3]) {
+    let names =
+        |list: &Vec<Source>| list.iter().map(|source| (source.kind, source.id)).collect::<BTreeSet<_>>();
+    let known = lists.each_ref().map(|list| names(list));
+    for list in &mut lists {
+        list.retain(|source| known.iter().all(|names| names.contains(&(source.kind, source.id))));
+    }
+}
