@@ -33,6 +33,7 @@ mod flat_laws;
 mod hot_pixels;
 mod own_means;
 mod pixel_law;
+mod pixels;
 mod poisson;
 mod poisson_digits;
 mod readout;
