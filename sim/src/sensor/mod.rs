@@ -34,6 +34,7 @@ mod hot_pixels;
 mod interlace;
 mod own_means;
 mod pixel_law;
+mod pixels;
 mod poisson;
 mod poisson_digits;
 mod readout;

@@ -7,7 +7,7 @@ use super::pixel_law::poisson_table;
 ///
 /// A mean is written in digits, λ = 4096 c + 64 b + a/4 + δ with whole a, b, c and 0 ≤ δ < ¼. Poisson(λ) is the sum of
 /// independent Poisson numbers of these four means: three from tables, to the 2^-32 of their words, the last by inversion.
-/// Tables are made when first met and are the same whatever the detector: 335 at most, 3 MB.
+/// Tables are made when first met and are the same whatever the detector: 333 at most, 1.5 MB.
 #[derive(Debug, Clone)]
 pub(super) struct PoissonDigits {
     quarters: Vec<Option<AliasTable>>,

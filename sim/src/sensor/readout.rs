@@ -1,16 +1,13 @@
 //! From expected photo-electrons to digital numbers.
 
-use rand::Rng;
-
 use super::blooming::BloomingConfig;
 use super::charge::Charge;
 use super::config::{SensorConfig, Switch};
 use super::fixed_pattern::FixedPattern;
-use super::flat_laws::{FlatLaw, FlatLaws};
+use super::flat_laws::FlatLaws;
 use super::hot_pixels::{HotPixel, hot_pixels};
-use super::own_means::OwnMeans;
 use super::pixel_law::PixelLaw;
-use super::poisson_digits::PoissonDigits;
+use super::pixels::LineOffsets;
 use crate::SimError;
 use crate::draw::ExpectedImage;
 use crate::randomness::{Effect, Seed, Streams, normal};
@@ -19,25 +16,13 @@ use crate::randomness::{Effect, Seed, Streams, normal};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensor {
     config: SensorConfig,
-    law: PixelLaw,
-    columns: usize,
-    rows: usize,
+    pub(super) law: PixelLaw,
+    pub(super) columns: usize,
+    pub(super) rows: usize,
     /// Factor of all dark currents by the temperature.
     warmth: f64,
     hot_pixels: Vec<HotPixel>,
     pattern: FixedPattern,
-}
-
-/// Electrons that the readout adds to each row and each column of a frame.
-struct LineOffsets {
-    rows: Vec<f64>,
-    columns: Vec<f64>,
-}
-
-impl LineOffsets {
-    fn at(&self, x: usize, y: usize) -> f64 {
-        self.rows[y] + self.columns[x]
-    }
 }
 
 /// Digital numbers as they leave the converter. Reused from frame to frame.
@@ -46,7 +31,7 @@ pub struct RawImage {
     columns: usize,
     rows: usize,
     bit_depth: u8,
-    dn: Vec<u16>,
+    pub(super) dn: Vec<u16>,
 }
 
 impl RawImage {
@@ -149,7 +134,7 @@ impl Sensor {
     /// Draws the digital number of every pixel.
     ///
     /// A row has one stream, at place = row, of which every pixel takes 32 bits, or 64 where each has a mean of its own, or
-    /// 192 where rows and columns have offsets: from them comes the number of nearly every pixel. One with much signal, or
+    /// 192 where rows and columns have offsets (or that level is high): from them comes the number of nearly every pixel. One with much signal, or
     /// whose bits do not decide, is drawn from an address of its own, place = rows + index, so that what is in one pixel
     /// never changes the draw of another.
     ///
@@ -184,126 +169,6 @@ impl Sensor {
             self.bloom(blooming, expected, offsets.as_ref(), &streams, raw);
         }
         Ok(())
-    }
-
-    /// The frame of a flat background: one table for nearly all pixels.
-    fn draw_flat(
-        &self,
-        expected: &ExpectedImage,
-        streams: &Streams,
-        laws: &mut FlatLaws,
-        raw: &mut RawImage,
-    ) {
-        let flat = laws.of(&self.law, expected.flat_e());
-        let table = flat.flat();
-        for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            let mut stream = streams.at(y as u64);
-            let mut pairs = row.chunks_exact_mut(2);
-            for pair in &mut pairs {
-                let word = stream.next_u64();
-                pair[0] = table.draw(word as u32);
-                pair[1] = table.draw((word >> 32) as u32);
-            }
-            if let [last] = pairs.into_remainder() {
-                *last = table.draw(stream.next_u64() as u32);
-            }
-        }
-        for (index, signal_e) in expected.drawn() {
-            let place = (self.rows + index) as u64;
-            // Without shot noise electrons are not counted, and there is nothing to superpose. A dead pixel has less than
-            // the flat level.
-            let faint = (0.0..=FlatLaw::FAINT_E).contains(&signal_e) && self.law.shot == Switch::On;
-            raw.dn[index] = if faint {
-                flat.draw_faint(signal_e, streams.word(place))
-            } else {
-                self.law.sample(expected.flat_e() + signal_e, 0.0, &mut streams.at(place))
-            };
-        }
-    }
-
-    /// The frame in which every pixel has a mean of its own.
-    fn draw_own_means(
-        &self,
-        expected: &ExpectedImage,
-        streams: &Streams,
-        laws: &mut FlatLaws,
-        raw: &mut RawImage,
-    ) {
-        let end_e = OwnMeans::end_e(&self.law);
-        if expected.flat_e() >= end_e {
-            return self.draw_in_parts(expected, None, streams, laws, raw);
-        }
-        let mut means = vec![0.0; self.columns];
-        for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            expected.row(y, &mut means);
-            let mut stream = streams.at(y as u64);
-            let own_means = laws.own_means(&self.law);
-            for (x, (dn, &mean_e)) in row.iter_mut().zip(&means).enumerate() {
-                let word = stream.next_u64();
-                let own = || streams.at((self.rows + y * self.columns + x) as u64);
-                *dn = if mean_e < end_e {
-                    own_means.draw(&self.law, mean_e.max(0.0), word, own)
-                } else {
-                    self.law.sample(mean_e, 0.0, &mut own())
-                };
-            }
-        }
-    }
-
-    /// The frame in which no table holds the law of a pixel, because rows and columns have offsets: electrons, then read
-    /// noise, then the converter.
-    fn draw_in_parts(
-        &self,
-        expected: &ExpectedImage,
-        offsets: Option<&LineOffsets>,
-        streams: &Streams,
-        laws: &mut FlatLaws,
-        raw: &mut RawImage,
-    ) {
-        let (digits, normal) = laws.in_parts();
-        let [mut means, mut collected, mut noise, mut offsets_e] = [(); 4].map(|()| vec![0.0; self.columns]);
-        for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            let own = |x: usize| streams.at((self.rows + y * self.columns + x) as u64);
-            let mut stream = streams.at(y as u64);
-            expected.row(y, &mut means);
-            // One step after the other over the row, each a short loop.
-            match self.law.shot {
-                Switch::On => {
-                    for (collected, &mean_e) in collected.iter_mut().zip(&means) {
-                        let words = [stream.next_u64(), stream.next_u64()];
-                        *collected = f64::from(digits.draw(mean_e.max(0.0), words));
-                    }
-                }
-                Switch::Off => {
-                    for (collected, mean_e) in collected.iter_mut().zip(&means) {
-                        *collected = mean_e.max(0.0);
-                    }
-                }
-            }
-            match offsets {
-                Some(offsets) => {
-                    for (offset_e, column_e) in offsets_e.iter_mut().zip(&offsets.columns) {
-                        *offset_e = offsets.rows[y] + column_e;
-                    }
-                }
-                None => offsets_e.fill(0.0),
-            }
-            for (x, noise) in noise.iter_mut().enumerate() {
-                *noise = normal.draw(stream.next_u64(), || own(x));
-            }
-            for (((dn, &collected_e), &noise), &offset_e) in
-                row.iter_mut().zip(&collected).zip(&noise).zip(&offsets_e)
-            {
-                *dn = self.law.read(collected_e, noise, offset_e);
-            }
-            if self.law.shot == Switch::On {
-                for (x, (dn, &mean_e)) in row.iter_mut().zip(&means).enumerate() {
-                    if mean_e >= PoissonDigits::END_E {
-                        *dn = self.law.sample(mean_e, offsets_e[x], &mut own(x));
-                    }
-                }
-            }
-        }
     }
 
     /// What the readout adds to rows and columns: noise of this frame, and the fixed offsets. `None` when there is none of

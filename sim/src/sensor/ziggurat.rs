@@ -7,7 +7,7 @@ use crate::randomness::{Stream, uniform};
 /// Layers of equal area that cover exp(−x²/2), x ≥ 0: 255 rectangles, and the lowest one with the tail.
 const LAYERS: usize = 256;
 /// Where the tail begins: the abscissa for which 256 layers of equal area end at the top (Marsaglia & Tsang 2000).
-const TAIL_FROM: f64 = 3.654_152_885_361_008_8;
+const TAIL_FROM: f64 = 3.654_152_885_361_009;
 
 /// A sampler of the standard normal law (Marsaglia & Tsang, "The ziggurat method for generating random variables",
 /// Journal of Statistical Software 5(8), 2000), on words of 64 bits: the lowest eight choose the layer, the highest 53 the

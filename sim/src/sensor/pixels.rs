@@ -1,0 +1,250 @@
+//! The digital numbers of a frame, pixel by pixel: by tables where a table holds the law of a pixel, in parts elsewhere.
+
+use rand::Rng;
+
+use super::config::Switch;
+use super::flat_laws::{FlatLaw, FlatLaws};
+use super::own_means::OwnMeans;
+use super::poisson_digits::PoissonDigits;
+use super::readout::{RawImage, Sensor};
+use crate::draw::ExpectedImage;
+use crate::randomness::Streams;
+
+/// Electrons that the readout adds to each row and each column of a frame.
+pub(super) struct LineOffsets {
+    pub(super) rows: Vec<f64>,
+    pub(super) columns: Vec<f64>,
+}
+
+impl LineOffsets {
+    /// Of one pixel.
+    pub(super) fn at(&self, x: usize, y: usize) -> f64 {
+        self.rows[y] + self.columns[x]
+    }
+}
+
+impl Sensor {
+    /// The frame of a flat background: one table for nearly all pixels.
+    pub(super) fn draw_flat(
+        &self,
+        expected: &ExpectedImage,
+        streams: &Streams,
+        laws: &mut FlatLaws,
+        raw: &mut RawImage,
+    ) {
+        let flat = laws.of(&self.law, expected.flat_e());
+        let table = flat.flat();
+        for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            let mut stream = streams.at(y as u64);
+            let mut pairs = row.chunks_exact_mut(2);
+            for pair in &mut pairs {
+                let word = stream.next_u64();
+                pair[0] = table.draw(word as u32);
+                pair[1] = table.draw((word >> 32) as u32);
+            }
+            if let [last] = pairs.into_remainder() {
+                *last = table.draw(stream.next_u64() as u32);
+            }
+        }
+        for (index, signal_e) in expected.drawn() {
+            let place = (self.rows + index) as u64;
+            // Without shot noise electrons are not counted, and there is nothing to superpose. A dead pixel has less than
+            // the flat level.
+            let faint = (0.0..=FlatLaw::FAINT_E).contains(&signal_e) && self.law.shot == Switch::On;
+            raw.dn[index] = if faint {
+                flat.draw_faint(signal_e, streams.word(place))
+            } else {
+                self.law.sample(expected.flat_e() + signal_e, 0.0, &mut streams.at(place))
+            };
+        }
+    }
+
+    /// The frame in which every pixel has a mean of its own.
+    pub(super) fn draw_own_means(
+        &self,
+        expected: &ExpectedImage,
+        streams: &Streams,
+        laws: &mut FlatLaws,
+        raw: &mut RawImage,
+    ) {
+        let end_e = OwnMeans::end_e(&self.law);
+        if expected.flat_e() >= end_e {
+            return self.draw_in_parts(expected, None, streams, laws, raw);
+        }
+        let mut means = vec![0.0; self.columns];
+        for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            expected.row(y, &mut means);
+            let mut stream = streams.at(y as u64);
+            let own_means = laws.own_means(&self.law);
+            for (x, (dn, &mean_e)) in row.iter_mut().zip(&means).enumerate() {
+                let word = stream.next_u64();
+                let own = || streams.at((self.rows + y * self.columns + x) as u64);
+                *dn = if mean_e < end_e {
+                    own_means.draw(&self.law, mean_e.max(0.0), word, own)
+                } else {
+                    self.law.sample(mean_e, 0.0, &mut own())
+                };
+            }
+        }
+    }
+
+    /// The frame in which no table holds the law of a pixel, because rows and columns have offsets or the flat level is high:
+    /// electrons, then read noise, then the converter.
+    pub(super) fn draw_in_parts(
+        &self,
+        expected: &ExpectedImage,
+        offsets: Option<&LineOffsets>,
+        streams: &Streams,
+        laws: &mut FlatLaws,
+        raw: &mut RawImage,
+    ) {
+        let (digits, normal) = laws.in_parts();
+        let [mut means, mut collected, mut noise, mut offsets_e] = [(); 4].map(|()| vec![0.0; self.columns]);
+        for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            let own = |x: usize| streams.at((self.rows + y * self.columns + x) as u64);
+            let mut stream = streams.at(y as u64);
+            expected.row(y, &mut means);
+            // One step after the other over the row, each a short loop.
+            match self.law.shot {
+                Switch::On => {
+                    for (collected, &mean_e) in collected.iter_mut().zip(&means) {
+                        let words = [stream.next_u64(), stream.next_u64()];
+                        *collected = f64::from(digits.draw(mean_e.max(0.0), words));
+                    }
+                }
+                Switch::Off => {
+                    for (collected, mean_e) in collected.iter_mut().zip(&means) {
+                        *collected = mean_e.max(0.0);
+                    }
+                }
+            }
+            match offsets {
+                Some(offsets) => {
+                    for (offset_e, column_e) in offsets_e.iter_mut().zip(&offsets.columns) {
+                        *offset_e = offsets.rows[y] + column_e;
+                    }
+                }
+                None => offsets_e.fill(0.0),
+            }
+            for (x, noise) in noise.iter_mut().enumerate() {
+                *noise = normal.draw(stream.next_u64(), || own(x));
+            }
+            for (((dn, &collected_e), &noise), &offset_e) in
+                row.iter_mut().zip(&collected).zip(&noise).zip(&offsets_e)
+            {
+                *dn = self.law.read(collected_e, noise, offset_e);
+            }
+            if self.law.shot == Switch::On {
+                for (x, (dn, &mean_e)) in row.iter_mut().zip(&means).enumerate() {
+                    if mean_e >= PoissonDigits::END_E {
+                        *dn = self.law.sample(mean_e, offsets_e[x], &mut own(x));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::config::tests::{opening, twelve_bit};
+    use super::super::pixel_law::tests::{chi_square_p, counts_of, from_zero};
+    use super::super::{FixedPatternConfig, LineNoiseConfig, NoiseConfig, SensorConfig};
+    use super::*;
+    use crate::optics::{Psf, PsfConfig, Stamp};
+    use crate::randomness::Seed;
+    use contract::PixelPoint;
+    use sha2::{Digest, Sha256};
+
+    const SEED: Seed = Seed { seed: 43, case: 0 };
+
+    fn frame(config: &SensorConfig, number: u64, laws: &mut FlatLaws, stars_e: &[f64]) -> Vec<u16> {
+        let sensor = Sensor::new(config, 128, 128).unwrap();
+        let (mut image, mut raw) = (sensor.new_expected(), sensor.new_raw());
+        image.clear(sensor.sky_electrons(1.0));
+        let (mut psf, mut stamp) = (Psf::new(&PsfConfig::Gaussian { sigma_px: 0.8 }).unwrap(), Stamp::new());
+        for (i, electrons) in stars_e.iter().enumerate() {
+            let centre = PixelPoint::new(10.3 + 20.0 * i as f64, 12.8 + 20.0 * i as f64);
+            psf.stamp(centre, *electrons, Psf::FLOOR_E, image.size(), &mut stamp);
+            image.add(&stamp);
+        }
+        let charge = sensor.collect(&mut image, &opening(1.0));
+        sensor.read_out(&charge, &SEED, number, laws, &mut raw).unwrap();
+        raw.dn
+    }
+
+    /// An even detector of a sky, with offsets of rows or a response that differ by nothing that can be seen.
+    fn even(sky_e: f64, row_e: f64, prnu_fraction: f64) -> SensorConfig {
+        SensorConfig {
+            bit_depth: 16,
+            gain_e_per_dn: 2.0,
+            read_noise_e: 3.0,
+            full_well_e: 120_000.0,
+            background_e_per_s: sky_e,
+            dark_current_e_per_s: 0.0,
+            hot_pixels: Default::default(),
+            line_noise: LineNoiseConfig { row_e, column_e: 0.0 },
+            fixed_pattern: FixedPatternConfig { prnu_fraction, ..Default::default() },
+            ..twelve_bit()
+        }
+    }
+
+    #[test]
+    fn frames_in_parts_and_frames_by_tables_follow_the_law_of_a_pixel() {
+        let mut laws = FlatLaws::new();
+        for sky_e in [0.0, 0.4, 20.3, 150.7, 300.0, 5000.0, 70_000.0] {
+            for (row_e, prnu_fraction) in [(1e-9, 0.0), (0.0, 1e-9)] {
+                // The mean of a pixel is a float of 32 bits times the sky: 3e-8 of it.
+                let config = even(sky_e, row_e, prnu_fraction);
+                let dn: Vec<u16> = (0..8).flat_map(|number| frame(&config, number, &mut laws, &[])).collect();
+                let law = super::super::pixel_law::PixelLaw::new(&config);
+                let law = from_zero(&law.probabilities(config.background_e_per_s, 0));
+                let p = chi_square_p(&counts_of(dn.iter().map(|&dn| usize::from(dn))), &law);
+                // Fourteen tests of 131,072 pixels.
+                assert!(p > 1e-4, "{sky_e} e⁻, rows {row_e} e⁻: p = {p}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_shot_noise_the_parts_are_the_mean_and_the_read_noise() {
+        let config = SensorConfig {
+            noise: NoiseConfig { shot: Switch::Off, ..NoiseConfig::default() },
+            ..even(1234.5, 1e-9, 0.0)
+        };
+        let dn = frame(&config, 0, &mut FlatLaws::new(), &[]);
+        let law = super::super::pixel_law::PixelLaw::new(&config).probabilities(1234.5, 0);
+        let p = chi_square_p(&counts_of(dn.iter().map(|&dn| usize::from(dn))), &from_zero(&law));
+        assert!(p > 1e-4, "p = {p}");
+    }
+
+    #[test]
+    fn a_star_changes_no_pixel_but_its_own_whatever_the_detector() {
+        for config in [even(20.0, 5.0, 0.0), even(20.0, 0.0, 0.02), even(2000.0, 0.0, 0.02)] {
+            let mut laws = FlatLaws::new();
+            let without = frame(&config, 1, &mut laws, &[]);
+            // With other tables kept than those of the frame without it.
+            let with = frame(&config, 1, &mut FlatLaws::new(), &[1e6]);
+            assert_ne!(with, without);
+            for (index, _) in with.iter().zip(&without).enumerate().filter(|(_, (a, b))| a != b) {
+                let pixel = PixelPoint::new((index % 128) as f64, (index / 128) as f64);
+                // exp(−d²/2σ²) of a million electrons is below the floor of 0.01 e⁻ from 4.9 px on; a corner of a pixel more.
+                assert!(pixel.distance(PixelPoint::new(10.3, 12.8)) < 5.7, "{index}");
+            }
+        }
+    }
+
+    /// The pixels themselves are frozen: this must hold on every machine, and a change here changes every result of such
+    /// detectors and belongs in CHANGELOG.md.
+    #[test]
+    fn the_pixels_of_uneven_detectors_are_frozen() {
+        let hashes = [even(20.0, 5.0, 0.0), even(20.0, 0.0, 0.02), even(2000.0, 3.0, 0.02)].map(|config| {
+            let dn = frame(&config, 7, &mut FlatLaws::new(), &[500.0, 5e3, 5e4, 5e5]);
+            let bytes: Vec<u8> = dn.iter().flat_map(|dn| dn.to_le_bytes()).collect();
+            let hash = Sha256::digest(&bytes);
+            hash.iter().take(8).map(|byte| format!("{byte:02x}")).collect::<String>()
+        });
+        // Offsets of rows, response of pixels, both.
+        assert_eq!(hashes, ["8f06fd1c95738a8f", "acc3962595302887", "b8384caf98119a61"]);
+    }
+}
