@@ -46,8 +46,9 @@ TABLE_2 = {
 # The free parameters, twelve at most: path in the scenario, range, scale. Everything else in argon.toml is fixed.
 PARAMETERS = [
     ("target.boxes.0.surface.diffuse", 0.08, 0.6, "log"),
+    ("target.boxes.0.surface.specular", 0.02, 0.4, "log"),
+    ("target.attitude.phi_deg", -80.0, -20.0, "lin"),
     ("psf.halo_fraction", 0.005, 0.2, "log"),
-    ("sensor.full_well_e", 3e4, 2e5, "log"),
     ("shutter.target_level", 1.0, 60.0, "log"),
     ("shutter.lag_s", 0.0, 600.0, "lin"),
     ("roi.rows", 7, 13, "int"),
