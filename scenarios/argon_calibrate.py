@@ -101,7 +101,9 @@ def in_blocks(scenario, blocks, length):
     for day in scenario["schedule"]:
         start = datetime.fromisoformat(day["start_utc"])
         for block in range(blocks):
-            first = round((day["count"] - WARM_UP - length) * (block + 0.5) / blocks)
+            # Each block in its part of the day, at a place of its own: evenly spaced ones may all see one phase of the orbit.
+            within = math.fmod(0.6180339887 * (block + 1), 1.0)
+            first = round((day["count"] - WARM_UP - length) * (block + within) / blocks)
             for name, offset, count in [("warm-up", 0, WARM_UP), (day["name"], WARM_UP, length)]:
                 at = start + timedelta(seconds=day["cadence_s"] * (first + offset))
                 schedule.append({
