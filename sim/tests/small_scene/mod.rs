@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use boresight_sim::catalog::CatalogConfig;
-use boresight_sim::onboard::{RoiConfig, ShutterConfig};
+use boresight_sim::onboard::{RoiConfig, ScanOrder, ShutterConfig};
 use boresight_sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use boresight_sim::scene::{BackgroundConfig, TargetConfig};
 use boresight_sim::sensor::{HotPixelConfig, NoiseConfig, SensorConfig, Switch};
@@ -116,6 +116,7 @@ pub(crate) fn restless() -> Simulation {
         anchor_column: 10,
         anchor_row: 2,
         threshold_dn: 60,
+        scan: ScanOrder::Rows,
     });
     simulation
 }
