@@ -382,7 +382,7 @@ fn the_anomaly_is_felt_where_it_is_and_only_there() {
             _ => {}
         }
     }
-    // 0.35 s on 0.0137 cm²: 0.005 hits a frame outside, 1.8 to 4.8 inside.
+    // 0.35 s on 0.0137 cm²: 0.005 hits a frame outside, 2 to 5.3 inside.
     assert!(inside.1 > 5 && outside.1 > 200, "{inside:?}, {outside:?}");
     assert!(inside.0 as f64 / inside.1 as f64 > 1.0 && (outside.0 as f64) < 0.05 * outside.1 as f64);
 }
