@@ -199,9 +199,33 @@ fn the_commented_out_parts_of_a_new_scenario_are_right_too() {
     let table: toml::Table = text.parse().unwrap();
     assert!(["roi", "far_range"].iter().all(|key| table.contains_key(*key)), "{text}");
     assert!(table["orbit"].as_table().unwrap().contains_key("manoeuvres"), "{text}");
+    let sensor = table["sensor"].as_table().unwrap();
+    for key in ["blooming", "temperature", "line_noise", "fixed_pattern", "cosmic_rays", "interlace"] {
+        assert!(sensor.contains_key(key), "{key}: {text}");
+    }
+    assert!(sensor["hot_pixels"].as_table().unwrap().contains_key("telegraph"), "{text}");
     bench.write("whole.toml", text);
     bench.boresight("scenario check whole.toml").done();
     bench.boresight("run whole.toml --frames 0..2 --out run").done();
+}
+
+/// Each line that stands for the two of the Gaussian, in their place.
+#[test]
+fn the_other_point_spread_functions_of_a_new_scenario_are_right_too() {
+    let bench = Bench::new();
+    bench.boresight("scenario new mine.toml").done();
+    let text = bench.read("mine.toml");
+    let start: toml::Table = text.parse().unwrap();
+    bench.write("psf.csv", ["0.1,0.5,0.1", "0.5,1.0,0.5", "0.1,0.5,0.1"].join("\n"));
+    let lines: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("#   ")).collect();
+    assert_eq!(lines.len(), 5);
+    for line in lines {
+        let keys = line.split(" # ").next().unwrap();
+        let mut scenario = start.clone();
+        scenario.extend(format!("psf = {{ {keys} }}").parse::<toml::Table>().unwrap());
+        bench.write("other.toml", scenario.to_string());
+        bench.boresight("scenario check other.toml").done();
+    }
 }
 
 /// 752 × 580 pixels of 12 bits; 40 regions of 20 × 9 with eight bytes each to say where they are.
