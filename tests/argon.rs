@@ -122,7 +122,7 @@ fn correcting_aberration_takes_an_error_with_the_period_of_the_orbit_out_of_the_
         day_2.iter().zip(&day_2[lag..]).map(|(a, b)| (b - a).norm()).sum::<f64>() / (200 - lag) as f64
     };
     assert!(mean_change(100) < 0.05 * mean_change(50), "{}° and {}°", mean_change(100), mean_change(50));
-    let mean_error = |score: &Value| figure(score, "ra_rms_deg").hypot(figure(score, "dec_rms_deg"));
+    let mean_error = |score: &Value| libm::hypot(figure(score, "ra_rms_deg"), figure(score, "dec_rms_deg"));
     assert!(
         mean_error(&corrected) < 0.9 * mean_error(&ignored),
         "{}° and {}°",

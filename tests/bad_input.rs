@@ -106,7 +106,7 @@ mod scenarios {
     #[test]
     fn a_missing_key_is_named_with_its_table() {
         // The place is that of the table.
-        check_mistake("sigma_px = 0.8\n", "", &["mine.toml:42:1: psf", "`sigma_px`"]);
+        check_mistake("sigma_px = 0.8\n", "", &["mine.toml:43:1: psf", "`sigma_px`"]);
     }
 
     #[test]

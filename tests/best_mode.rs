@@ -12,7 +12,7 @@ use nalgebra::{Matrix2x3, Matrix3, Matrix4, Vector3, Vector4};
 use pipeline::far_range::{
     AberrationConfig, AttitudeConfig, CentroidConfig, FarRange, FarRangeConfig, StarWeights,
 };
-use sim::onboard::{RoiConfig, RoiExtractor, downlink};
+use sim::onboard::{RoiConfig, RoiExtractor, ScanOrder, downlink};
 use sim::optics::{Psf, PsfConfig, Stamp};
 use sim::randomness::Seed;
 use sim::sensor::{FlatLaws, Opening, RawImage, Sensor, SensorConfig};
@@ -352,8 +352,15 @@ fn the_weighted_attitude_reaches_the_cramer_rao_bound() {
 fn a_saturated_image_cut_by_a_region_is_fitted_where_it_is() {
     let sensor = sensor(48, 48);
     let psf = PsfConfig::GaussianHalo { sigma_px: SIGMA_PX, halo_sigma_px: 4.0, halo_fraction: 0.03 };
-    let regions =
-        RoiConfig { count: 1, columns: 20, rows: 9, anchor_column: 10, anchor_row: 2, threshold_dn: 60 };
+    let regions = RoiConfig {
+        count: 1,
+        columns: 20,
+        rows: 9,
+        anchor_column: 10,
+        anchor_row: 2,
+        threshold_dn: 60,
+        scan: ScanOrder::Rows,
+    };
     let mut worst_before = 0.0_f64;
     for (i, electrons) in [3e5, 1e6, 3e6].into_iter().enumerate() {
         let (mut x, mut y, mut before) = (Errors::default(), Errors::default(), Errors::default());

@@ -76,6 +76,7 @@ fn frame_truth(row: &TelemetryRow, camera_from_icrs: Rotation<CameraFrame, Icrs>
         shadow: Shadow::Sunlit,
         sunlit_fraction: 1.0,
         background_e_per_s: 0.0,
+        smear_e_per_px: 0.0,
         target_from_icrs: None,
         target_position: None,
         target_visibility: Visibility::Invisible,

@@ -37,6 +37,7 @@ fn frame(i: u64) -> FrameTruth {
         shadow: [Shadow::Sunlit, Shadow::Penumbra, Shadow::Umbra][i as usize % 3],
         sunlit_fraction: fraction(i + 2),
         background_e_per_s: 100.0 * fraction(i + 3),
+        smear_e_per_px: 10.0 * fraction(i + 4),
         target_from_icrs: i.is_multiple_of(2).then(|| Rotation::from_rotation_vector(vector(23))),
         target_position: (!i.is_multiple_of(4))
             .then(|| PixelPoint::new(-fraction(i), 752.0 * fraction(i + 5))),

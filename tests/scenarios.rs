@@ -15,6 +15,8 @@ fn every_built_in_scenario_passes_its_check() {
         let check = bench.boresight(&format!("scenario check {} --json", scenario.name)).done().json();
         assert_eq!((&check["scenario"], &check["ok"]), (&json!(scenario.name), &json!(true)));
         assert!(check["stars"].as_u64() > Some(1000) && check["frames"].as_u64() > Some(0), "{check}");
+        let bytes = |key: &str| check[key].as_u64().unwrap();
+        assert!(bytes("frame_bytes_at_most") <= bytes("whole_image_bytes"), "{check}");
         // The file alone is as good as the built-in one.
         bench.write("copy.toml", scenario.text);
         let copy = bench.boresight("scenario check copy.toml --json").done().json();
@@ -197,9 +199,50 @@ fn the_commented_out_parts_of_a_new_scenario_are_right_too() {
     let table: toml::Table = text.parse().unwrap();
     assert!(["roi", "far_range"].iter().all(|key| table.contains_key(*key)), "{text}");
     assert!(table["orbit"].as_table().unwrap().contains_key("manoeuvres"), "{text}");
+    let sensor = table["sensor"].as_table().unwrap();
+    for key in ["blooming", "temperature", "line_noise", "fixed_pattern", "cosmic_rays", "interlace"] {
+        assert!(sensor.contains_key(key), "{key}: {text}");
+    }
+    assert!(sensor["hot_pixels"].as_table().unwrap().contains_key("telegraph"), "{text}");
     bench.write("whole.toml", text);
     bench.boresight("scenario check whole.toml").done();
     bench.boresight("run whole.toml --frames 0..2 --out run").done();
+}
+
+/// Each line that stands for the two of the Gaussian, in their place.
+#[test]
+fn the_other_point_spread_functions_of_a_new_scenario_are_right_too() {
+    let bench = Bench::new();
+    bench.boresight("scenario new mine.toml").done();
+    let text = bench.read("mine.toml");
+    let start: toml::Table = text.parse().unwrap();
+    bench.write("psf.csv", ["0.1,0.5,0.1", "0.5,1.0,0.5", "0.1,0.5,0.1"].join("\n"));
+    let lines: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("#   ")).collect();
+    assert_eq!(lines.len(), 5);
+    for line in lines {
+        let keys = line.split(" # ").next().unwrap();
+        let mut scenario = start.clone();
+        scenario.extend(format!("psf = {{ {keys} }}").parse::<toml::Table>().unwrap());
+        bench.write("other.toml", scenario.to_string());
+        bench.boresight("scenario check other.toml").done();
+    }
+}
+
+/// 752 × 580 pixels of 12 bits; 40 regions of 20 × 9 with eight bytes each to say where they are.
+#[test]
+fn a_check_tells_the_telemetry_of_a_frame() {
+    let bench = Bench::new();
+    bench.boresight("scenario new whole.toml").done();
+    let roi =
+        "[roi]\ncount = 40\ncolumns = 20\nrows = 9\nanchor_column = 10\nanchor_row = 2\nthreshold_dn = 60\n";
+    bench.write("regions.toml", format!("{}\n{roi}scan = \"columns\"\n", bench.read("whole.toml")));
+    for (file, bytes) in [("whole.toml", 654_240), ("regions.toml", 40 * (8 + 270))] {
+        let check = bench.boresight(&format!("scenario check {file} --json")).done().json();
+        assert_eq!(check["frame_bytes_at_most"], bytes);
+        assert_eq!(check["whole_image_bytes"], 654_240);
+        let text = bench.boresight(&format!("scenario check {file}")).done().stdout;
+        assert!(text.contains(&format!(" {bytes} bytes of telemetry a frame")), "{text}");
+    }
 }
 
 /// Relative paths in a scenario start at its own folder, wherever the command runs.

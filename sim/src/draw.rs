@@ -108,8 +108,9 @@ impl ExpectedImage {
         }
     }
 
-    /// Adds to every pixel `share` of the light of all other pixels of its column.
-    pub(crate) fn smear(&mut self, share: f64) {
+    /// Adds to every pixel `share` of the light of all other pixels of its column; tells what a pixel gains, the mean over
+    /// all pixels.
+    pub(crate) fn smear(&mut self, share: f64) -> f64 {
         let (mut sums, mut own) = (vec![0.0; self.columns], vec![0.0; self.columns]);
         for y in 0..self.rows {
             self.row(y, &mut own);
@@ -125,6 +126,9 @@ impl ExpectedImage {
                 *field += share * (sum - own);
             }
         }
+        // Each pixel gives to all others of its column, and there are as many of them as pixels that it is one of.
+        let others = self.rows.saturating_sub(1) as f64;
+        share * others * sums.iter().sum::<f64>() / (self.columns * self.rows).max(1) as f64
     }
 
     /// Empties one pixel, background included.

@@ -91,7 +91,7 @@ impl<'a> SimulatedCamera<'a> {
             let rate = rays.rate_per_cm2_s(time, &view.moment.states.chaser.position_km);
             rays.tracks(&simulator.seed, number, exposure_s, rate)
         });
-        let mut objects = self.draw(&mut view, &drawn, number, &opening, &tracks)?;
+        let (mut objects, smear_e_per_px) = self.draw(&mut view, &drawn, number, &opening, &tracks)?;
         let windows = self.regions.as_mut().map(|regions| regions.extract(&self.raw));
         if let Some(windows) = &windows {
             for (object, stamp) in objects.iter_mut().zip(&self.stamps) {
@@ -116,6 +116,7 @@ impl<'a> SimulatedCamera<'a> {
             shadow: shadow::classify(moment.sunlit_fraction),
             sunlit_fraction: moment.sunlit_fraction,
             background_e_per_s: view.background.map_or(0.0, |field| field.mean_e_per_s()),
+            smear_e_per_px,
             target_from_icrs: moment.target_from_icrs,
             target_position: moment.target_position,
             target_visibility: Visibility::of_snr(
@@ -191,7 +192,7 @@ impl<'a> SimulatedCamera<'a> {
     }
 
     /// Draws the expected image and the digital numbers, keeps a stamp of every object that has light on the detector,
-    /// and tells its truth.
+    /// and tells its truth; in the second place the mean smear of a pixel, electrons.
     fn draw(
         &mut self,
         view: &mut View,
@@ -199,7 +200,7 @@ impl<'a> SimulatedCamera<'a> {
         number: u64,
         opening: &Opening,
         tracks: &[Track],
-    ) -> Result<Vec<ObjectTruth>, SimError> {
+    ) -> Result<(Vec<ObjectTruth>, f64), SimError> {
         let Self { simulator, painter, image, backgrounds, laws, raw, stamps, halves, bloomed, .. } = self;
         let sensor = &simulator.sensor;
         let (columns, rows) = image.size();
@@ -301,7 +302,7 @@ impl<'a> SimulatedCamera<'a> {
             });
         }
         sensor.read_out(&charge, &simulator.seed, number, laws, raw)?;
-        Ok(objects)
+        Ok((objects, charge.smear_e_per_px()))
     }
 }
 

@@ -4,6 +4,7 @@
 //! (seed, case, frame, effect, place), so frame 7000 alone is the frame 7000 of the whole run.
 
 pub mod catalog;
+mod constants;
 pub mod draw;
 mod error;
 mod expose;

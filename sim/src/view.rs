@@ -108,7 +108,8 @@ impl View {
 }
 
 /// Keeps the sources that are in all three lists, each in its order. What is missing in one has no light in any of the
-/// exposures: each list was asked for all that comes near enough.
+/// exposures, because each list was asked for all that comes near enough; or the Moon hides it at one of the three moments:
+/// a star at its very limb is then left out of both fields, image and truth.
 fn keep_common(mut lists: [&mut Vec<Source>; 3]) {
     let names =
         |list: &Vec<Source>| list.iter().map(|source| (source.kind, source.id)).collect::<BTreeSet<_>>();

@@ -10,7 +10,7 @@ mod small_scene;
 use boresight_sim::draw::ExpectedImage;
 use boresight_sim::onboard::ShutterConfig;
 use boresight_sim::scene::TargetConfig;
-use boresight_sim::sensor::{InterlaceConfig, RowParity, TelegraphConfig};
+use boresight_sim::sensor::{InterlaceConfig, RowParity, Switch, TelegraphConfig};
 use boresight_sim::truth::{ControlConfig, ObjectKind, ObjectTruth};
 use boresight_sim::{Exposure, Simulation};
 use small_scene::{restless, simulator, still};
@@ -31,7 +31,7 @@ fn turning() -> Simulation {
     simulation.shutter = ShutterConfig::Fixed { exposure_s: 0.25 };
     simulation.orbit.manoeuvres.clear();
     simulation.roi = None;
-    simulation.background.zodiacal = true;
+    simulation.background.zodiacal = Switch::On;
     simulation
 }
 
@@ -41,7 +41,7 @@ fn one_star() -> Simulation {
     simulation.camera.radial = [0.0; 3];
     simulation.camera.tangential = [0.0; 2];
     simulation.target = TargetConfig::LambertSphere { radius_m: 0.1, albedo: 0.0 };
-    simulation.background.zodiacal = false;
+    simulation.background.zodiacal = Switch::Off;
     simulation.attitude.control = ControlConfig::default();
     simulation.sensor.background_e_per_s = 0.0;
     simulation.sensor.dark_current_e_per_s = 0.0;
@@ -149,7 +149,7 @@ fn even_and_odd_rows_are_displaced_by_rate_times_interval() {
 #[test]
 fn the_electrons_of_the_table_are_those_of_the_image() {
     let mut simulation = interlaced(turning(), INTERVAL_S, RowParity::Even);
-    simulation.background.zodiacal = false;
+    simulation.background.zodiacal = Switch::Off;
     simulation.sensor.background_e_per_s = 0.0;
     simulation.sensor.dark_current_e_per_s = 0.0;
     simulation.sensor.hot_pixels.telegraph = Some(telegraph());

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use clap::Subcommand;
 use serde_json::json;
+use sim::onboard::image_bytes;
 
 use super::Answer;
 use super::output::Output;
@@ -84,8 +85,8 @@ fn camera(name: &str, output: &Output) -> Result<(), Failure> {
 
 /// A mistake in a scenario is the answer no; a file that cannot be read is none.
 fn check(scenario: &str, output: &Output) -> Result<Answer, Failure> {
-    let checked = ScenarioSource::read(scenario).and_then(|source| Ok((source.simulator()?, source.name)));
-    let (simulator, name) = match checked {
+    let checked = ScenarioSource::read(scenario).and_then(|source| Ok((source.simulator()?, source)));
+    let (simulator, ScenarioSource { name, scenario, .. }) = match checked {
         Err(mistake @ Failure::Toml(_)) => {
             let document = json!({ "scenario": scenario, "ok": false, "error": mistake.to_string() });
             output.answer(&document, mistake.explain())?;
@@ -94,8 +95,27 @@ fn check(scenario: &str, output: &Output) -> Result<Answer, Failure> {
         checked => checked?,
     };
     let (frames, stars) = (simulator.schedule().frame_count(), simulator.catalog().stars().len());
-    let document = json!({ "scenario": name, "ok": true, "frames": frames, "stars": stars });
-    output.answer(&document, format!("{name}: {frames} frames, {stars} stars, no mistake found"))?;
+    let (columns, rows, bit_depth) =
+        (scenario.camera.columns, scenario.camera.rows, scenario.sensor.bit_depth);
+    let image = image_bytes(columns, rows, bit_depth);
+    let (budget, telemetry) = match &scenario.roi {
+        None => (image, format!("whole images: {image} bytes of telemetry a frame")),
+        Some(roi) => {
+            let budget = roi.budget_bytes(bit_depth);
+            let regions = format!("{} regions of {} × {} pixels", roi.count, roi.columns, roi.rows);
+            (budget, format!("{regions}: {budget} bytes of telemetry a frame at most, a whole image {image}"))
+        }
+    };
+    let document = json!({
+        "scenario": name,
+        "ok": true,
+        "frames": frames,
+        "stars": stars,
+        "frame_bytes_at_most": budget,
+        "whole_image_bytes": image,
+    });
+    let text = format!("{name}: {frames} frames, {stars} stars, no mistake found\n{telemetry}");
+    output.answer(&document, text)?;
     Ok(Answer::Yes)
 }
 

@@ -94,6 +94,7 @@ impl Row for FrameTruth {
             words(rows, "shadow", |row| row.shadow.code()),
             numbers(rows, "sunlit_fraction", |row| row.sunlit_fraction),
             numbers(rows, "background_e_per_s", |row| row.background_e_per_s),
+            numbers(rows, "smear_e_per_px", |row| row.smear_e_per_px),
             optional_numbers(rows, "target_x_px", |row| row.target_position.map(|p| p.x)),
             optional_numbers(rows, "target_y_px", |row| row.target_position.map(|p| p.y)),
             words(rows, "target_visibility", |row| row.target_visibility.code()),
@@ -105,10 +106,18 @@ impl Row for FrameTruth {
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
         let (frame, group) = (columns.u64("frame")?, columns.text("group")?);
         let time: &Timestamps = columns.every("time_utc")?;
-        let [exposure_s, range_km, phase_deg, sunlit_fraction, background_e_per_s] = columns_f64(
-            columns,
-            ["exposure_s", "range_km", "phase_deg", "sunlit_fraction", "background_e_per_s"],
-        )?;
+        let [exposure_s, range_km, phase_deg, sunlit_fraction, background_e_per_s, smear_e_per_px] =
+            columns_f64(
+                columns,
+                [
+                    "exposure_s",
+                    "range_km",
+                    "phase_deg",
+                    "sunlit_fraction",
+                    "background_e_per_s",
+                    "smear_e_per_px",
+                ],
+            )?;
         let (body, camera) = (columns_f64(columns, BODY)?, columns_f64(columns, CAMERA)?);
         let (position, velocity) = (columns_f64(columns, POSITION)?, columns_f64(columns, VELOCITY)?);
         let (line_of_sight, sun) = (columns_f64(columns, LINE_OF_SIGHT)?, columns_f64(columns, SUN)?);
@@ -147,6 +156,7 @@ impl Row for FrameTruth {
                     shadow: columns.word("shadow", row, Shadow::parse)?,
                     sunlit_fraction: sunlit_fraction[row],
                     background_e_per_s: background_e_per_s[row],
+                    smear_e_per_px: smear_e_per_px[row],
                     target_from_icrs: target_wxyz
                         .map(|wxyz| unit_quaternion(columns, wxyz, TARGET[0], row))
                         .transpose()?,

@@ -50,6 +50,7 @@ fn looking(frame: u64, camera_from_icrs: Rotation<CameraFrame, Icrs>) -> FrameTr
         shadow: Shadow::Sunlit,
         sunlit_fraction: 1.0,
         background_e_per_s: 0.0,
+        smear_e_per_px: 0.0,
         target_from_icrs: None,
         target_position: Some(CENTRE),
         target_visibility: Visibility::Detectable,

@@ -35,13 +35,21 @@ pub fn downlink(image: &RawImage, number: u64, windows: Option<Vec<Window>>) -> 
 /// to a byte, and eight bytes to say where it is; the whole image needs no such header. Pixels that regions share
 /// are sent with each.
 pub fn downlink_bytes(frame: &Frame) -> usize {
-    let packed = |pixels: usize| (pixels * usize::from(frame.bit_depth())).div_ceil(8);
+    let bits = frame.bit_depth();
     match frame.windows() {
-        None => packed(frame.columns() * frame.rows()),
-        Some(windows) => {
-            windows.iter().map(|window| REGION_HEADER_BYTES + packed(window.columns * window.rows)).sum()
-        }
+        None => image_bytes(frame.columns(), frame.rows(), bits),
+        Some(windows) => windows.iter().map(|window| region_bytes(window.columns, window.rows, bits)).sum(),
     }
+}
+
+/// Size of a whole image of `columns` × `rows` in telemetry, bytes.
+pub fn image_bytes(columns: usize, rows: usize, bit_depth: u8) -> usize {
+    (columns * rows * usize::from(bit_depth)).div_ceil(8)
+}
+
+/// Size of a region in telemetry, bytes, with what says where it is.
+pub(super) fn region_bytes(columns: usize, rows: usize, bit_depth: u8) -> usize {
+    REGION_HEADER_BYTES + image_bytes(columns, rows, bit_depth)
 }
 
 #[cfg(test)]

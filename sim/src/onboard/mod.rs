@@ -4,6 +4,6 @@ mod downlink;
 mod roi;
 mod shutter;
 
-pub use downlink::{downlink, downlink_bytes};
-pub use roi::{RoiConfig, RoiExtractor};
+pub use downlink::{downlink, downlink_bytes, image_bytes};
+pub use roi::{RoiConfig, RoiExtractor, ScanOrder};
 pub use shutter::{Shutter, ShutterConfig};

@@ -1,16 +1,39 @@
 //! Regions of interest: the camera keeps fixed rectangles around bright pixels and drops the rest.
 //!
-//! The camera of the far-range paper (sections 3 and 4) sends regions of fixed size. It meets an object at its
-//! topmost bright row, so the region's place hangs on the top of the object: one taller than the region keeps its
-//! top and loses its bottom. That cuts in y, not in x, and spoils the declination.
+//! The camera of the far-range paper (sections 3 and 4) sends regions of fixed size. It scans by rows and meets an
+//! object at its topmost bright row, so the region's place hangs on the top of the object: one taller than the region
+//! keeps its top and loses its bottom. That cuts in y, not in x, and spoils the declination. A scan by columns cuts in x.
 
 use contract::Window;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::downlink::region_bytes;
 use crate::SimError;
 use crate::error::require;
 use crate::sensor::RawImage;
+
+/// The order in which the camera looks at its pixels. It decides which pixel of an object is met first, and is laid at
+/// the anchor, and the order of the regions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ScanOrder {
+    /// By rows from the top, each from the left.
+    #[default]
+    Rows,
+    /// By columns from the left, each from the top.
+    Columns,
+}
+
+impl ScanOrder {
+    /// What pixels, by column and row, are sorted by.
+    fn key(self, (x, y): (usize, usize)) -> (usize, usize) {
+        match self {
+            Self::Rows => (y, x),
+            Self::Columns => (x, y),
+        }
+    }
+}
 
 /// Regions of interest of a fixed size.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,6 +51,9 @@ pub struct RoiConfig {
     pub anchor_row: usize,
     /// A pixel is bright when its digital number is above this, 0 to 65535.
     pub threshold_dn: u16,
+    /// The order of the scan.
+    #[serde(default)]
+    pub scan: ScanOrder,
 }
 
 impl RoiConfig {
@@ -45,6 +71,12 @@ impl RoiConfig {
         })?;
         require("roi.anchor_row", self.anchor_row as f64, "0 to roi.rows − 1", |v| v < self.rows as f64)
     }
+
+    /// The most that a frame takes in telemetry, bytes, with a converter of `bit_depth` bits: `count` regions as
+    /// [`super::downlink_bytes`] counts them.
+    pub fn budget_bytes(&self, bit_depth: u8) -> usize {
+        self.count * region_bytes(self.columns, self.rows, bit_depth)
+    }
 }
 
 /// Finds the regions of a frame, as the camera does. Reused from frame to frame.
@@ -53,6 +85,8 @@ pub struct RoiExtractor {
     config: RoiConfig,
     /// Pixels that belong to an object already met; all false between frames.
     taken: Vec<bool>,
+    /// The bright pixels of the image, column and row, in the order of the scan.
+    bright: Vec<(usize, usize)>,
     /// Pixels of the object at hand, column and row.
     pixels: Vec<(usize, usize)>,
 }
@@ -71,10 +105,15 @@ impl RoiExtractor {
     /// Those of [`RoiConfig::check`].
     pub fn new(config: &RoiConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
         config.check(columns, rows)?;
-        Ok(Self { config: config.clone(), taken: vec![false; columns * rows], pixels: Vec::new() })
+        Ok(Self {
+            config: config.clone(),
+            taken: vec![false; columns * rows],
+            bright: Vec::new(),
+            pixels: Vec::new(),
+        })
     }
 
-    /// The regions of an image, in the order of the scan (by rows from the top, each from the left).
+    /// The regions of an image, in the order of the scan.
     ///
     /// A bright pixel that belongs to no object met before is a new object: the bright pixels connected to it, by
     /// edges or corners. The region is laid so that this first pixel is at the anchor, and shifted, not shrunk, where
@@ -86,7 +125,7 @@ impl RoiExtractor {
             // Stable: equal peaks stay in the order of the scan.
             blobs.sort_by_key(|blob| std::cmp::Reverse(blob.peak_dn));
             blobs.truncate(self.config.count);
-            blobs.sort_by_key(|blob| (blob.first.1, blob.first.0));
+            blobs.sort_by_key(|blob| self.config.scan.key(blob.first));
         }
         blobs.iter().map(|blob| self.window_at(blob.first, image.size())).collect()
     }
@@ -103,37 +142,50 @@ impl RoiExtractor {
 
     /// All objects, in the order of the scan.
     fn blobs(&mut self, image: &RawImage) -> Vec<Blob> {
-        /// Pixels looked at in one go: nearly all such pieces of a row are dark.
-        const PIECE: usize = 64;
         let (columns, rows) = image.size();
-        let threshold = self.config.threshold_dn;
         self.taken.resize(columns * rows, false);
+        let mut bright = std::mem::take(&mut self.bright);
+        self.find_bright(image, &mut bright);
         let mut blobs = Vec::new();
-        let mut all_taken = Vec::new();
-        for (p, piece) in image.dn().chunks(PIECE).enumerate() {
-            if piece.iter().fold(0, |peak, &dn| peak.max(dn)) <= threshold {
-                continue;
-            }
-            for (i, &value) in piece.iter().enumerate() {
-                let index = p * PIECE + i;
-                if value > threshold && !self.taken[index] {
-                    blobs.push(self.take_blob(image, (index % columns, index / columns)));
-                    all_taken.append(&mut self.pixels);
-                }
+        for &(x, y) in &bright {
+            if !self.taken[y * columns + x] {
+                blobs.push(self.take_blob(image, (x, y)));
             }
         }
-        for (x, y) in all_taken {
+        for &(x, y) in &bright {
             self.taken[y * columns + x] = false;
         }
+        self.bright = bright;
         blobs
     }
 
-    /// Takes the bright pixels connected to `first` and leaves them in `self.pixels`.
+    /// Makes `bright` the pixels above the threshold, in the order of the scan.
+    fn find_bright(&self, image: &RawImage, bright: &mut Vec<(usize, usize)>) {
+        /// Pixels looked at in one go: nearly all such pieces of a row are dark.
+        const PIECE: usize = 64;
+        let columns = image.size().0;
+        let RoiConfig { threshold_dn, scan, .. } = self.config;
+        bright.clear();
+        for (p, piece) in image.dn().chunks(PIECE).enumerate() {
+            if piece.iter().fold(0, |peak, &dn| peak.max(dn)) <= threshold_dn {
+                continue;
+            }
+            let above = piece.iter().enumerate().filter(|&(_, &dn)| dn > threshold_dn);
+            bright.extend(above.map(|(i, _)| ((p * PIECE + i) % columns, (p * PIECE + i) / columns)));
+        }
+        // They have been found by rows.
+        if scan != ScanOrder::Rows {
+            bright.sort_unstable_by_key(|&pixel| scan.key(pixel));
+        }
+    }
+
+    /// Takes the bright pixels connected to `first`.
     fn take_blob(&mut self, image: &RawImage, first: (usize, usize)) -> Blob {
         let (columns, rows) = image.size();
         let dn = image.dn();
         let mut peak_dn = 0;
         self.taken[first.1 * columns + first.0] = true;
+        self.pixels.clear();
         self.pixels.push(first);
         let mut next = 0;
         while let Some(&(x, y)) = self.pixels.get(next) {
@@ -159,7 +211,15 @@ mod tests {
     use crate::sensor::RawImage;
 
     fn config() -> RoiConfig {
-        RoiConfig { count: 10, columns: 8, rows: 6, anchor_column: 4, anchor_row: 1, threshold_dn: 100 }
+        RoiConfig {
+            count: 10,
+            columns: 8,
+            rows: 6,
+            anchor_column: 4,
+            anchor_row: 1,
+            threshold_dn: 100,
+            scan: ScanOrder::Rows,
+        }
     }
 
     /// An image of 100 × 50 with bright rectangles (x, y, columns, rows, DN).
@@ -202,6 +262,49 @@ mod tests {
         let found = windows(&config(), &[(32, 20, 2, 1, 200), (31, 21, 4, 1, 200), (30, 22, 6, 7, 200)]);
         assert_eq!(found, [window(28, 19)]);
         assert!((30..36).all(|x| found[0].contains(x, 22)));
+    }
+
+    /// A scan by columns is a scan by rows of the image turned over its diagonal.
+    #[test]
+    fn a_scan_by_columns_meets_the_left_side_first_and_cuts_on_the_right() {
+        let by_columns = RoiConfig { scan: ScanOrder::Columns, anchor_column: 1, anchor_row: 3, ..config() };
+        let found = windows(&by_columns, &[(30, 20, 9, 3, 200), (20, 30, 1, 1, 300)]);
+        // The left object first, though it is lower; of a wide one the first seven columns are kept.
+        assert_eq!(found, [window(19, 27), window(29, 17)]);
+        let kept = |x| (20..23).all(|y| found[1].contains(x, y));
+        assert!((30..37).all(kept) && !(37..39).any(kept));
+
+        let blobs = [(30, 20, 9, 3, 200), (2, 3, 4, 1, 900), (6, 4, 1, 1, 300), (20, 30, 1, 1, 300)];
+        let turned = blobs.map(|(x, y, columns, rows, dn)| (y, x, rows, columns, dn));
+        let by_rows = RoiConfig { columns: 6, rows: 8, anchor_column: 3, anchor_row: 1, ..config() };
+        let back = |w: &Window| Window { x: w.y, y: w.x, columns: w.rows, rows: w.columns };
+        let expected: Vec<Window> = windows(&by_rows, &turned).iter().map(back).collect();
+        assert_eq!(windows(&by_columns, &blobs), expected);
+        assert_eq!(expected.len(), 3);
+    }
+
+    #[test]
+    fn of_too_many_objects_those_kept_stand_in_the_order_of_a_scan_by_columns() {
+        let config = RoiConfig { count: 2, scan: ScanOrder::Columns, ..config() };
+        let found = windows(&config, &[(10, 25, 1, 1, 300), (50, 10, 1, 1, 200), (30, 20, 1, 1, 900)]);
+        assert_eq!(found, [window(6, 24), window(26, 19)]);
+    }
+
+    /// The budget is what the downlink counts when all regions are there.
+    #[test]
+    fn the_budget_is_that_of_a_frame_with_all_its_regions() {
+        for (bit_depth, columns, rows) in [(12, 8, 6), (12, 7, 5), (8, 3, 3), (16, 1, 1)] {
+            let config = RoiConfig { columns, rows, anchor_column: 0, anchor_row: 0, ..config() };
+            let mut dn = vec![0; 5000];
+            (0..20).for_each(|i| dn[10 * 100 * (i / 10) + 10 * (i % 10)] = 200);
+            let image = RawImage::from_dn(100, 50, bit_depth, dn);
+            let found = RoiExtractor::new(&config, 100, 50).unwrap().extract(&image);
+            assert_eq!(found.len(), 10);
+            let frame = crate::onboard::downlink(&image, 0, Some(found)).unwrap();
+            assert_eq!(config.budget_bytes(bit_depth), crate::onboard::downlink_bytes(&frame));
+        }
+        // Ten of 8 bytes and 48 pixels of 12 bits.
+        assert_eq!(config().budget_bytes(12), 10 * (8 + 72));
     }
 
     #[test]

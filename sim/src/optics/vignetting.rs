@@ -6,7 +6,7 @@
 //! foreshortened as cos: it is all that a star loses, and what is here. Mechanical vignetting, the barrel in the way of slanted rays, is an even
 //! polynomial of the image's radius (Goldman 2010, IEEE Trans. PAMI 32, 2276). Both leave the principal point as it is.
 
-use contract::{Camera, CameraFrame, Direction, PixelPoint};
+use contract::{Camera, PixelPoint};
 
 use super::field::FieldRadius;
 use super::{OpticsConfig, Projection};
@@ -56,22 +56,12 @@ impl Vignetting {
         };
         natural * self.config.mechanical(self.radius.squared(point))
     }
-
-    /// Transmission for light from a direction, in [0, 1]; 0 where it falls on no point of the focal plane.
-    pub fn transmission_towards(&self, direction: &Direction<CameraFrame>) -> f64 {
-        self.projection.project(direction).map_or(0.0, |point| {
-            let natural = match self.config.cos_fourth {
-                Switch::Off => 1.0,
-                Switch::On => direction.vector().z,
-            };
-            natural * self.config.mechanical(self.radius.squared(point))
-        })
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use contract::Direction;
     use nalgebra::Vector3;
 
     fn camera() -> Camera {
@@ -110,10 +100,8 @@ mod tests {
             libm::cos(angle),
         ));
         let direction = direction.unwrap();
-        assert!((vignetting.transmission_towards(&direction) - 0.984_807_753).abs() < 1e-9);
-        let point = vignetting.projection.project(&direction).unwrap();
-        let there = vignetting.transmission(point);
-        assert!((there - vignetting.transmission_towards(&direction)).abs() < 1e-12);
+        let there = vignetting.transmission(vignetting.projection.project(&direction).unwrap());
+        assert!((there - 0.984_807_753).abs() < 1e-9);
     }
 
     #[test]

@@ -9,14 +9,11 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 
 use super::star_field::is_within;
 use super::{CameraMotion, Source};
+use crate::constants::{AU_KM, LIGHT_SPEED_KM_S};
 use crate::optics::{ImagePoint, Projection, Radiometry};
 use crate::truth::moon::{self, MOON_B_V, MOON_MEAN_DISTANCE_KM, MOON_RADIUS_KM};
 use crate::truth::{ObjectKind, Observer, State, aberrate, shadow};
 
-/// Kilometres in an astronomical unit (IAU 2012 Resolution B2, exact).
-const AU_KM: f64 = 149_597_870.7;
-/// The speed of light, km/s.
-const LIGHT_SPEED_KM_S: f64 = 299_792.458;
 /// Within this angle of the point opposite to the Sun the Earth's shadow may be on the Moon, rad: from the Earth the penumbra
 /// spans 1.3° about it at most, the Moon 0.3°.
 const ECLIPSE_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;

@@ -22,12 +22,18 @@ pub struct Opening {
 #[derive(Debug)]
 pub struct Charge<'a> {
     expected: &'a mut ExpectedImage,
+    smear_e_per_px: f64,
 }
 
 impl Charge<'_> {
     /// Expected electrons, before saturation and noise.
     pub fn expected(&self) -> &ExpectedImage {
         self.expected
+    }
+
+    /// Electrons that the frame transfer adds to a pixel of an even detector, the mean over all pixels.
+    pub fn smear_e_per_px(&self) -> f64 {
+        self.smear_e_per_px
     }
 }
 
@@ -37,10 +43,12 @@ impl Sensor {
     pub fn collect<'a>(&self, photo_electrons: &'a mut ExpectedImage, opening: &Opening) -> Charge<'a> {
         let Opening { exposure_s, .. } = *opening;
         let (columns, rows) = photo_electrons.size();
-        if self.config().frame_transfer_s > 0.0 && exposure_s > 0.0 {
+        let smear_e_per_px = if self.config().frame_transfer_s > 0.0 && exposure_s > 0.0 {
             // A row stops in front of every other row for 1/rows of the transfer.
-            photo_electrons.smear(self.config().frame_transfer_s / (rows as f64 * exposure_s));
-        }
+            photo_electrons.smear(self.config().frame_transfer_s / (rows as f64 * exposure_s))
+        } else {
+            0.0
+        };
         if !self.pattern().response.is_empty() {
             photo_electrons.respond(&self.pattern().response);
         }
@@ -56,7 +64,7 @@ impl Sensor {
         for &(x, y) in self.pattern().dead.iter().filter(|(x, y)| *x < columns && *y < rows) {
             photo_electrons.empty_pixel(x, y);
         }
-        Charge { expected: photo_electrons }
+        Charge { expected: photo_electrons, smear_e_per_px }
     }
 
     /// Adds the charge of a particle's track, as the pixels collect it.

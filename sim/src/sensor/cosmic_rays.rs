@@ -70,7 +70,7 @@ pub struct SouthAtlanticConfig {
 impl Default for SouthAtlanticConfig {
     fn default() -> Self {
         Self {
-            peak_factor: 1000.0,
+            peak_factor: 1100.0,
             latitude_deg: -26.0,
             longitude_deg: -53.0,
             latitude_sigma_deg: 9.0,
@@ -345,9 +345,9 @@ mod tests {
     #[test]
     fn the_anomaly_is_a_bump_at_its_place() {
         let bump = SouthAtlanticConfig::default();
-        assert_eq!(bump.factor(-26.0, -53.0), 1000.0);
-        assert!((bump.factor(-26.0 + 9.0, -53.0) - (1.0 + 999.0 * libm::exp(-0.5))).abs() < 1e-9);
-        assert!((bump.factor(-26.0, 307.0 - 18.0) - (1.0 + 999.0 * libm::exp(-0.5))).abs() < 1e-9);
+        assert_eq!(bump.factor(-26.0, -53.0), 1100.0);
+        assert!((bump.factor(-26.0 + 9.0, -53.0) - (1.0 + 1099.0 * libm::exp(-0.5))).abs() < 1e-9);
+        assert!((bump.factor(-26.0, 307.0 - 18.0) - (1.0 + 1099.0 * libm::exp(-0.5))).abs() < 1e-9);
         assert!((bump.factor(50.0, 100.0) - 1.0).abs() < 1e-9);
     }
 }

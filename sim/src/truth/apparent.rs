@@ -12,11 +12,8 @@ use nalgebra::Vector3;
 use super::{clock, ephemeris};
 use crate::SimError;
 use crate::catalog::CatalogStar;
+use crate::constants::{AU_KM, LIGHT_SPEED_KM_S};
 
-/// The astronomical unit, km (IAU 2012 Resolution B2).
-const AU_KM: f64 = 149_597_870.7;
-/// The speed of light, km/s.
-const LIGHT_SPEED_KM_S: f64 = 299_792.458;
 /// A Julian year, s.
 const YEAR_S: f64 = 365.25 * 86_400.0;
 /// Light time of one astronomical unit, Julian years.

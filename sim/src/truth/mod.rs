@@ -31,7 +31,7 @@ pub use knowledge::{Knowledge, KnowledgeConfig};
 pub use manoeuvre::ManoeuvreConfig;
 pub use mounting::MountingConfig;
 pub use orbit::{
-    EARTH_GM_KM3_S2, EARTH_J2, EARTH_RADIUS_KM, Elements, ElementsConfig, Rtn, SecularRates, State,
+    EARTH_GM_KM3_S2, EARTH_J2, EGM96_RADIUS_KM, Elements, ElementsConfig, Rtn, SecularRates, State,
 };
 pub use planets::{Planet, PlanetSight};
 pub use relative::RelativeElements;

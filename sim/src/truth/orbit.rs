@@ -20,14 +20,15 @@ use crate::error::require;
 /// Gravitational parameter of the Earth, km³/s² (EGM96: Lemoine et al., NASA/TP-1998-206861).
 pub const EARTH_GM_KM3_S2: f64 = 398_600.441_5;
 
-/// Equatorial radius of the Earth that belongs to [`EARTH_J2`], km (EGM96).
-pub const EARTH_RADIUS_KM: f64 = 6_378.136_3;
+/// Radius of reference of the gravity field, km (EGM96): it goes with [`EARTH_J2`] and with nothing else. That of the body is
+/// [`super::shadow::EARTH_RADIUS_KM`].
+pub const EGM96_RADIUS_KM: f64 = 6_378.136_3;
 
 /// Oblateness of the Earth: J2 = −√5 C̄20 with C̄20 = −4.841 653 717 36e-4 (EGM96).
 pub const EARTH_J2: f64 = 1.082_626_683_5e-3;
 
 /// Smallest perigee radius, km: 100 km above the equator.
-const MIN_PERIGEE_KM: f64 = EARTH_RADIUS_KM + 100.0;
+const MIN_PERIGEE_KM: f64 = EGM96_RADIUS_KM + 100.0;
 
 /// Largest semi-major axis, km; beyond it the Moon and the Sun rule.
 const MAX_SEMI_MAJOR_AXIS_KM: f64 = 100_000.0;
@@ -164,7 +165,7 @@ impl Elements {
     pub fn secular_rates(&self) -> SecularRates {
         let n = self.mean_motion_rad_s();
         let one_minus_e2 = 1.0 - self.eccentricity * self.eccentricity;
-        let radius_over_p = EARTH_RADIUS_KM / (self.semi_major_axis_km * one_minus_e2);
+        let radius_over_p = EGM96_RADIUS_KM / (self.semi_major_axis_km * one_minus_e2);
         let gamma = 1.5 * EARTH_J2 * radius_over_p * radius_over_p * n;
         let (sin_i, cos_i) = libm::sincos(self.inclination_rad);
         SecularRates {
@@ -325,9 +326,9 @@ mod tests {
     #[test]
     fn a_sun_synchronous_orbit_keeps_pace_with_the_sun() {
         let sun_rad_s = 360.0_f64.to_radians() / (365.2422 * 86400.0);
-        let a = EARTH_RADIUS_KM + 800.0;
+        let a = EGM96_RADIUS_KM + 800.0;
         let n = (EARTH_GM_KM3_S2 / (a * a * a)).sqrt();
-        let cos_i = -sun_rad_s / (1.5 * EARTH_J2 * (EARTH_RADIUS_KM / a) * (EARTH_RADIUS_KM / a) * n);
+        let cos_i = -sun_rad_s / (1.5 * EARTH_J2 * (EGM96_RADIUS_KM / a) * (EGM96_RADIUS_KM / a) * n);
         let i_deg = libm::acos(cos_i).to_degrees();
         assert!((i_deg - 98.6).abs() < 0.05, "{i_deg}");
         let rate = elements(a, 0.0, i_deg, [0.0; 3]).secular_rates().raan_rad_s;

@@ -13,11 +13,10 @@ use nalgebra::Vector3;
 
 use super::apparent::Observer;
 use super::kepler::eccentric_anomaly;
+use crate::constants::{AU_KM, LIGHT_SPEED_KM_S};
 
-/// The astronomical unit, km (IAU 2012 Resolution B2).
-const AU_KM: f64 = 149_597_870.7;
 /// Light time of one astronomical unit, s.
-const AU_LIGHT_S: f64 = AU_KM / 299_792.458;
+const AU_LIGHT_S: f64 = AU_KM / LIGHT_SPEED_KM_S;
 /// A Julian century, s.
 const CENTURY_S: f64 = 36_525.0 * 86_400.0;
 /// Obliquity of the ecliptic at J2000.0 as the elements have it, degrees.

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use super::Shadow;
 
-/// Radius of the Earth, km: equatorial, IERS Conventions (2010).
+/// Radius of the Earth as a body, km: equatorial, IERS Conventions (2010).
 pub const EARTH_RADIUS_KM: f64 = 6_378.136_6;
 /// Radius of the Sun, km: nominal, IAU 2015 Resolution B3.
 pub const SUN_RADIUS_KM: f64 = 695_700.0;
@@ -70,8 +70,7 @@ fn covered_fraction(sun: f64, earth: f64, separation: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const AU_KM: f64 = 149_597_870.7;
+    use crate::constants::AU_KM;
 
     fn sun() -> Vector3<f64> {
         Vector3::x() * AU_KM

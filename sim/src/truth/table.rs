@@ -102,6 +102,10 @@ pub struct FrameTruth {
     /// Photo-electrons a second and pixel of zodiacal light, faint stars and stray light, the mean over the detector; without
     /// the constant of the sensor.
     pub background_e_per_s: f64,
+    /// Electrons of smear in a pixel, the mean over the detector, with an even response: light that a frame-transfer CCD
+    /// collects while its image moves. Objects have none of it in their own electrons. 0 without
+    /// [`crate::sensor::SensorConfig::frame_transfer_s`].
+    pub smear_e_per_px: f64,
     /// True attitude of the target's body; `None` for a target without one.
     pub target_from_icrs: Option<Rotation<Target, Icrs>>,
     /// Where the line of sight meets the image; `None` behind the camera. It may lie off the detector. The centre of

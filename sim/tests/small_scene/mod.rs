@@ -3,10 +3,13 @@
 use std::path::Path;
 
 use boresight_sim::catalog::CatalogConfig;
-use boresight_sim::onboard::{RoiConfig, ShutterConfig};
+use boresight_sim::onboard::{RoiConfig, ScanOrder, ShutterConfig};
 use boresight_sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use boresight_sim::scene::{BackgroundConfig, TargetConfig};
-use boresight_sim::sensor::{HotPixelConfig, NoiseConfig, SensorConfig, Switch};
+use boresight_sim::sensor::{
+    BloomingConfig, CosmicRayConfig, FixedPatternConfig, HotLaw, HotPixelConfig, LineNoiseConfig,
+    NoiseConfig, SensorConfig, Switch, TelegraphConfig,
+};
 use boresight_sim::truth::{
     AttitudeConfig, ControlConfig, DriftConfig, ElementsConfig, GroupConfig, Guidance, KnowledgeConfig,
     ManoeuvreConfig, MountingConfig, OrbitConfig, RelativeElements, Trajectory, clock,
@@ -116,8 +119,47 @@ pub(crate) fn restless() -> Simulation {
         anchor_column: 10,
         anchor_row: 2,
         threshold_dn: 60,
+        scan: ScanOrder::Rows,
     });
     simulation
+}
+
+/// Every effect of the detector at once.
+pub(crate) fn defective(mut simulation: Simulation) -> Simulation {
+    let sensor = &mut simulation.sensor;
+    sensor.hot_pixels = HotPixelConfig {
+        count: 40,
+        law: HotLaw::Pareto { index: 1.5 },
+        telegraph: Some(TelegraphConfig { fraction: 0.5, low_level: 0.2, high_s: 20.0, low_s: 40.0 }),
+        ..sensor.hot_pixels.clone()
+    };
+    sensor.fixed_pattern = FixedPatternConfig {
+        seed: 12,
+        prnu_fraction: 0.02,
+        dsnu_fraction: 0.3,
+        column_offset_e: 2.0,
+        dead_pixels: 300,
+        dead_columns: 2,
+        ..FixedPatternConfig::default()
+    };
+    sensor.line_noise = LineNoiseConfig { row_e: 3.0, column_e: 1.0 };
+    sensor.cosmic_rays = Some(cosmic_rays(1000.0));
+    sensor.blooming = Some(BloomingConfig { spill_fraction: 1.0 });
+    sensor.non_linearity = 0.01;
+    sensor.frame_transfer_s = 0.001;
+    simulation
+}
+
+/// Particles through a thin detector, by their rate.
+pub(crate) fn cosmic_rays(rate_per_cm2_s: f64) -> CosmicRayConfig {
+    CosmicRayConfig {
+        rate_per_cm2_s,
+        thickness_um: 15.0,
+        readout_s: 0.1,
+        mean_e_per_um: 80.0,
+        landau_e_per_um: 4.9,
+        south_atlantic: None,
+    }
 }
 
 /// A camera pointed at a place in the sky, without control error.

@@ -14,23 +14,23 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::SimError;
+use crate::constants::AU_KM;
 use crate::error::require;
 use crate::optics::{Projection, Radiometry, SUN_V_MAG_AT_1_AU, Vignetting};
+use crate::sensor::Switch;
 use crate::truth::moon::{MOON_MEAN_DISTANCE_KM, MOON_RADIUS_KM};
 use crate::truth::{clock, moon, shadow};
 use stray::Ray;
 
-/// Kilometres in an astronomical unit (IAU 2012 Resolution B2, exact).
-const AU_KM: f64 = 149_597_870.7;
 /// Square degrees in a steradian.
 const SQUARE_DEGREES_PER_SR: f64 = (180.0 / std::f64::consts::PI) * (180.0 / std::f64::consts::PI);
 
 /// Which parts of the background are simulated; all are off where they are not named.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct BackgroundConfig {
-    /// Zodiacal light, by ecliptic latitude and longitude from the Sun.
-    pub zodiacal: bool,
+    /// Zodiacal light, `on` or `off`, by ecliptic latitude and longitude from the Sun.
+    pub zodiacal: Switch,
     /// Stars that are too faint to be drawn, the same everywhere: S10 (stars like the Sun of V = 10 to a square degree), 0 to 1000.
     pub faint_stars_s10: f64,
     /// Scattered light of the Sun; needs radiometry of kind "spectral".
@@ -49,6 +49,13 @@ pub struct EarthLightConfig {
     pub albedo: f64,
     /// How its light is scattered.
     pub scatter: StrayLightConfig,
+}
+
+/// All of it is off.
+impl Default for BackgroundConfig {
+    fn default() -> Self {
+        Self { zodiacal: Switch::Off, faint_stars_s10: 0.0, sun: None, earth: None, moon: None }
+    }
 }
 
 impl BackgroundConfig {
@@ -90,7 +97,7 @@ impl BackgroundConfig {
 
     /// Whether every part is off.
     fn is_off(&self) -> bool {
-        !self.zodiacal
+        self.zodiacal == Switch::Off
             && self.faint_stars_s10 == 0.0
             && self.sun.is_none()
             && self.earth.is_none()
@@ -122,8 +129,7 @@ pub struct Background {
 struct Node {
     /// Unit vector in the camera frame.
     direction: Vector3<f64>,
-    /// Solid angle of a pixel there, sr.
-    /// Solid angle of the pixel, times the transmission there.
+    /// Solid angle of the pixel, sr, times the transmission there.
     pixel_sr: f64,
 }
 
@@ -205,7 +211,7 @@ impl Background {
             let Node { direction, pixel_sr } = self.nodes[i];
             let direction = icrs_from_camera.rotate(&direction);
             let mut s10 = self.config.faint_stars_s10;
-            if self.config.zodiacal {
+            if self.config.zodiacal == Switch::On {
                 s10 += zodiacal::zodiacal_s10(&direction, &sun);
             }
             let mut suns = 0.0;

@@ -1,6 +1,5 @@
 use super::*;
 use crate::optics::{KnownDetector, OpticsConfig, QuantumEfficiency, RadiometryConfig};
-use crate::sensor::Switch;
 use crate::truth::ecliptic;
 
 fn camera() -> Camera {
@@ -107,7 +106,7 @@ fn faint_stars_give_the_light_of_their_number() {
 /// Leinert et al. (1998): 60 S10 at the pole of the ecliptic, 23.3 mag to a square arc second; 22.1 near the antisolar point.
 #[test]
 fn zodiacal_light_has_its_published_surface_brightness() {
-    let config = BackgroundConfig { zodiacal: true, ..BackgroundConfig::default() };
+    let config = BackgroundConfig { zodiacal: Switch::On, ..BackgroundConfig::default() };
     for (boresight, magnitude) in [(Vector3::z(), 23.34), (-Vector3::z(), 23.34), (-Vector3::x(), 22.14)] {
         let (_, pixels) = field(&config, &one_zero_point(), boresight);
         let square_arcsec = 10.0 * 8.0 * 1e-6 / 400.0 * SQUARE_DEGREES_PER_SR * 3600.0 * 3600.0;
@@ -119,7 +118,7 @@ fn zodiacal_light_has_its_published_surface_brightness() {
 #[test]
 fn the_mean_is_that_of_the_pixels_and_neighbours_are_alike() {
     let config = BackgroundConfig {
-        zodiacal: true,
+        zodiacal: Switch::On,
         faint_stars_s10: 20.0,
         sun: Some(LAW),
         earth: Some(EarthLightConfig { albedo: 0.3, scatter: LAW }),
