@@ -275,13 +275,13 @@ impl<'a> SimulatedCamera<'a> {
             let pixel = |at: f64, size: usize| (at.round().max(0.0) as usize).min(size.saturating_sub(1));
             let (x, y) = (pixel(source.position.x, columns), pixel(source.position.y, rows));
             let background_e = charge.expected().background_at(x, y);
-            let truth = stamp.truth(background_e, sensor.read_noise_e());
+            let truth = stamp.truth(background_e, sensor.readout_noise_e());
             if truth.electrons <= 0.0 {
                 continue;
             }
             let mut radius_px = truth.radius_px;
             if sensor.bloom_stamp(stamp, background_e, bloomed) {
-                radius_px = bloomed.truth(background_e, sensor.read_noise_e()).radius_px;
+                radius_px = bloomed.truth(background_e, sensor.readout_noise_e()).radius_px;
                 std::mem::swap(stamp, bloomed);
             }
             // The stamps of the objects stand in the order of the objects.

@@ -128,7 +128,7 @@ fn pixels_truth_and_telemetry_of_a_small_scene_are_frozen() {
 /// Frame truth, object truth, telemetry, pixels.
 const FROZEN: [&str; 4] = [
     "9cd92280b856144efa443138b1f3ee8a5e42704f3e469558c0fabd155f920af1",
-    "4d3a61cd1703889ee2835d464492e4243c3c4d0703b88333ce7c97523eb5fbd9",
+    "500eefe4d7d4a81ab2f14c584730705ddf821480e3a6e102f78cbde1d5a62b58",
     "5bdfd6e0ecaa0fa2ac1968724ae3dcd398e1d3b5e199950c98f301dce0191d16",
     "fe26c4c40aea54b5215bb1e51019ab0af43319600f4af48dc140e0f36e8433f2",
 ];

@@ -269,7 +269,8 @@ fn the_columns_of_an_object_are_what_their_definitions_say() {
         let exposure = camera.expose(frame).unwrap();
         let [target] = exposure.objects.as_slice() else { panic!("frame {frame}: {:?}", exposure.objects) };
         let (image, windows) = (camera.expected(), exposure.frame.windows().unwrap());
-        let variance = image.flat_e() + 15.0 * 15.0;
+        // Read noise of 15 e⁻, a digital number of 10 e⁻.
+        let variance = image.flat_e() + 15.0 * 15.0 + 10.0 * 10.0 / 12.0;
         let (mut electrons, mut peak, mut snr2, mut radius, mut lost) = (0.0, 0.0_f64, 0.0, 0.5_f64, 0.0);
         let (mut moment_x, mut moment_y) = (0.0, 0.0);
         for y in 0..120 {
