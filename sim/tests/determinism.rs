@@ -238,7 +238,13 @@ fn without_a_part_of_the_pixel_noise_nothing_but_pixels_is_drawn_anew() {
         assert_eq!(other.objects.len(), base.objects.len());
         for (a, b) in other.objects.iter().zip(&base.objects) {
             // What the noise itself decides may differ: SNR, radius, and the cut by regions laid on noisy pixels.
-            let known = |o: &ObjectTruth| ObjectTruth { snr: 0.0, radius_px: 0.0, cut: 0.0, ..o.clone() };
+            let known = |o: &ObjectTruth| ObjectTruth {
+                snr: 0.0,
+                radius_px: 0.0,
+                bloom_px: 0.0,
+                cut: 0.0,
+                ..o.clone()
+            };
             assert_eq!(known(a), known(b));
         }
     }

@@ -136,6 +136,15 @@ impl Stamp {
         StampTruth { electrons, peak_electrons, snr: snr2.sqrt(), radius_px: radius2.sqrt() }
     }
 
+    /// Distance along the columns from the centre to the farthest pixel centre with more than `electrons`, px; 0 when there is
+    /// none.
+    pub(crate) fn height_px(&self, electrons: f64) -> f64 {
+        self.rows()
+            .filter(|(_, _, row)| row.iter().any(|&signal| signal > electrons))
+            .map(|(_, y, _)| (y as f64 - self.centre.y).abs())
+            .fold(0.0, f64::max)
+    }
+
     /// The fraction of its electrons outside every window, in [0, 1]; 0 for an empty stamp.
     pub fn cut(&self, windows: &[Window]) -> f64 {
         let (right, bottom) = (self.x + self.columns, self.y + self.rows);
