@@ -128,9 +128,9 @@ fn pixels_truth_and_telemetry_of_a_small_scene_are_frozen() {
 /// Frame truth, object truth, telemetry, pixels.
 const FROZEN: [&str; 4] = [
     "9cd92280b856144efa443138b1f3ee8a5e42704f3e469558c0fabd155f920af1",
-    "500eefe4d7d4a81ab2f14c584730705ddf821480e3a6e102f78cbde1d5a62b58",
+    "c913ae1a622fe7e0c03a595784b0aeaec4081d12403672b7a99d3e88e7a332af",
     "5bdfd6e0ecaa0fa2ac1968724ae3dcd398e1d3b5e199950c98f301dce0191d16",
-    "fe26c4c40aea54b5215bb1e51019ab0af43319600f4af48dc140e0f36e8433f2",
+    "9e3069438b7fe2701cc726c2ac5e95cc1c86f6af21928307146b1e7364e3f313",
 ];
 
 /// A frozen hash of an empty scene would freeze nothing.
