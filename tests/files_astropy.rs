@@ -53,6 +53,7 @@ fn stars(number: u64, camera_from_icrs: &Rotation<CameraFrame, Icrs>) -> Vec<Obj
             peak_electrons: 1e3,
             snr: 20.0,
             radius_px: 1.5,
+            bloom_px: 0.0,
             cut: 0.0,
         })
     };

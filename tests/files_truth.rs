@@ -70,6 +70,7 @@ fn object(frame: u64, i: u64) -> ObjectTruth {
         peak_electrons: 1e4 * fraction(seed + 3),
         snr: 100.0 * fraction(seed + 4),
         radius_px: 0.5 + fraction(seed + 5),
+        bloom_px: 10.0 * fraction(seed + 7),
         cut: fraction(seed + 6),
     }
 }

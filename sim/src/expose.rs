@@ -276,13 +276,15 @@ impl<'a> SimulatedCamera<'a> {
             let pixel = |at: f64, size: usize| (at.round().max(0.0) as usize).min(size.saturating_sub(1));
             let (x, y) = (pixel(source.position.x, columns), pixel(source.position.y, rows));
             let background_e = charge.expected().background_at(x, y);
-            let truth = stamp.truth(background_e, sensor.read_noise_e());
+            let readout_noise_e = sensor.readout_noise_e();
+            let truth = stamp.truth(background_e, readout_noise_e);
             if truth.electrons <= 0.0 {
                 continue;
             }
-            let mut radius_px = truth.radius_px;
+            let mut bloom_px = 0.0;
             if sensor.bloom_stamp(stamp, background_e, bloomed) {
-                radius_px = bloomed.truth(background_e, sensor.read_noise_e()).radius_px;
+                let noise_e = (background_e + readout_noise_e * readout_noise_e).sqrt();
+                bloom_px = (bloomed.height_px(noise_e) - truth.radius_px).max(0.0);
                 std::mem::swap(stamp, bloomed);
             }
             // The stamps of the objects stand in the order of the objects.
@@ -297,7 +299,8 @@ impl<'a> SimulatedCamera<'a> {
                 electrons: truth.electrons,
                 peak_electrons: truth.peak_electrons,
                 snr: truth.snr,
-                radius_px,
+                radius_px: truth.radius_px,
+                bloom_px,
                 cut: 0.0,
             });
         }

@@ -11,6 +11,7 @@ use std::collections::BTreeSet;
 
 use boresight_sim::catalog::{Catalog, CatalogConfig};
 use boresight_sim::optics::{OpticsConfig, Projection, Psf, PsfConfig, Stamp};
+use boresight_sim::scene::TargetConfig;
 use boresight_sim::truth::{
     FrameTruth, Guidance, ObjectKind, ObjectTruth, Observer, Shadow, StarMotion, Trajectory, Visibility,
     clock, ephemeris, shadow,
@@ -150,7 +151,9 @@ fn aberrated(direction: &Vector3<f64>, velocity_km_s: &Vector3<f64>) -> Vector3<
 
 #[test]
 fn stars_are_aberrated_and_the_target_is_not() {
-    let simulation = straight();
+    let mut simulation = straight();
+    // A sphere is seen at its centre of brightness, which is not on the line of sight.
+    simulation.target = TargetConfig::Beacon { magnitude_at_1_km: -5.0 };
     let exposure = one(&simulation, 3);
     let truth = &exposure.truth;
     let velocity = barycentric_velocity_km_s(truth);
@@ -269,7 +272,8 @@ fn the_columns_of_an_object_are_what_their_definitions_say() {
         let exposure = camera.expose(frame).unwrap();
         let [target] = exposure.objects.as_slice() else { panic!("frame {frame}: {:?}", exposure.objects) };
         let (image, windows) = (camera.expected(), exposure.frame.windows().unwrap());
-        let variance = image.flat_e() + 15.0 * 15.0;
+        // Read noise of 15 e⁻, a digital number of 10 e⁻.
+        let variance = image.flat_e() + 15.0 * 15.0 + 10.0 * 10.0 / 12.0;
         let (mut electrons, mut peak, mut snr2, mut radius, mut lost) = (0.0, 0.0_f64, 0.0, 0.5_f64, 0.0);
         let (mut moment_x, mut moment_y) = (0.0, 0.0);
         for y in 0..120 {

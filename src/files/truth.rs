@@ -206,14 +206,15 @@ impl Row for ObjectTruth {
             numbers(rows, "peak_electrons", |row| row.peak_electrons),
             numbers(rows, "snr", |row| row.snr),
             numbers(rows, "radius_px", |row| row.radius_px),
+            numbers(rows, "bloom_px", |row| row.bloom_px),
             numbers(rows, "cut", |row| row.cut),
         ]
     }
 
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
         let (frame, id) = (columns.u64("frame")?, columns.u32("id")?);
-        let [x, y, electrons, peak_electrons, snr, radius_px, cut] =
-            columns_f64(columns, ["x_px", "y_px", "electrons", "peak_electrons", "snr", "radius_px", "cut"])?;
+        let names = ["x_px", "y_px", "electrons", "peak_electrons", "snr", "radius_px", "bloom_px", "cut"];
+        let [x, y, electrons, peak_electrons, snr, radius_px, bloom_px, cut] = columns_f64(columns, names)?;
         let ra_deg = columns.optional_f64("ra_deg")?;
         let dec_deg = columns.optional_f64("dec_deg")?;
         let magnitude = columns.optional_f64("magnitude")?;
@@ -234,6 +235,7 @@ impl Row for ObjectTruth {
                     peak_electrons: peak_electrons[row],
                     snr: snr[row],
                     radius_px: radius_px[row],
+                    bloom_px: bloom_px[row],
                     cut: cut[row],
                 })
             })

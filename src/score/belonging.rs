@@ -11,10 +11,17 @@ const MIN_REACH_PX: f64 = 1.5;
 /// the centre of half a disk of radius R is 4R/(3π) = 0.42 R from the disk's.
 const CENTRE_SHARE: f64 = 0.5;
 
-/// How far the visible image of an object reaches from its centre: max(`radius_px`, 1.5), px.
-pub(super) fn reach_px(object: &ObjectTruth) -> f64 {
+/// How far the visible image of an object reaches from its centre: max(`radius_px`, 1.5), px; along its columns by `bloom_px`
+/// farther.
+fn reach_px(object: &ObjectTruth) -> f64 {
     // `max` drops a NaN.
     object.radius_px.max(MIN_REACH_PX)
+}
+
+/// Distance of two places, px, from which along the columns up to `bloom_px` is forgiven: that of a place from a line.
+fn distance_px(a: PixelPoint, b: PixelPoint, bloom_px: f64) -> f64 {
+    // `max` drops a NaN.
+    libm::hypot(a.x - b.x, ((a.y - b.y).abs() - bloom_px.max(0.0)).max(0.0))
 }
 
 /// The electrons that arrive on the ground: those outside the transmitted regions cannot be chosen.
@@ -22,9 +29,16 @@ pub(super) fn transmitted_electrons(object: &ObjectTruth) -> f64 {
     object.electrons * (1.0 - object.cut)
 }
 
-/// Whether a cluster with its centre at `position` holds the object: it lies within max(`radius_px`/2, 1.5) px.
+/// Whether a cluster with its centre at `position` holds the object: it lies within max(`radius_px`/2, 1.5) px of its centre,
+/// or, where wells overflowed, of the line that reaches `bloom_px`/2 from the centre up and down its column.
 pub(super) fn holds(position: PixelPoint, object: &ObjectTruth) -> bool {
-    position.distance(object.position) <= (CENTRE_SHARE * object.radius_px).max(MIN_REACH_PX)
+    distance_px(position, object.position, CENTRE_SHARE * object.bloom_px)
+        <= (CENTRE_SHARE * object.radius_px).max(MIN_REACH_PX)
+}
+
+/// Whether a cluster with its centre at `position` lies on the visible image of the object: within its reach.
+pub(super) fn covers(position: PixelPoint, object: &ObjectTruth) -> bool {
+    distance_px(position, object.position, object.bloom_px) <= reach_px(object)
 }
 
 /// The object that a cluster with its centre at `position` belongs to: of those that it holds, the one with the most
@@ -35,7 +49,7 @@ pub fn belonging_to(position: PixelPoint, objects: &[ObjectTruth]) -> Option<&Ob
 
 /// Whether the images of two objects touch, so that they may be one cluster.
 pub(super) fn touch(a: &ObjectTruth, b: &ObjectTruth) -> bool {
-    a.position.distance(b.position) <= reach_px(a) + reach_px(b)
+    distance_px(a.position, b.position, a.bloom_px + b.bloom_px) <= reach_px(a) + reach_px(b)
 }
 
 /// The target of a frame, if the truth has one.
@@ -61,4 +75,44 @@ pub(super) fn brightest<'a>(objects: impl Iterator<Item = &'a ObjectTruth>) -> O
             if transmitted_electrons(other) > transmitted_electrons(best) { other } else { best }
         },
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::score::hand_made::{CENTRE, star_at, target_with};
+
+    fn beside(x_px: f64, y_px: f64) -> PixelPoint {
+        PixelPoint::new(CENTRE.x + x_px, CENTRE.y + y_px)
+    }
+
+    /// A star that bleeds 40 px up and down from the centre.
+    fn bleeding() -> ObjectTruth {
+        ObjectTruth { radius_px: 6.0, bloom_px: 34.0, ..star_at(3, CENTRE, 1e6) }
+    }
+
+    #[test]
+    fn what_stands_beside_a_long_column_does_not_belong_to_it() {
+        for (x_px, y_px, belongs) in
+            [(0.0, 19.9, true), (2.9, -17.0, true), (0.0, 20.1, false), (3.1, 0.0, false), (8.0, 10.0, false)]
+        {
+            let place = beside(x_px, y_px);
+            assert_eq!(belonging_to(place, &[bleeding()]).is_some(), belongs, "{x_px}, {y_px}");
+            let neighbour = star_at(4, place, 500.0);
+            assert_eq!(
+                belonging_to(place, &[bleeding(), neighbour]).unwrap().id,
+                if belongs { 3 } else { 4 }
+            );
+        }
+    }
+
+    #[test]
+    fn a_column_touches_what_stands_above_it_and_not_what_stands_beside_it() {
+        let at = |x_px: f64, y_px: f64| ObjectTruth { position: beside(x_px, y_px), ..target_with(500.0) };
+        assert!(touch(&at(0.0, 41.4), &bleeding()) && !touch(&at(0.0, 41.6), &bleeding()));
+        assert!(touch(&at(-7.4, 30.0), &bleeding()) && !touch(&at(8.0, 30.0), &bleeding()));
+        // Two columns side by side whose ends meet.
+        let above = ObjectTruth { position: beside(5.0, -78.0), ..bleeding() };
+        assert!(touch(&above, &bleeding()) && covers(beside(5.0, -40.0), &above));
+    }
 }

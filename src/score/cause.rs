@@ -3,7 +3,7 @@
 use contract::{Cluster, Label, NoSolution, Outcome, Solution};
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
 
-use super::belonging::{holds, merged_with, reach_px, target};
+use super::belonging::{covers, holds, merged_with, target};
 
 /// Why the target was not taken. When several hold, the first in this order is the cause:
 ///
@@ -13,7 +13,7 @@ use super::belonging::{holds, merged_with, reach_px, target};
 /// 3. the reason that the pipeline itself gives: [`Cause::PipelineFailed`], [`Cause::SaturatedFrame`],
 ///    [`Cause::NoPreviousFrame`], and an empty frame as [`Cause::BelowThreshold`];
 /// 4. when the pipeline tells its clusters, the label of the one nearest to the target and within its reach of
-///    max(`radius_px`, 1.5) px; where there is none, a cluster at a star, planet, the Moon, a hot pixel or track that touches the target
+///    max(`radius_px`, 1.5) px, along its columns by `bloom_px` farther; where there is none, a cluster at a star, planet, the Moon, a hot pixel or track that touches the target
 ///    (distance up to the sum of the reaches), and where that is missing too, [`Cause::BelowThreshold`];
 /// 5. by the truth alone, the visible star, planet, Moon, hot pixel or track that touches the target;
 /// 6. [`Cause::Unexplained`].
@@ -181,7 +181,7 @@ fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[
     let distance = |cluster: &Cluster| cluster.position.distance(target.position);
     let nearest = clusters
         .iter()
-        .filter(|cluster| distance(cluster) <= reach_px(target))
+        .filter(|cluster| covers(cluster.position, target))
         .min_by(|a, b| distance(a).total_cmp(&distance(b)));
     match nearest.map(|cluster| cluster.label) {
         Some(Label::Star(_)) => Some(match neighbour {

@@ -69,6 +69,7 @@ fn object(kind: ObjectKind, id: u32, position: PixelPoint, electrons: f64) -> Ob
         peak_electrons: 0.2 * electrons,
         snr: 20.0,
         radius_px: 1.0,
+        bloom_px: 0.0,
         cut: 0.0,
     }
 }

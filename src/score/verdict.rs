@@ -23,7 +23,7 @@ pub enum Verdict {
     /// The pipeline has the target.
     ///
     /// An object belongs to the chosen cluster when its true centre lies within max(`radius_px`/2, 1.5) px of
-    /// the reported position. The answer is correct when the target belongs to it and more than half of the electrons
+    /// the reported position, along the columns by `bloom_px`/2 farther. The answer is correct when the target belongs to it and more than half of the electrons
     /// of all that belongs to it (stars, hot pixels and tracks of particles included) are the target's. Only transmitted electrons
     /// count: electrons × (1 − cut).
     Correct {

@@ -114,9 +114,9 @@ impl Stamp {
     }
 
     /// What the truth table tells, over a flat background of `background_e` electrons a pixel (sky and dark
-    /// current) and a read noise of `read_noise_e`.
-    pub fn truth(&self, background_e: f64, read_noise_e: f64) -> StampTruth {
-        let variance = background_e + read_noise_e * read_noise_e;
+    /// current) and a readout that adds a noise of `readout_noise_e` to a pixel.
+    pub fn truth(&self, background_e: f64, readout_noise_e: f64) -> StampTruth {
+        let variance = background_e + readout_noise_e * readout_noise_e;
         let noise_e = variance.sqrt();
         let (mut electrons, mut peak_electrons, mut snr2, mut radius2) = (0.0, 0.0_f64, 0.0, 0.25_f64);
         for (x, y, row) in self.rows() {
@@ -134,6 +134,15 @@ impl Stamp {
             }
         }
         StampTruth { electrons, peak_electrons, snr: snr2.sqrt(), radius_px: radius2.sqrt() }
+    }
+
+    /// Distance along the columns from the centre to the farthest pixel centre with more than `electrons`, px; 0 when there is
+    /// none.
+    pub(crate) fn height_px(&self, electrons: f64) -> f64 {
+        self.rows()
+            .filter(|(_, _, row)| row.iter().any(|&signal| signal > electrons))
+            .map(|(_, y, _)| (y as f64 - self.centre.y).abs())
+            .fold(0.0, f64::max)
     }
 
     /// The fraction of its electrons outside every window, in [0, 1]; 0 for an empty stamp.

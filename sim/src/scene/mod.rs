@@ -1,6 +1,7 @@
 //! What is in the field: stars, planets, the Moon and the target, as sources with a place and a rate of electrons.
 
 mod background;
+mod disk;
 pub(crate) mod moon;
 pub(crate) mod planets;
 mod spacecraft;

@@ -5,8 +5,9 @@
 //! Lambert sphere is not. The light of the whole disk is that of [`moon::moon_magnitude`].
 
 use contract::{CameraFrame, Direction, Icrs, PixelPoint, Rotation};
-use nalgebra::{Matrix2, Vector2, Vector3};
+use nalgebra::{Vector2, Vector3};
 
+use super::disk::Disk;
 use super::star_field::is_within;
 use super::{CameraMotion, Source};
 use crate::constants::{AU_KM, LIGHT_SPEED_KM_S};
@@ -19,11 +20,8 @@ use crate::truth::{ObjectKind, Observer, State, aberrate, shadow};
 const ECLIPSE_RAD: f64 = 2.0 * std::f64::consts::PI / 180.0;
 /// Cells across the disk for the fraction of its light that is seen, when Earth or shadow may take some.
 const FRACTION_CELLS: usize = 128;
-/// Side of a cell in the image, px, where the number of points allows it; else it is a whole number of pixels.
-const FINE_CELL_PX: f64 = 0.5;
-/// Places a cell is looked at along each side, at most, and all cells of the image together.
-const SAMPLES: f64 = 32.0;
-const ALL_SAMPLES: f64 = (1 << 22) as f64;
+/// Places along its diameter that are looked at, at least: few, for it is large in the image of any camera that resolves bodies.
+const SAMPLES_ACROSS: f64 = 4.0;
 
 /// The Moon as an observer sees it at one moment.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,8 +113,7 @@ impl LitMoon {
         }
         let electrons_per_s = radiometry.star(self.magnitude, Some(MOON_B_V), None);
         let position = projection.project(&(camera.middle * self.apparent))?;
-        let place = self.place(camera.middle, projection);
-        let [half_width, half_height] = self.half_sides_px(&self.scale(&place)?);
+        let [half_width, half_height] = self.disk(camera.middle, projection).half_sides_px()?;
         let margin_px = half_width.max(half_height) + camera.reach_px(projection) + reach_px(electrons_per_s);
         is_within(position, projection, margin_px).then(|| Source {
             kind: ObjectKind::Moon,
@@ -136,11 +133,6 @@ impl LitMoon {
 
     /// Appends the points of its undisturbed image: the sunlit part that is seen, `count_limit` points or so at most, their
     /// shares adding up to 1 as far as the image has a place for them. Nothing when no light comes from it.
-    ///
-    /// The points stand on a grid in step with the pixels. Whatever the PSF, the pixels' shares of all points of such a grid add
-    /// up to the same in every pixel: an even disk is drawn even. A cell at limb or terminator counts by the part of it that is
-    /// lit, at the mean of its light. Only of a disk with more than `count_limit` pixels are the cells larger than
-    /// a pixel, and show as grains where the PSF is narrow.
     pub(crate) fn image(
         &self,
         camera_from_icrs: Rotation<CameraFrame, Icrs>,
@@ -148,89 +140,22 @@ impl LitMoon {
         count_limit: usize,
         points: &mut Vec<ImagePoint>,
     ) {
-        let place = self.place(camera_from_icrs, projection);
-        let Some(scale) = self.scale(&place) else { return };
-        let (Some(centre), Some(to_sky)) = (place(Vector2::zeros()), scale.try_inverse()) else { return };
-        let sides_px = self.half_sides_px(&scale);
-        let radius_px = self.tan_radius * scale.determinant().abs().sqrt();
-        let (cell_px, samples) = self.cells(radius_px, count_limit);
-
-        // Cells lie between the edges of pixels, which are at half numbers.
-        let cells = |at: f64, half_px: f64| {
-            let first = ((at - half_px + 0.5) / cell_px).floor();
-            let last = ((at + half_px + 0.5) / cell_px).floor();
-            (0..=(last - first) as usize).map(move |i| (first + i as f64) * cell_px - 0.5)
-        };
-        let first = points.len();
-        let mut total = 0.0;
-        for top in cells(centre.y, sides_px[1]) {
-            for left in cells(centre.x, sides_px[0]) {
-                let (mut light, mut mean) = (0.0, Vector2::zeros());
-                for j in 0..samples {
-                    for i in 0..samples {
-                        let within = |i: usize| (i as f64 + 0.5) / samples as f64 * cell_px;
-                        let offset = Vector2::new(left + within(i) - centre.x, top + within(j) - centre.y);
-                        let at = to_sky * offset;
-                        let radiance = self.seen_radiance(&at);
-                        light += radiance;
-                        mean += at * radiance;
-                    }
-                }
-                if light > 0.0 {
-                    let share = light / (samples * samples) as f64;
-                    total += share;
-                    // The grid is laid by a linear map; its distortion over the disk is in the place of each point.
-                    points.extend(place(mean / light).map(|position| ImagePoint { position, share }));
-                }
-            }
-        }
-        if total > 0.0 {
-            points[first..].iter_mut().for_each(|point| point.share /= total);
-        }
+        self.disk(camera_from_icrs, projection).image(|at| self.seen_radiance(at), count_limit, points);
     }
 
-    /// Side of a cell, px, and places along it that are looked at: a few across the lit part, however thin.
-    fn cells(&self, radius_px: f64, count_limit: usize) -> (f64, usize) {
-        let lit = 0.5 * (1.0 + libm::cos(self.phase_rad));
-        let lit_px = std::f64::consts::PI * radius_px * radius_px * lit;
-        let limit = count_limit.max(1) as f64;
-        let cell_px = if lit_px / (FINE_CELL_PX * FINE_CELL_PX) <= limit {
-            // A disk within a pixel has no grid to be in step with.
-            FINE_CELL_PX.min(0.5 * radius_px)
-        } else {
-            (lit_px / limit).sqrt().ceil()
-        };
-        let wanted = (4.0 * cell_px / (2.0 * radius_px * lit)).ceil().clamp(4.0, SAMPLES);
-        let affordable = (ALL_SAMPLES.sqrt() * cell_px / (2.0 * radius_px)).floor().max(1.0);
-        (cell_px, wanted.min(affordable) as usize)
-    }
-
-    /// From the plane tangent to the sky at the Moon's centre to the image, aberration included: its difference over
-    /// the disk, 0.1″, is nothing.
-    fn place<'a>(
+    /// Its disk on the plane tangent to the sky at its centre, aberration included: its difference over the disk, 0.1″, is
+    /// nothing.
+    fn disk<'a>(
         &'a self,
         camera_from_icrs: Rotation<CameraFrame, Icrs>,
         projection: &'a Projection,
-    ) -> impl Fn(Vector2<f64>) -> Option<PixelPoint> + 'a {
-        move |at| {
+    ) -> Disk<impl Fn(Vector2<f64>) -> Option<PixelPoint> + 'a> {
+        let place = move |at: Vector2<f64>| {
             let direction = self.apparent.vector() + self.across[0] * at.x + self.across[1] * at.y;
             projection.project(&(camera_from_icrs * Direction::from_vector(direction).ok()?))
-        }
-    }
-
-    /// Pixels a radian at the Moon's centre: what the tangent plane's axes are in the image.
-    fn scale(&self, place: &impl Fn(Vector2<f64>) -> Option<PixelPoint>) -> Option<Matrix2<f64>> {
-        let step = 0.01 * self.tan_radius;
-        let derivative = |along: Vector2<f64>| {
-            let (before, after) = (place(-step * along)?, place(step * along)?);
-            Some(Vector2::new(after.x - before.x, after.y - before.y) / (2.0 * step))
         };
-        Some(Matrix2::from_columns(&[derivative(Vector2::x())?, derivative(Vector2::y())?]))
-    }
-
-    /// Half the width and half the height of the disk's image, px.
-    fn half_sides_px(&self, scale: &Matrix2<f64>) -> [f64; 2] {
-        [0, 1].map(|axis| self.tan_radius * scale.row(axis).norm())
+        let lit = 0.5 * (1.0 + libm::cos(self.phase_rad));
+        Disk { place, radius: self.tan_radius, lit, samples_across: SAMPLES_ACROSS }
     }
 
     /// The fraction of the light of its disk that neither the Earth nor its shadow takes away.

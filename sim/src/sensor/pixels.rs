@@ -6,7 +6,8 @@ use super::config::Switch;
 use super::flat_laws::{FlatLaw, FlatLaws};
 use super::own_means::OwnMeans;
 use super::poisson_digits::PoissonDigits;
-use super::readout::{RawImage, Sensor};
+use super::raw_image::RawImage;
+use super::readout::Sensor;
 use crate::draw::ExpectedImage;
 use crate::randomness::Streams;
 

@@ -174,11 +174,15 @@ pub struct ObjectTruth {
     pub electrons: f64,
     /// Expected electrons in its brightest pixel, before saturation.
     pub peak_electrons: f64,
-    /// Matched-filter signal-to-noise ratio over its own pixels: sqrt(Σ s²/(s + b + σ²)).
+    /// Matched-filter signal-to-noise ratio over its own pixels: sqrt(Σ s²/(s + b + σ²)), where σ² is the variance of the
+    /// readout: noise of pixel, row and column, and gain²/12 of the converter's rounding.
     pub snr: f64,
     /// Radius within which its image exceeds the noise of one pixel (σ of background), px; at least 0.5. Of an object that
-    /// overflows, the image is that after blooming.
+    /// overflows, the image is that before blooming.
     pub radius_px: f64,
+    /// How much farther than `radius_px` its image exceeds that noise along its columns after blooming, up or down, whichever
+    /// is more, px; 0 when nothing blooms.
+    pub bloom_px: f64,
     /// Fraction of its electrons outside the transmitted regions, in [0, 1]; 0 when all is transmitted. Of an object that
     /// overflows, the electrons are counted where they are after blooming.
     pub cut: f64,

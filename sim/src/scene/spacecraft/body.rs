@@ -245,7 +245,7 @@ fn whole(cells: f64) -> usize {
 }
 
 /// Replaces the points from `first` on by fewer when they span little.
-fn gather(points: &mut Vec<ImagePoint>, first: usize) {
+pub(super) fn gather(points: &mut Vec<ImagePoint>, first: usize) {
     let Some(origin) = points.get(first).map(|point| point.position) else { return };
     let from_origin =
         |point: &ImagePoint| Vector2::new(point.position.x - origin.x, point.position.y - origin.y);

@@ -385,7 +385,12 @@ fn numbers_out_of_range_are_told_with_their_place() {
     );
     assert!(body(&format!("normal = [0, 2, 0]\nup = [0, 1, 0]\n{front}")).contains("target.plates[0].up"));
     let bright = "normal = [0, 0, 1]\nup = [0, 1, 0]\nfront = { diffuse = 0.7, specular = 0.4 }";
-    assert!(body(bright).contains("target.surface.specular is 0.4"));
+    assert!(body(bright).contains("target.plates[0].front.specular is 0.4"));
+    let back = format!("normal = [0, 0, 1]\nup = [0, 1, 0]\n{front}\nback = {{ diffuse = -0.1 }}");
+    assert!(body(&back).contains("target.plates[0].back.diffuse is -0.1"));
+    let second = "kind = \"plates\"\n[[boxes]]\nsize_m = [1, 1, 1]\nsurface = { diffuse = 0.2 }\n\
+                  [[boxes]]\nsize_m = [1, 1, 1]\nsurface = { diffuse = 0.2, specular = 0.1, roughness = 2.0 }";
+    assert!(message(second).contains("target.boxes[1].surface.roughness is 2"));
     let boxes = "kind = \"plates\"\n[[boxes]]\nsize_m = [1.0, 0.0, 1.0]\nsurface = { diffuse = 0.2 }";
     assert!(message(boxes).contains("target.boxes[0].size_m is 0"));
 }

@@ -3,6 +3,7 @@
 mod body;
 mod plate;
 mod polygon;
+mod sphere;
 mod surface;
 
 #[cfg(test)]
@@ -17,14 +18,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::SimError;
+use crate::constants::AU_KM;
 use crate::error::require;
 use crate::optics::{ImagePoint, SUN_V_MAG_AT_1_AU};
 use crate::truth::{States, TargetAttitudeConfig};
 use body::LitBody;
 use plate::Plate;
-
-/// Kilometres in an astronomical unit (IAU 2012 Resolution B2, exact).
-const AU_KM: f64 = 149_597_870.7;
+use sphere::LitSphere;
 
 /// Plates that a body may have, those of boxes included: each is held against each.
 const MAX_PLATES: usize = 200;
@@ -38,7 +38,8 @@ pub enum TargetConfig {
         /// Visual magnitude at a distance of 1 km; it fades with the square of the distance.
         magnitude_at_1_km: f64,
     },
-    /// A diffusely reflecting sphere in sunlight (Lambert's phase law), drawn as a point at its centre.
+    /// A diffusely reflecting sphere in sunlight (Lambert's phase law), drawn resolved: its centre of brightness moves
+    /// towards the Sun with the phase angle.
     LambertSphere {
         /// Radius, m, positive.
         radius_m: f64,
@@ -163,18 +164,20 @@ impl Spacecraft {
         let range_km = lighting.chaser_km.norm();
         match &self.model {
             Model::Beacon { magnitude_at_1_km } => {
-                Appearance { magnitude: magnitude_at_1_km + 5.0 * libm::log10(range_km), lit: None }
+                Appearance { magnitude: magnitude_at_1_km + 5.0 * libm::log10(range_km), lit: Lit::Point }
             }
             Model::Sphere { radius_m, albedo } => {
                 let ratio = radius_m / (range_km * 1000.0);
                 let flux_ratio = 2.0 / 3.0 * albedo * lambert_phase(lighting.phase_rad()) * ratio * ratio;
-                Appearance { magnitude: lighting.magnitude(flux_ratio), lit: None }
+                let (eye_m, sun) = (lighting.chaser_km * 1000.0, lighting.sun_km.normalize());
+                let lit = LitSphere::new(*radius_m, eye_m, sun).map_or(Lit::Point, Lit::Sphere);
+                Appearance { magnitude: lighting.magnitude(flux_ratio), lit }
             }
             Model::Plates { plates, .. } => {
                 let turn = target_from_icrs.unwrap_or_else(Rotation::identity);
                 let sun = turn.rotate(&lighting.sun_km).normalize();
                 let lit = LitBody::new(plates, turn.rotate(&lighting.chaser_km) * 1000.0, sun);
-                Appearance { magnitude: lighting.magnitude(lit.flux_ratio()), lit: Some(lit) }
+                Appearance { magnitude: lighting.magnitude(lit.flux_ratio()), lit: Lit::Body(lit) }
             }
         }
     }
@@ -184,8 +187,16 @@ impl Spacecraft {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Appearance {
     magnitude: f64,
-    /// `None` for a point at the origin of the body frame.
-    lit: Option<LitBody>,
+    lit: Lit,
+}
+
+/// Where its light comes from.
+#[derive(Debug, Clone, PartialEq)]
+enum Lit {
+    /// The origin of the body frame.
+    Point,
+    Sphere(LitSphere),
+    Body(LitBody),
 }
 
 impl Appearance {
@@ -203,8 +214,9 @@ impl Appearance {
         points: &mut Vec<ImagePoint>,
     ) {
         match &self.lit {
-            Some(lit) => lit.image(project, count_limit, points),
-            None => {
+            Lit::Body(body) => body.image(project, count_limit, points),
+            Lit::Sphere(sphere) => sphere.image(project, count_limit, points),
+            Lit::Point => {
                 points.extend(project(&Vector3::zeros()).map(|position| ImagePoint { position, share: 1.0 }));
             }
         }
@@ -212,7 +224,12 @@ impl Appearance {
 
     /// An estimate of the share of its light that falls in its brightest pixel, when `psf_share` of a point's does.
     pub fn peak_share(&self, project: &impl Fn(&Vector3<f64>) -> Option<PixelPoint>, psf_share: f64) -> f64 {
-        self.lit.as_ref().and_then(|lit| lit.peak_share(project, psf_share)).unwrap_or(psf_share)
+        let share = match &self.lit {
+            Lit::Body(body) => body.peak_share(project, psf_share),
+            Lit::Sphere(sphere) => sphere.peak_share(project, psf_share),
+            Lit::Point => None,
+        };
+        share.unwrap_or(psf_share)
     }
 }
 

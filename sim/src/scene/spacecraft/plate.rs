@@ -5,12 +5,19 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::polygon::Polygon;
-use super::surface::SurfaceConfig;
+use super::surface::{SurfaceConfig, SurfacePaths};
 use crate::SimError;
 use crate::error::require;
 
 /// Farthest from the origin and largest that a part may be, m.
 const FARTHEST_M: f64 = 200.0;
+
+const BOX_SURFACE: SurfacePaths =
+    ["target.boxes[].surface.diffuse", "target.boxes[].surface.specular", "target.boxes[].surface.roughness"];
+const PLATE_FRONT: SurfacePaths =
+    ["target.plates[].front.diffuse", "target.plates[].front.specular", "target.plates[].front.roughness"];
+const PLATE_BACK: SurfacePaths =
+    ["target.plates[].back.diffuse", "target.plates[].back.specular", "target.plates[].back.roughness"];
 
 /// A rectangular plate without thickness. It is opaque from both sides.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -77,8 +84,8 @@ impl PlateConfig {
         check_places("target.plates[].centre_m", self.centre_m)?;
         check_size("target.plates[].width_m", self.width_m)?;
         check_size("target.plates[].height_m", self.height_m)?;
-        self.front.check()?;
-        self.back.map_or(Ok(()), |back| back.check())?;
+        self.front.check(&PLATE_FRONT)?;
+        self.back.map_or(Ok(()), |back| back.check(&PLATE_BACK))?;
         let unit = |vector: Vector3<f64>| {
             vector.iter().all(|component| component.is_finite()).then(|| vector.try_normalize(1e-9)).flatten()
         };
@@ -114,7 +121,7 @@ impl BoxConfig {
     pub(super) fn plates(&self) -> Result<[Plate; 6], SimError> {
         check_places("target.boxes[].centre_m", self.centre_m)?;
         self.size_m.into_iter().try_for_each(|size| check_size("target.boxes[].size_m", size))?;
-        self.surface.check()?;
+        self.surface.check(&BOX_SURFACE)?;
         let face = |axis: usize, side: f64| {
             let unit = |axis: usize| Vector3::ith(axis % 3, 1.0);
             let (normal, up) = (unit(axis) * side, unit(axis + 2));

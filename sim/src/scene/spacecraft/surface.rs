@@ -28,17 +28,19 @@ fn default_roughness() -> f64 {
     0.1
 }
 
+/// Paths in the scenario of `diffuse`, `specular` and `roughness` of a surface.
+pub(super) type SurfacePaths = [&'static str; 3];
+
 impl SurfaceConfig {
-    /// Checks every number.
+    /// Checks every number; `paths` tell which surface it is.
     ///
     /// # Errors
     /// [`SimError::Parameter`] for the first one outside its range.
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("target.surface.diffuse", self.diffuse, "0 to 1", |d| (0.0..=1.0).contains(&d))?;
-        require("target.surface.specular", self.specular, "0 to 1 - diffuse", |s| {
-            s >= 0.0 && s + self.diffuse <= 1.0
-        })?;
-        require("target.surface.roughness", self.roughness, "0.02 to 0.6", |a| (0.02..=0.6).contains(&a))
+    pub(super) fn check(&self, paths: &SurfacePaths) -> Result<(), SimError> {
+        let [diffuse, specular, roughness] = *paths;
+        require(diffuse, self.diffuse, "0 to 1", |d| (0.0..=1.0).contains(&d))?;
+        require(specular, self.specular, "0 to 1 - diffuse", |s| s >= 0.0 && s + self.diffuse <= 1.0)?;
+        require(roughness, self.roughness, "0.02 to 0.6", |a| (0.02..=0.6).contains(&a))
     }
 
     /// Angle over which the direction of the camera may change before the reflectance does, rad.

@@ -1,0 +1,99 @@
+//! The images of a dataset.
+
+use std::fs;
+
+use super::{check_refused, dataset, dataset_of};
+
+/// The second image of a dataset replaced by these bytes.
+fn check(format: &str, bytes: impl FnOnce(Vec<u8>) -> Vec<u8>, parts: &[&str]) {
+    let bench = dataset_of(format);
+    let name = format!("set/frames/000021.{format}");
+    let image = fs::read(bench.path(&name)).unwrap();
+    bench.write(&name, bytes(image));
+    check_refused(&bench, "process set", &[&[name.as_str()], parts].concat());
+}
+
+fn cut_to(length: usize) -> impl FnOnce(Vec<u8>) -> Vec<u8> {
+    move |mut bytes| {
+        bytes.truncate(length);
+        bytes
+    }
+}
+
+/// A header card replaced; the length of the file stays.
+fn with_card(keyword: &'static str, card: &'static str) -> impl FnOnce(Vec<u8>) -> Vec<u8> {
+    move |mut bytes| {
+        let at = bytes.chunks_exact(80).position(|old| old.starts_with(keyword.as_bytes())).unwrap() * 80;
+        bytes[at..at + 80].copy_from_slice(format!("{card:80}").as_bytes());
+        bytes
+    }
+}
+
+#[test]
+fn a_fits_file_cut_short_is_refused() {
+    check("fits", cut_to(0), &["ends within a header"]);
+    check("fits", cut_to(1000), &["ends within a header"]);
+    check("fits", cut_to(100_000), &["bytes of data", "the file ends there"]);
+}
+
+#[test]
+fn a_fits_header_that_lies_about_the_size_is_refused() {
+    check("fits", with_card("NAXIS1", "NAXIS1  =                75200"), &["bytes of data", "the file ends"]);
+    check("fits", with_card("NAXIS1", "NAXIS1  =  9223372036854775807"), &["NAXISn", "fits 64 bits"]);
+    check("fits", with_card("NAXIS1", "NAXIS1  =                   -1"), &["NAXIS1", "`-1`"]);
+    check("fits", with_card("NAXIS2", "NAXIS2  =                  579"), &["752 × 579", "752 × 580"]);
+    check("fits", with_card("BITPIX", "BITPIX  =                   12"), &["BITPIX", "`12`"]);
+    check("fits", with_card("BITDEPTH", "BITDEPTH=                   14"), &["`14`", "12"]);
+}
+
+#[test]
+fn what_is_not_of_its_format_is_refused() {
+    for format in ["fits", "png", "exr"] {
+        check(format, |_| b"GIF89a".repeat(1000), &["not a readable"]);
+    }
+}
+
+#[test]
+fn a_png_file_cut_short_is_refused() {
+    check("png", cut_to(0), &["not a readable"]);
+    check("png", |bytes| bytes[..bytes.len() / 2].to_vec(), &["not a readable"]);
+}
+
+#[test]
+fn an_exr_file_cut_short_is_refused() {
+    check("exr", |bytes| bytes[..bytes.len() / 2].to_vec(), &["not a readable"]);
+}
+
+fn png(image: impl Into<image::DynamicImage>) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    image.into().write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn a_colour_image_is_refused() {
+    check("png", |_| png(image::RgbImage::new(752, 580)), &["Rgb8", "grey"]);
+}
+
+#[test]
+fn an_image_of_another_size_is_refused() {
+    check("png", |_| png(image::GrayImage::new(580, 752)), &["580 × 752", "752 × 580"]);
+}
+
+#[test]
+fn a_value_above_full_scale_names_its_pixel() {
+    let bright = |_| {
+        let mut image = image::ImageBuffer::<image::Luma<u16>, _>::new(752, 580);
+        image.put_pixel(300, 200, image::Luma([4096]));
+        png(image)
+    };
+    check("png", bright, &["pixel (300, 200)", "`4096`", "4095"]);
+}
+
+#[test]
+fn an_extension_that_is_no_image_format_is_refused() {
+    let bench = dataset();
+    fs::rename(bench.path("set/frames/000021.png"), bench.path("set/frames/000021.jpg")).unwrap();
+    bench.edit("set/telemetry.csv", "000021.png", "000021.jpg");
+    check_refused(&bench, "process set", &["000021.jpg", "`jpg`", "fits"]);
+}
