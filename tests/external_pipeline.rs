@@ -48,9 +48,10 @@ fn the_example_finds_the_target_in_whole_images() {
     let bench = Bench::new();
     let words = ["run", "starting-point", "--frames", FRAMES, "--out", "run", "--pipeline", &brightest()];
     bench.boresight_words(&words).done();
-    // A bright image, not cut, of a point: its centroid has an error of some thousandths of a pixel. A convention
-    // of pixels that is off by a half, or axes that are exchanged, cannot pass.
-    check_places(&bench, "run/measurements.csv", "run", [0.05, 0.05]);
+    // A bright image, not cut: its centroid has an error of some thousandths of a pixel, and the sunlit side of the
+    // sphere is up to 0.06 px from its middle. A convention of pixels that is off by a half, or axes that are
+    // exchanged, cannot pass.
+    check_places(&bench, "run/measurements.csv", "run", [0.1, 0.1]);
     assert_eq!(figure(&bench.json("run/score.json"), "correct_rate"), 4.0 / 5.0);
 }
 

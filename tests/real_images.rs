@@ -80,11 +80,11 @@ fn check(bench: &Bench, tolerance_px: f64) {
         let off_px = libm::hypot(number("x_px") - place.x, number("y_px") - place.y);
         assert!(off_px < tolerance_px, "frame {}: {off_px} px", truth.frame);
         // The stars of the built-in catalogue were identified, so the line of sight is better than the telemetry
-        // alone, which knows neither the true mounting (0.03 degrees off) nor its own noise.
+        // alone, which knows neither the true mounting (0.03 degrees off) nor its own noise (0.015 degrees an axis).
         assert_eq!(row["attitude"], "stars", "{row:?}");
         let los = Vector3::new(number("los_j2000_x"), number("los_j2000_y"), number("los_j2000_z"));
         let off_deg = los.cross(truth.line_of_sight.vector()).norm().to_degrees();
-        assert!(off_deg < 0.012, "frame {}: {off_deg} degrees, half a pixel", truth.frame);
+        assert!(off_deg < 0.024, "frame {}: {off_deg} degrees, a pixel", truth.frame);
     }
 }
 
