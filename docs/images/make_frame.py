@@ -44,7 +44,7 @@ def whole(dn, objects):
             continue
         radius = 14 if thing["kind"] == "target" else 7
         x, y = thing["x_px"], thing["y_px"]
-        draw.ellipse([x - radius, y - radius, x + radius, y + radius], outline=COLOURS[thing["kind"]], width=2)
+        draw.ellipse([x - radius, y - radius, x + radius, y + radius], outline=COLOURS.get(thing["kind"], (200, 200, 200)), width=2)
     return picture
 
 
