@@ -6,8 +6,8 @@
     python3 scenarios/argon_calibrate.py show                  # the free parameters, their values and their ranges
     python3 scenarios/argon_calibrate.py check                 # the whole of ARGON against the table
     python3 scenarios/argon_calibrate.py fit --evaluations 300 # prints the best values found, as they are found
-    python3 scenarios/argon_calibrate.py fit --leave-out 4     # fits the other days from what was assumed before any fit,
-                                                               # and says what becomes of day 4
+    python3 scenarios/argon_calibrate.py fit --leave-out 4     # fits the other days from the first values, and says
+                                                               # what becomes of day 4
     python3 scenarios/argon_calibrate.py budget                # what each stage costs, and what the best mode wins back
 
 This is a calibration and not a prediction: the table has 25 independent cells, and what the paper does not print is
@@ -28,6 +28,7 @@ import subprocess
 import sys
 import tempfile
 import tomllib
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -44,7 +45,7 @@ TABLE_2 = {
     "dec_within_2px": [91.94, 93.21, 81.80, 40.65, 34.49],
 }
 
-# The free parameters, twelve at most: path in the scenario, range, scale, and what was assumed before anything was fitted.
+# The free parameters, twelve at most: path in the scenario, range, scale, and its first value, set by hand with the table in view.
 # Everything else in argon.toml is fixed.
 PARAMETERS = [
     ("target.boxes.0.surface.diffuse", 0.08, 0.6, "log", 0.25),
@@ -97,8 +98,6 @@ WARM_UP = 20
 
 def in_blocks(scenario, blocks, length):
     """The scenario with `blocks` stretches of `length` frames of each day instead of the whole of it."""
-    from datetime import datetime, timedelta
-
     schedule = []
     for day in scenario["schedule"]:
         start = datetime.fromisoformat(day["start_utc"])
@@ -119,7 +118,8 @@ def in_blocks(scenario, blocks, length):
 
 def quicker(scenario):
     """The scenario without what gives every pixel a mean of its own (a fixed pattern of a percent, a smooth background of
-    some electrons): it multiplies the time of a frame and moves no cell of the table by more than its noise."""
+    some electrons): it multiplies the time of a frame and moves a cell of the table by 0.4 points in the mean, 2.5 at worst
+    (6 blocks of 80 frames a day, which know a rate to some 3 points)."""
     trial = copy.deepcopy(scenario)
     trial["sensor"].pop("fixed_pattern", None)
     if trial.pop("background", None):
@@ -214,9 +214,9 @@ def main():
     options = parser.parse_args()
     scenario = tomllib.loads(options.scenario.read_text())
     if options.what == "show":
-        for path, low, high, scale, assumed in PARAMETERS:
+        for path, low, high, scale, first in PARAMETERS:
             value = lookup(scenario, path)
-            print(f"{path:38s} {value:<8g} {low:g} to {high:g} ({scale}), before the fit {assumed:g}")
+            print(f"{path:38s} {value:<8g} {low:g} to {high:g} ({scale}), at first {first:g}")
         return
     if options.what == "budget":
         show_budget(in_blocks(scenario, options.blocks, options.length), options)
@@ -228,6 +228,7 @@ def main():
     seen = [day for day in range(1, 6) if day != options.leave_out]
     blocks = in_blocks(quicker(scenario), options.blocks, options.length)
     known = {}
+
     def evaluate(values):
         key = tuple(values)
         if key not in known:
@@ -239,7 +240,7 @@ def main():
 
     if options.leave_out:
         # Not from the answer that knows all days.
-        values = [assumed for *_, assumed in PARAMETERS]
+        values = [first for *_, first in PARAMETERS]
     else:
         values = [lookup(scenario, path) for path, *_ in PARAMETERS]
     best, step = evaluate(values), options.step
