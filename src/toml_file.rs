@@ -78,17 +78,7 @@ const MAX_BYTES: u64 = 1 << 24;
 /// # Errors
 /// Those of the operating system, and for a file that is not regular, larger than 16 MiB, or not UTF-8.
 pub fn read_text(file: &Path) -> std::io::Result<String> {
-    let metadata = std::fs::metadata(file)?;
-    if !metadata.is_file() {
-        return Err(std::io::Error::other("it is not a regular file"));
-    }
-    if metadata.len() > MAX_BYTES {
-        return Err(std::io::Error::other(format!(
-            "it has {} bytes, expected at most {MAX_BYTES}",
-            metadata.len()
-        )));
-    }
-    std::fs::read_to_string(file)
+    sim::regular_file::read_text(file, MAX_BYTES)
 }
 
 /// Reads `text`, which came from `file`, as a `T`.

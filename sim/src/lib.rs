@@ -13,6 +13,7 @@ pub mod onboard;
 pub mod optics;
 mod painter;
 pub mod randomness;
+pub mod regular_file;
 pub mod scene;
 pub mod sensor;
 mod simulator;

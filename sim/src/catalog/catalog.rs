@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 use super::cone::within_cone;
 use super::config::{CatalogConfig, CatalogSource};
 use super::{CatalogError, CatalogStar, hipparcos, read};
+use crate::regular_file;
 
 /// Stars in ascending order of id, each id once.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,8 +55,8 @@ impl Catalog {
     /// # Errors
     /// [`CatalogError`] with the file, the line and the place in it.
     pub fn read(path: &Path) -> Result<Self, CatalogError> {
-        let bytes =
-            read_file(path).map_err(|source| CatalogError::Io { path: path.to_path_buf(), source })?;
+        let bytes = regular_file::read(path, MAX_BYTES)
+            .map_err(|source| CatalogError::Io { path: path.to_path_buf(), source })?;
         let (rows, exclusions) = read::parse(path, &bytes)?;
         Ok(Self { stars: unique(path, rows)?, sha256: hex(&Sha256::digest(&bytes)), exclusions })
     }
@@ -127,21 +128,6 @@ pub(super) fn hex(bytes: &[u8]) -> String {
 
 /// Largest catalogue that is read, bytes: ten times hip_main.dat.
 const MAX_BYTES: u64 = 1 << 29;
-
-/// A whole file: a pipe or a device, which may have no end, is refused.
-fn read_file(path: &Path) -> std::io::Result<Vec<u8>> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(std::io::Error::other("it is not a regular file"));
-    }
-    if metadata.len() > MAX_BYTES {
-        return Err(std::io::Error::other(format!(
-            "it has {} bytes, expected at most {MAX_BYTES}",
-            metadata.len()
-        )));
-    }
-    std::fs::read(path)
-}
 
 #[cfg(test)]
 mod tests {

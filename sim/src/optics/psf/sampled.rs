@@ -7,8 +7,10 @@
 use std::path::Path;
 
 use super::tabulated::Tabulated;
-use crate::SimError;
+use crate::{SimError, regular_file};
 
+/// Largest file that is read, bytes: 2048 × 2048 cells of sixteen characters.
+const MAX_BYTES: u64 = 1 << 26;
 /// Cells along a side.
 const CELLS: std::ops::RangeInclusive<usize> = 3..=2048;
 
@@ -18,7 +20,7 @@ const CELLS: std::ops::RangeInclusive<usize> = 3..=2048;
 /// [`SimError::PsfFile`] when the file cannot be read or does not hold a matrix of numbers that are 0 or more.
 pub(super) fn sampled(path: &Path, oversampling: f64) -> Result<Tabulated, SimError> {
     let fail = |problem: String| SimError::PsfFile { path: path.to_path_buf(), problem };
-    let text = std::fs::read_to_string(path).map_err(|error| fail(error.to_string()))?;
+    let text = regular_file::read_text(path, MAX_BYTES).map_err(|error| fail(error.to_string()))?;
     let (mut light, columns) = matrix(&text).map_err(fail)?;
     let (mut flux, mut moment_x, mut moment_y) = (0.0, 0.0, 0.0);
     for (j, row) in light.chunks_exact(columns).enumerate() {
