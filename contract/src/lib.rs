@@ -9,6 +9,7 @@ mod angle;
 mod camera;
 pub mod conformance;
 mod direction;
+pub mod docking;
 mod error;
 mod frame;
 mod measurement;

@@ -5,9 +5,11 @@
 //!
 //! - [`far_range`]: the far-range method of the ARGON experiment (star identification, tracking, motion
 //!   segmentation);
+//! - [`docking`]: the monitoring of a docking approach by its target's cross and marks;
 //! - [`external`]: somebody else's pipeline, run as a process.
 
 mod camera_model;
+pub mod docking;
 mod error;
 pub mod external;
 

@@ -18,6 +18,7 @@ pub mod scene;
 pub mod sensor;
 mod simulator;
 pub mod truth;
+pub mod vector;
 mod view;
 
 pub use error::SimError;

@@ -2,6 +2,7 @@
 
 mod background;
 mod disk;
+pub mod docking;
 pub(crate) mod moon;
 pub(crate) mod planets;
 mod spacecraft;

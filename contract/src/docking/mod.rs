@@ -1,0 +1,22 @@
+//! Docking: what the simulator of an approach and a pipeline that monitors it both speak.
+//!
+//! The unit is the *field*: the half-frame of interlaced television, at its own moment. The target's frame, the pose
+//! and the angles are those of Boguslavsky et al. (ICINCO 2004); see `CONVENTIONS.md`.
+
+mod digitiser;
+mod features;
+mod field;
+mod motion;
+mod outcome;
+mod pipeline;
+mod pose;
+mod target;
+
+pub use digitiser::Digitiser;
+pub use features::{Circle, Cross, Features, Mark, MarkUse};
+pub use field::{Field, FieldTelemetry, Lines};
+pub use motion::{Motion, MotionReport};
+pub use outcome::{DockingOutcome, DockingSolution, FieldMeasurement, NoPose};
+pub use pipeline::{DockingPipeline, DockingPipelineFactory, DockingSetup};
+pub use pose::{Pose, PoseEstimate};
+pub use target::{Outline, StandOffCross, TargetModel};
