@@ -1,7 +1,7 @@
-//! Parts that share an edge: where they meet in a pixel, nothing between them shows what lies behind.
+//! Parts that touch at a corner: where they meet in a pixel, nothing between them shows what lies behind.
 //!
-//! Laid one over the other, two parts that cover a pixel by halves would let a quarter of it through. Of parts that share an
-//! edge the coverages are taken as disjoint as far as there is room, and what is behind the later one gives way:
+//! Laid one over the other, two parts that cover a pixel by halves would let a quarter of it through. Of parts whose
+//! corners touch the coverages are taken as disjoint as far as there is room, and what is behind the later one gives way:
 //! Porter and Duff's *over* for disjoint coverage (SIGGRAPH 1984, 4.1; OpenGL's `DISJOINT_NV`).
 
 /// What lies behind the body that is being laid, and how much of every pixel the body covers.

@@ -22,7 +22,7 @@ pub(super) struct Canvas<'a> {
     pub(super) columns: usize,
     /// What lies behind the body to which the part belongs, and how much of it is covered already.
     pub(super) body: &'a mut Body,
-    /// Whether the part shares an edge with its neighbours in the scene, and so is of a body with them.
+    /// Whether the part touches a neighbour in the scene's order, and so is of a body with them.
     pub(super) in_body: bool,
 }
 

@@ -1,6 +1,5 @@
 //! A scene made ready to be drawn: its facets by the planes in which they lie, each in a sphere.
 
-use std::collections::BTreeSet;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -83,7 +82,7 @@ pub(super) struct PreparedPart {
     pub(super) sphere: Sphere,
     /// One a facet; empty when the part casts no shadow.
     pub(super) casters: Vec<Caster>,
-    /// Whether it shares an edge with the part before it: both are surfaces of one body.
+    /// Whether corners of it touch the part before it: both are surfaces of one body.
     pub(super) joins_previous: bool,
 }
 
@@ -114,7 +113,7 @@ impl Prepared {
                     } else {
                         Vec::new()
                     },
-                    joins_previous: before.is_some_and(|before| share_an_edge(before, part)),
+                    joins_previous: before.is_some_and(|before| touch(before, part)),
                 }
             })
             .collect();
@@ -127,24 +126,18 @@ const SAME_PLANE: f64 = 1e-9;
 /// Boxes nearer than this touch, m: a plane along the axes has a flat one.
 const SAME_PLACE_M: f64 = 1e-6;
 
-/// Whether two visible parts have an edge in common, to the last bit of its ends.
-fn share_an_edge(one: &Part, other: &Part) -> bool {
-    fn edges(part: &Part) -> impl Iterator<Item = [[u64; 3]; 2]> {
-        let polygons = part.facets.iter().flat_map(|facet| std::iter::once(&facet.outer).chain(&facet.holes));
-        polygons.flat_map(|polygon| {
-            polygon.iter().zip(polygon.iter().cycle().skip(1)).map(|(from, to)| {
-                let mut ends =
-                    [from, to].map(|point| [point.x, point.y, point.z].map(|along| (along + 0.0).to_bits()));
-                ends.sort_unstable();
-                ends
-            })
-        })
+/// How near the corners of parts that touch are, m: circles of few and of many sides differ by some millimetres.
+const TOUCHING_M: f64 = 5e-3;
+
+/// Whether two visible parts have corners that touch.
+fn touch(one: &Part, other: &Part) -> bool {
+    fn corners(part: &Part) -> impl Iterator<Item = &Vector3<f64>> {
+        part.facets.iter().flat_map(|facet| std::iter::once(&facet.outer).chain(&facet.holes)).flatten()
     }
-    if !(one.visible && other.visible) {
-        return false;
-    }
-    let known: BTreeSet<_> = edges(one).collect();
-    edges(other).any(|edge| known.contains(&edge))
+    let near = |corner: &Vector3<f64>| {
+        corners(other).any(|point| (corner - point).norm_squared() <= TOUCHING_M * TOUCHING_M)
+    };
+    one.visible && other.visible && corners(one).any(near)
 }
 
 fn planes_of(part: &Part) -> Vec<Plane> {
