@@ -62,17 +62,24 @@ fn sampled(camera: &Camera, scene: &DockingScene, pose: &Pose) -> Vec<f32> {
 
 #[test]
 fn pictures_agree_with_tiny_skia_at_16_by_16_samples() {
-    let camera = small();
     let scene = target();
-    for (d, phi) in [([0.3, 0.2, 5.0], [0.05, 0.02, 0.3]), ([-0.1, 0.05, 1.2], [0.0, 0.1, -0.2])] {
+    // A window of a camera's image: the cross before the plate, the docking ring with its wall, and, coarse, the whole station.
+    for (focal_px, d, phi, limit) in [
+        (1055.0, [0.5, 0.3, 5.0], [-0.064, -0.106, 0.3], 2e-3),
+        (1055.0, [-0.4, -0.2, 4.0], [-0.256, 0.244, -0.2], 2e-3),
+        (130.0, [0.3, 0.2, 5.0], [0.05, 0.02, 0.3], 6e-3),
+    ] {
+        let mut camera = small();
+        camera.focal_length_mm = focal_px * 8.3e-3;
         let pose = pose(d, phi);
         let image = draw(&camera, &scene, &plain(), &pose);
         let witness = sampled(&camera, &scene, &pose);
         let square: f32 = image.radiance.iter().zip(&witness).map(|(a, b)| (a - b) * (a - b)).sum();
         let rms = (square / witness.len() as f32).sqrt();
-        println!("rms against 16 x 16 samples: {rms:.2e}");
-        // What 16 × 16 samples leave uncertain at an edge is some 0.4 % of its contrast; most pixels have one here.
-        assert!(rms < 2e-3, "{rms}");
+        println!("f = {focal_px} px: rms against 16 x 16 samples {rms:.2e}");
+        // What 16 × 16 samples leave uncertain at an edge is some 0.4 % of its contrast. In the coarse picture nearly every
+        // pixel has an edge, and blankets end where the rim begins: there the face behind both shows through.
+        assert!(rms < limit, "{rms}");
     }
 }
 
@@ -129,7 +136,7 @@ fn light_is_never_taken_away_below_zero() {
         let height = 0.1 + 0.1 * f64::from(i);
         drawer.draw(&scene, &sunlit([cos, sin, height]), &pose([0.3, -0.4, 6.0], [0.0; 3]), &mut image);
         let least = image.radiance.iter().copied().fold(f32::INFINITY, f32::min);
-        assert!(least > -1e-5, "{i}: {least}");
+        assert!(least >= 0.0, "{i}: {least}");
     }
 }
 

@@ -82,6 +82,8 @@ pub(super) struct PreparedPart {
     pub(super) sphere: Sphere,
     /// One a facet; empty when the part casts no shadow.
     pub(super) casters: Vec<Caster>,
+    /// Whether corners of it touch the part before it: both are surfaces of one body.
+    pub(super) joins_previous: bool,
 }
 
 /// The scene and what was made of it.
@@ -95,10 +97,10 @@ pub(super) struct Prepared {
 impl Prepared {
     pub(super) fn new(scene: &DockingScene) -> Self {
         let mut planes = Vec::new();
-        let parts = scene
-            .parts
-            .iter()
-            .map(|part| {
+        let before = std::iter::once(None).chain(scene.parts.iter().map(Some));
+        let parts = before
+            .zip(&scene.parts)
+            .map(|(before, part)| {
                 let start = planes.len();
                 if part.visible {
                     planes.extend(planes_of(part));
@@ -111,6 +113,7 @@ impl Prepared {
                     } else {
                         Vec::new()
                     },
+                    joins_previous: before.is_some_and(|before| touch(before, part)),
                 }
             })
             .collect();
@@ -122,6 +125,20 @@ impl Prepared {
 const SAME_PLANE: f64 = 1e-9;
 /// Boxes nearer than this touch, m: a plane along the axes has a flat one.
 const SAME_PLACE_M: f64 = 1e-6;
+
+/// How near the corners of parts that touch are, m: circles of few and of many sides differ by some millimetres.
+const TOUCHING_M: f64 = 5e-3;
+
+/// Whether two visible parts have corners that touch.
+fn touch(one: &Part, other: &Part) -> bool {
+    fn corners(part: &Part) -> impl Iterator<Item = &Vector3<f64>> {
+        part.facets.iter().flat_map(|facet| std::iter::once(&facet.outer).chain(&facet.holes)).flatten()
+    }
+    let near = |corner: &Vector3<f64>| {
+        corners(other).any(|point| (corner - point).norm_squared() <= TOUCHING_M * TOUCHING_M)
+    };
+    one.visible && other.visible && corners(one).any(near)
+}
 
 fn planes_of(part: &Part) -> Vec<Plane> {
     let mut planes: Vec<Plane> = Vec::new();
