@@ -5,6 +5,7 @@
 
 pub mod catalog;
 mod constants;
+pub mod docking;
 pub mod draw;
 mod error;
 mod expose;
@@ -17,6 +18,7 @@ pub mod regular_file;
 pub mod scene;
 pub mod sensor;
 mod simulator;
+pub mod television;
 pub mod truth;
 pub mod vector;
 mod view;

@@ -40,6 +40,18 @@ pub enum Effect {
     Telegraph = 27,
     /// Hits of cosmic rays.
     CosmicRays = 28,
+    /// Layout of the blankets on a docking target's station (addressed with the target's seed).
+    Blankets = 40,
+    /// Noise of a video signal, pixel by pixel.
+    VideoNoise = 41,
+    /// Phases of the slow drift of a video signal's contrast and brightness.
+    VideoDrift = 42,
+    /// Shift of each line of a field.
+    LineJitter = 43,
+    /// Which lines of a field are lost, and what stands in their place.
+    LostLines = 44,
+    /// Level of each line of a field.
+    LineLevel = 45,
 }
 
 /// The generator behind every draw.
