@@ -1,5 +1,6 @@
 //! The monitoring of a docking approach (Boguslavsky, Sazonov, Sokolov, Smirnov, Saigiraev, ICINCO 2004).
 
 pub mod geometry;
+pub mod model_fit;
 pub mod paper_pose;
 pub mod portions;
