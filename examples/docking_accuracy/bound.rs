@@ -5,6 +5,7 @@
 //! pose are the plate, its marks, the cross with its sides and its post; the station behind stands still. Their brightness is
 //! that of the frame's own light and is known, as is the blur, and does not change with the pose; cast shadows are left out.
 //! So the bound knows more than any estimator can (levels, blur and what lies behind the plate's rim), and is a little too low.
+//! A second bound has no rim: the plate goes on for ever, and marks and cross are all that moves.
 
 use contract::Camera;
 use contract::docking::{Lines, Pose};
@@ -31,19 +32,35 @@ pub(crate) struct Bound {
     pub(crate) angle_rad2: f64,
 }
 
+/// What the bound takes information from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Features {
+    /// Marks, cross and the rim of the plate.
+    All,
+    /// Marks and cross.
+    WithoutRim,
+}
+
+/// How many times larger the plate is made to have no rim in the image.
+const ENDLESS: f64 = 1000.0;
+
 /// The bound of a pose in a scene under a light.
 pub(crate) fn of(
     camera: &Camera,
     scene: &DockingScene,
     lighting: &Lighting,
     pose: &Pose,
+    features: Features,
 ) -> Result<Bound, SimError> {
     let mut drawing = Drawing {
         drawer: Drawer::new(camera)?,
         blur: ImageBlur::new(BLUR_PX),
         image: RadianceImage::default(),
         pose: *pose,
-        scene: lit(scene, lighting),
+        scene: match features {
+            Features::All => lit(scene, lighting),
+            Features::WithoutRim => without_rim(lit(scene, lighting)),
+        },
         light: Lighting {
             sun: None,
             floodlight: None,
@@ -95,6 +112,17 @@ fn lit(scene: &DockingScene, lighting: &Lighting) -> DockingScene {
             sun.irradiance * facet.normal.dot(&sun.towards).max(0.0) / std::f64::consts::PI
         });
         facet.reflectance *= lighting.fill_radiance + sun;
+    }
+    scene
+}
+
+/// The scene with the plate's black face made endless. It is the facet with the marks as holes.
+fn without_rim(mut scene: DockingScene) -> DockingScene {
+    for facet in scene.parts.iter_mut().filter(|part| part.name == "plate").flat_map(|part| &mut part.facets)
+    {
+        if !facet.holes.is_empty() {
+            facet.outer.iter_mut().for_each(|point| *point *= ENDLESS);
+        }
     }
     scene
 }

@@ -17,7 +17,7 @@ use sim::scene::docking::TargetFile;
 use sim::television::{Interlace, TelevisionConfig, VideoNoiseConfig};
 use sim::truth::approach::{ApproachConfig, ConstantVelocityConfig, target_from_camera};
 
-use crate::bound::{self, Bound};
+use crate::bound::{self, Bound, Features};
 
 /// The target.
 const TARGET: &str = "progress";
@@ -131,9 +131,9 @@ impl Case {
     }
 
     /// The Cramér–Rao bound of its pose.
-    pub(crate) fn bound(&self) -> Result<Bound, SimError> {
+    pub(crate) fn bound(&self, features: Features) -> Result<Bound, SimError> {
         let lighting = self.simulator.moment(0)?.lighting;
-        bound::of(&self.camera, self.simulator.scene(), &lighting, &self.pose)
+        bound::of(&self.camera, self.simulator.scene(), &lighting, &self.pose, features)
     }
 
     /// The image's file in its folder.

@@ -18,6 +18,7 @@ use contract::docking::{DockingPipelineFactory, DockingSolution, FieldTelemetry,
 use pipeline::docking::{DockingConfig, DockingFactory};
 use rayon::prelude::*;
 
+use bound::{Bound, Features};
 use frames::{Case, Row};
 use table::{Answer, Line};
 
@@ -53,7 +54,7 @@ struct Measured {
     truth: Pose,
     best: Option<Pose>,
     paper: Option<Pose>,
-    bound: bound::Bound,
+    bounds: [Bound; 2],
 }
 
 fn measure(row: &Row, seed: u64, number: u64, folder: &Path) -> Result<(Case, Measured), String> {
@@ -70,8 +71,9 @@ fn measure(row: &Row, seed: u64, number: u64, folder: &Path) -> Result<(Case, Me
         DockingSolution::Measured(measurement) => (Some(measurement.best.pose), measurement.paper),
         _ => (None, None),
     };
-    let bound = case.bound().map_err(|e| text(&e))?;
-    Ok((case.clone(), Measured { truth: *case.pose(), best, paper, bound }))
+    let bound = |features| case.bound(features).map_err(|e| text(&e));
+    let bounds = [bound(Features::All)?, bound(Features::WithoutRim)?];
+    Ok((case.clone(), Measured { truth: *case.pose(), best, paper, bounds }))
 }
 
 fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>> {
@@ -101,7 +103,13 @@ fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>
             measured.iter().zip(poses).map(|(m, estimate)| Answer { truth: m.truth, estimate }).collect();
         lines.push(Line::of_answers(row.name, "OpenCV", &answers));
     }
-    lines.push(Line::of_bounds(row.name, &measured.iter().map(|m| m.bound).collect::<Vec<_>>()));
+    for (i, name) in [(0, "bound"), (1, "no rim")] {
+        lines.push(Line::of_bounds(
+            row.name,
+            name,
+            &measured.iter().map(|m| m.bounds[i]).collect::<Vec<_>>(),
+        ));
+    }
     Ok(lines)
 }
 

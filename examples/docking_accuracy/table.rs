@@ -12,6 +12,7 @@ use crate::bound::Bound;
 pub(crate) const HEADING: &str = "\
 Errors: range, % of it; lateral, mm (root mean square of d1 and d2, per axis); φ1, φ2, degrees (per axis).
 rms over all answers; p68: the value that 68 % of the absolute errors are below (σ of a normal law, outliers apart).
+bound: Cramér–Rao, plate, marks and cross; no rim: of marks and cross alone.
 row         method  answered       rms: range %  lateral mm  φ1,2 °       p68: range %  lateral mm  φ1,2 °";
 
 /// The truth of a frame, and what a method says.
@@ -47,12 +48,12 @@ impl Line {
         Self { row, method, answered, rms: errors.each_ref().map(|e| rms(e)), p68: Some(errors.map(p68)) }
     }
 
-    pub(crate) fn of_bounds(row: &'static str, bounds: &[Bound]) -> Self {
+    pub(crate) fn of_bounds(row: &'static str, method: &'static str, bounds: &[Bound]) -> Self {
         let mean =
             |of: &dyn Fn(&Bound) -> f64| (bounds.iter().map(of).sum::<f64>() / bounds.len() as f64).sqrt();
         let rms =
             [100.0 * mean(&|b| b.range), 1e3 * mean(&|b| b.lateral_m2), mean(&|b| b.angle_rad2).to_degrees()];
-        Self { row, method: "bound", answered: None, rms, p68: None }
+        Self { row, method, answered: None, rms, p68: None }
     }
 }
 

@@ -7,7 +7,8 @@ range) and the frames, progressive PNG. For every frame: the target is found abo
 (normalised correlation with a drawing of the target), the marks and the arms of the cross are centroids of adaptively
 thresholded blobs, weighted with what stands above the dark plate; then the iterative solvePnP of the 12 mark centres with the
 cross's centre and the centres of its four arms, without RANSAC (which sometimes rejects the stand-off cross), begun at the
-prior. Written to opencv.csv: frame, d1_m, d2_m, d3_m, phi1_rad, phi2_rad, phi3_rad; empty where OpenCV has no answer. The
+prior. A mark whose residual is beyond 3 sigma of the others' (and half a pixel) is cut by a shadow and left out; a pose more than
+10 % of the range off the prior is no answer. Written to opencv.csv: frame, d1_m, d2_m, d3_m, phi1_rad, phi2_rad, phi3_rad; empty where OpenCV has no answer. The
 truth is only read for the errors that are printed.
 """
 
@@ -179,14 +180,24 @@ def measure(image, target, prior):
         if len(points) < 8 or sum(p[2] == 0 for p in points) < 4:
             return None
         rvec, tvec = to_opencv(pose)
-        done, rvec, tvec = cv2.solvePnP(
-            np.array(points), np.array(pixels), target.camera, None, rvec, tvec, useExtrinsicGuess=True, flags=cv2.SOLVEPNP_ITERATIVE
-        )
-        if not done:
-            return None
+        points, pixels = np.array(points), np.array(pixels)
+        use = np.ones(len(points), bool)
+        for _ in range(3):
+            if use.sum() < 8:
+                return None
+            done, rvec, tvec = cv2.solvePnP(
+                points[use], pixels[use], target.camera, None, rvec, tvec, useExtrinsicGuess=True, flags=cv2.SOLVEPNP_ITERATIVE
+            )
+            if not done:
+                return None
+            residuals = np.linalg.norm(target.project(points, from_opencv(rvec, tvec)) - pixels, axis=1)
+            gate = max(0.5, 3 * 1.4826 * np.median(residuals[use]))
+            use = (residuals < gate) | (points[:, 2] > 0)
         pose = estimate = from_opencv(rvec, tvec)
         shift = np.zeros(2)
-    return estimate if np.isfinite(estimate).all() and estimate[2] > 0 else None
+    prior_position = np.asarray(prior[:3])
+    off = np.linalg.norm(estimate[:3] - prior_position)
+    return estimate if np.isfinite(estimate).all() and off < 0.1 * np.linalg.norm(prior_position) else None
 
 
 def main():

@@ -27,6 +27,7 @@ impl Plane {
     }
 
     /// What place of the plane is seen there.
+    #[cfg(test)]
     pub(crate) fn locate(&self, ideal: Vector2<f64>) -> [f64; 2] {
         let (sin, cos) = libm::sincos(self.roll_rad);
         let p = (ideal - self.centre) / self.scale_px_m;
@@ -159,7 +160,7 @@ impl MarkSearch<'_> {
         let step = (0.5 * width).clamp(0.8, 6.0);
         let mut best = (*start, self.contrast(start, &shapes));
         let count = (reach_px / step).ceil().clamp(1.0, 40.0) as i32;
-        let mut consider = |plane: Plane, best: &mut (Plane, f64)| {
+        let consider = |plane: Plane, best: &mut (Plane, f64)| {
             let contrast = self.contrast(&plane, &shapes);
             if contrast > best.1 {
                 *best = (plane, contrast);
