@@ -63,9 +63,9 @@ impl Lens {
             let t = i as f64 / (POINTS - 1) as f64;
             for (across, down) in [(t, 0.0), (t, 1.0), (0.0, t), (1.0, t)] {
                 let offset = self.offset_of([across * width, down * height]);
-                for axis in 0..2 {
-                    reach.low[axis] = reach.low[axis].min(offset[axis] - MARGIN_PX);
-                    reach.high[axis] = reach.high[axis].max(offset[axis] + MARGIN_PX);
+                for (axis, along) in offset.into_iter().enumerate() {
+                    reach.low[axis] = reach.low[axis].min(along - MARGIN_PX);
+                    reach.high[axis] = reach.high[axis].max(along + MARGIN_PX);
                 }
             }
         }
