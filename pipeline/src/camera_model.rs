@@ -58,7 +58,7 @@ impl CameraModel {
         if r.z.is_nan() || r.z <= 0.0 {
             return None;
         }
-        self.from_ideal(self.focal_x_px * (r.x / r.z), self.focal_y_px * (r.y / r.z))
+        self.place_of_ideal(self.focal_x_px * (r.x / r.z), self.focal_y_px * (r.y / r.z))
     }
 
     /// The direction seen at a pixel, h⁻¹; `None` when the distortion has no inverse there.
@@ -80,7 +80,7 @@ impl CameraModel {
     }
 
     /// The inverse of [`CameraModel::to_ideal`]; `None` beyond the fold of the distortion.
-    pub(crate) fn from_ideal(&self, u: f64, v: f64) -> Option<PixelPoint> {
+    pub(crate) fn place_of_ideal(&self, u: f64, v: f64) -> Option<PixelPoint> {
         if u * u + v * v > self.fold_radius_px * self.fold_radius_px {
             return None;
         }

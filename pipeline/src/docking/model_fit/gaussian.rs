@@ -31,7 +31,7 @@ impl Gaussian {
             return (1.0, 0.0);
         }
         // Also what is not a number.
-        if !(z > -LIMIT) {
+        if z.is_nan() || z <= -LIMIT {
             return (0.0, 0.0);
         }
         let k = ((z + LIMIT) * NODES).round();

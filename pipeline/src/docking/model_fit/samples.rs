@@ -225,7 +225,7 @@ impl Samples {
         let (top, bottom) = (from.y.min(to.y) - reach_px, from.y.max(to.y) + reach_px);
         let begin = ((top - first_row) / step).ceil().max(0.0);
         let end = ((bottom - first_row) / step).floor().min(image.rows() as f64 - 1.0);
-        if !(begin <= end) {
+        if begin > end {
             return;
         }
         for row in begin as usize..=end as usize {
@@ -235,7 +235,7 @@ impl Samples {
             let mut span = (0.0, image.columns() as f64 - 1.0);
             narrow(&mut span, -ty, -ty * -from.x + tx * y, -reach_px, reach_px);
             narrow(&mut span, tx, -tx * from.x + ty * y, -reach_px, length + reach_px);
-            if !(span.0 <= span.1) {
+            if span.0 > span.1 {
                 continue;
             }
             for x in span.0.ceil() as usize..=span.1.floor() as usize {
@@ -330,7 +330,7 @@ impl<'a> Search<'a> {
             .filter(|index| {
                 target.marks[*index].iter().any(|[y1, y2]| {
                     at(*y1, *y2, 0.0)
-                        .is_some_and(|(u, v)| search.from_cross_px(u, v) < 2.0 * reach_px + side_px)
+                        .is_some_and(|(u, v)| search.beside_cross_px(u, v) < 2.0 * reach_px + side_px)
                 })
             })
             .collect();
@@ -349,7 +349,7 @@ impl<'a> Search<'a> {
     }
 
     /// Distance from the cross's front face, px, negative inside.
-    fn from_cross_px(&self, u: f64, v: f64) -> f64 {
+    fn beside_cross_px(&self, u: f64, v: f64) -> f64 {
         let cross = &self.target.cross;
         let Some((y1, y2)) = self.view.on_plane(u, v, cross.height_m) else { return f64::INFINITY };
         let bar = |half_1: f64, half_2: f64| {
@@ -361,7 +361,7 @@ impl<'a> Search<'a> {
     }
 
     fn is_near_cross(&self, u: f64, v: f64) -> bool {
-        self.from_cross_px(u, v) < self.reach_px + self.side_px || self.is_near_post(u, v)
+        self.beside_cross_px(u, v) < self.reach_px + self.side_px || self.is_near_post(u, v)
     }
 
     fn is_near_mark(&self, u: f64, v: f64) -> bool {

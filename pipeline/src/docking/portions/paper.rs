@@ -63,6 +63,14 @@ struct Ended {
     normal_attitude: Matrix2<f64>,
 }
 
+/// Stage two: three regressions with one normal matrix.
+struct Attitude {
+    v: [Vector2<f64>; 3],
+    normal: Matrix2<f64>,
+    /// Sum of squares of each.
+    squares: [f64; 3],
+}
+
 /// Portions by the paper's method, one after the other.
 ///
 /// σ_n is as printed: Ψ_n/(3 (K_n − K_{n−1}) − 6) also for n > 1, where Ψ_n has six terms of the prior and so
@@ -94,15 +102,16 @@ impl PaperPortions {
         }
         let prior = self.last.as_ref().map(|last| carried(last, time_s));
         let (z, normal, psi) = self.position(fields, time_s, prior.as_ref())?;
-        let (v, normal_attitude, residuals) = self.attitude(fields, time_s, &z, prior.as_ref())?;
+        let Attitude { v, normal: normal_attitude, squares } =
+            self.attitude(fields, time_s, &z, prior.as_ref())?;
 
         let k = fields.len() as f64;
         let variance = psi / (3.0 * k - 6.0);
         let position_covariance = inverse(&normal)? * variance;
         let spread = inverse(&normal_attitude)?;
         let mut attitude_covariance = Matrix6::zeros();
-        for (i, residual) in residuals.into_iter().enumerate() {
-            let variance = residual / (k - 2.0);
+        for (i, square) in squares.into_iter().enumerate() {
+            let variance = square / (k - 2.0);
             for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 attitude_covariance[(i + 3 * a, i + 3 * b)] = spread[(a, b)] * variance;
             }
@@ -212,14 +221,14 @@ impl PaperPortions {
         Some(Vector6::new(x.x, y.x, z.x, x.y, y.y, z.y))
     }
 
-    /// Stage two: v, the normal matrix of one regression (the same for all three) and the sums of squares.
+    /// Stage two.
     fn attitude(
         &self,
         fields: &[(f64, PaperMeasurement)],
         time_s: f64,
         z: &Vector6<f64>,
         prior: Option<&Ended>,
-    ) -> Option<([Vector2<f64>; 3], Matrix2<f64>, [f64; 3])> {
+    ) -> Option<Attitude> {
         let weight = prior
             .map_or_else(Matrix2::zeros, |prior| prior.normal_attitude * self.config.forgetting_attitude);
         let mut normal = weight;
@@ -248,7 +257,7 @@ impl PaperPortions {
                 *square += residual * residual;
             }
         }
-        Some((v, normal, squares))
+        Some(Attitude { v, normal, squares })
     }
 }
 
