@@ -155,8 +155,13 @@ impl Recognition<'_> {
         reach_px: f64,
         stretch: f64,
     ) -> Result<Sight, NoPose> {
-        let search =
-            MarkSearch { view: self.view, lens: self.lens, shapes: self.shapes, levels: cross.levels };
+        let search = MarkSearch {
+            view: self.view,
+            lens: self.lens,
+            shapes: self.shapes,
+            plate_radius_m: self.model.plate_radius_m,
+            levels: cross.levels,
+        };
         let coarse = search.coarse(start, reach_px, stretch);
         let Some(marks) = search.measure(&coarse) else {
             let outside = self
