@@ -32,8 +32,9 @@ const FIRST_BLUR_PX2: f64 = 0.5;
 /// The first guess may be this far off, px: pixels are looked at so much farther from the edges.
 const SLACK_PX: f64 = 1.5;
 
-/// Coarse stages: variances added to the blur, px². The last has none left.
-const EXTRA_BLUR_PX2: [f64; 3] = [2.5, 0.6, 0.0];
+/// Coarse stages: variances added to the blur, px², and how many of the globals are held. A lateral position that is free too
+/// early tilts the plate to make up for a shift.
+const COARSE: [(f64, usize); 4] = [(4.0, 2), (1.0, 2), (1.0, 0), (0.0, 0)];
 
 /// Pixels are thinned to about this many in the coarse stages.
 const COARSE_SAMPLES: usize = 1500;
@@ -45,13 +46,16 @@ const PIXEL_GATE: f64 = 4.5;
 const PATCH_GATE: f64 = 5.0;
 
 /// … or when more than this part of its pixels is.
-const MOST_REJECTED: f64 = 0.25;
+const MOST_REJECTED: f64 = 0.15;
 
 /// Error of the model that is no reason for a rejection, as a part of the feature's level.
 const MODEL_ERROR: f64 = 0.005;
 
 /// A mark fainter than this part of the median mark is not seen.
 const FAINTEST_MARK: f64 = 0.15;
+
+/// The middle feature's level over the noise below which nothing is seen at all.
+const FAINTEST_LEVEL: f64 = 4.0;
 
 /// Rounds of rejection.
 const ROUNDS: usize = 3;
@@ -134,8 +138,8 @@ impl ModelFit {
         collect(samples, field, &scene, &globals, wide, SLACK_PX)?;
         let stride = samples.pixels.len().div_ceil(COARSE_SAMPLES).min(4);
         let mut noise = 4.0;
-        for extra_blur_px2 in EXTRA_BLUR_PX2 {
-            let search = Search { extra_blur_px2, free: POSE, stride, steps: 6, decrement: 1e-2 };
+        for (extra_blur_px2, held) in COARSE {
+            let search = Search { extra_blur_px2, free: held..POSE, stride, steps: 6, decrement: 1.0 };
             noise = solve(&scene, samples, &mut globals, &search, noise)
                 .ok_or(NoPose::TooFewFeatures)?
                 .variance();
@@ -143,7 +147,7 @@ impl ModelFit {
 
         let blur = Blur { x: globals[BLUR], y: globals[BLUR + 1] };
         collect(samples, field, &scene, &globals, blur, 0.0)?;
-        let search = Search { extra_blur_px2: 0.0, free: GLOBALS, stride: 1, steps: 12, decrement: 1e-4 };
+        let search = Search { extra_blur_px2: 0.0, free: 0..GLOBALS, stride: 1, steps: 12, decrement: 1e-3 };
         let mut evaluation =
             solve(&scene, samples, &mut globals, &search, noise).ok_or(NoPose::TooFewFeatures)?;
         for _ in 0..ROUNDS {
@@ -214,7 +218,8 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
             Feature::Mark(_) => level > FAINTEST_MARK * usual_mark && level > 0.0,
             Feature::Cross => level > 0.0,
         };
-        let is_used = is_like_the_others && is_seen;
+        // Pixels that were rejected make the rest look well: what was rejected once must be clean to come back.
+        let is_used = is_like_the_others && is_seen && (patch.is_used || used == all);
         is_changed |= is_used != patch.is_used;
         patch.is_used = is_used;
     }
@@ -234,6 +239,11 @@ fn judge(
         return Err(NoPose::Inconsistent);
     }
     let variance = evaluation.variance();
+    let mut levels: Vec<f64> =
+        samples.patches.iter().filter(|patch| patch.is_used).map(|p| p.levels[samples::LOCALS - 1]).collect();
+    if median(&mut levels).is_none_or(|level| level < FAINTEST_LEVEL * variance.sqrt()) {
+        return Err(too_few(samples));
+    }
     let covariance = inverse(&evaluation.information).ok_or_else(|| too_few(samples))? * variance;
     let covariance: Matrix6<f64> = covariance.fixed_view::<POSE, POSE>(0, 0).into();
     let pose = to_pose(globals);

@@ -1,5 +1,7 @@
 //! Least squares with levels of its own for each patch: the levels are eliminated patch by patch.
 
+use std::ops::Range;
+
 use nalgebra::{SMatrix, SVector};
 
 use super::coverage::{Coverage, CrossImage, MarkImage};
@@ -32,15 +34,17 @@ const PATCH_UNIT_PX: f64 = 10.0;
 /// Columns of a row of the equations: DN, plate, two slopes, beyond the rim, coverage; then derivatives of the coverage.
 const ROW: usize = 1 + LOCALS + GLOBALS;
 const COVERAGE: usize = LOCALS;
+/// A row without the derivatives by the side faces, which most pixels do not show.
+const SHORT_ROW: usize = 1 + LOCALS + SIDES;
 const FIRST_GLOBAL: usize = 1 + LOCALS;
 
 /// How a solution is looked for.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Search {
     /// Added to the blur's variances: a blurred model finds its way from farther off.
     pub(super) extra_blur_px2: f64,
-    /// The globals before this one are free.
-    pub(super) free: usize,
+    /// The globals that are free.
+    pub(super) free: Range<usize>,
     /// Every how many pixels is looked at.
     pub(super) stride: usize,
     pub(super) steps: usize,
@@ -108,7 +112,7 @@ pub(super) fn solve(
 ) -> Option<Evaluation> {
     let mut images = Images::new(scene, globals, search.extra_blur_px2)?;
     let mut now = evaluate(scene, samples, &images, globals, search, noise)?;
-    let mut damping = 0.0;
+    let (mut damping, mut is_last_better) = (0.0, true);
     for _ in 0..search.steps {
         let mut damped = now.information;
         for i in 0..GLOBALS {
@@ -116,6 +120,9 @@ pub(super) fn solve(
         }
         let mut step = inverse(&damped)? * now.gradient;
         let promised = step.dot(&now.gradient);
+        if promised <= search.decrement * now.variance() {
+            break;
+        }
         let shift = images.shift(&step.into());
         if !shift.is_finite() {
             return None;
@@ -127,6 +134,7 @@ pub(super) fn solve(
         let trial_images = Images::new(scene, &trial, search.extra_blur_px2)?;
         let next = evaluate(scene, samples, &trial_images, &trial, search, noise)?;
         let is_better = next.objective <= now.objective * (1.0 + 1e-9);
+        is_last_better = is_better;
         if is_better {
             *globals = trial;
             images = trial_images;
@@ -135,14 +143,13 @@ pub(super) fn solve(
         } else {
             damping = (damping * 10.0f64).max(1e-3);
         }
-        let is_small = promised <= search.decrement * now.variance();
-        if is_small || damping > 1e6 {
-            if !is_better {
-                // The samples hold the rejected trial's coverages.
-                evaluate(scene, samples, &images, globals, search, noise)?;
-            }
+        if !is_better && damping > 1e6 {
             break;
         }
+    }
+    if !is_last_better {
+        // The samples hold a rejected trial's coverages.
+        evaluate(scene, samples, &images, globals, search, noise)?;
     }
     Some(now)
 }
@@ -196,17 +203,16 @@ fn evaluate(
             row[0] = pixel.dn - origin;
             row[1..=LOCALS].copy_from_slice(&[one, across, down, rim, covered]);
             row[FIRST_GLOBAL..].copy_from_slice(&coverage.by);
-            for (i, line) in gram.iter_mut().enumerate() {
-                let factor = row[i];
-                for (sum, other) in line[i..].iter_mut().zip(&row[i..]) {
-                    *sum += factor * other;
-                }
+            if row[SHORT_ROW..].iter().all(|by_side| *by_side == 0.0) {
+                accumulate::<SHORT_ROW>(&mut gram, &row);
+            } else {
+                accumulate::<ROW>(&mut gram, &row);
             }
         }
         fold(patch, &gram, origin, &mut sum);
     }
     for i in 0..GLOBALS {
-        if i >= search.free {
+        if !search.free.contains(&i) {
             // Not free: no step, and no coupling.
             sum.information.row_mut(i).fill(0.0);
             sum.information.column_mut(i).fill(0.0);
@@ -222,6 +228,17 @@ fn evaluate(
         }
     }
     Some(sum)
+}
+
+/// Adds the products of the first N columns of a row, the upper triangle and a little of the lower: from an even column on, so
+/// that the sums go in pairs.
+fn accumulate<const N: usize>(gram: &mut [[f64; ROW]; ROW], row: &[f64; ROW]) {
+    for i in 0..N {
+        let factor = row[i];
+        for j in (i & !1)..N {
+            gram[i][j] += factor * row[j];
+        }
+    }
 }
 
 /// The regressors of a pixel's levels, after a place for its DN.
@@ -258,7 +275,14 @@ fn fold(patch: &mut Patch, gram: &[[f64; ROW]; ROW], origin: f64, sum: &mut Eval
     if !patch.is_used {
         return;
     }
+    sum.objective += patch.squares;
+    sum.squares += patch.squares;
+    sum.freedom += patch.used_samples as f64 - LOCALS as f64;
     let feature = levels[COVERAGE - 1];
+    if feature <= 0.0 {
+        // Darker than the plate: whatever this is, the feature is not where the patch was looked for.
+        return;
+    }
     let mixed = SMatrix::<f64, LOCALS, GLOBALS>::from_fn(|i, j| gram[1 + i][FIRST_GLOBAL + j]);
     let eliminated = mixed.transpose() * normal * mixed;
     for i in 0..GLOBALS {
@@ -274,7 +298,4 @@ fn fold(patch: &mut Patch, gram: &[[f64; ROW]; ROW], origin: f64, sum: &mut Eval
     for i in 0..GLOBALS {
         sum.gradient[i] += feature * (gram[0][FIRST_GLOBAL + i] - residual[i]);
     }
-    sum.objective += patch.squares;
-    sum.squares += patch.squares;
-    sum.freedom += patch.used_samples as f64 - LOCALS as f64;
 }

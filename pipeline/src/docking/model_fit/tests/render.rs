@@ -1,4 +1,4 @@
-//! Images of the target by another route than the model's: polygons on 256 scan lines a pixel, exact along a line, on cells of a
+//! Images of the target by another route than the model's: polygons on 128 scan lines a pixel, exact along a line, on cells of a
 //! quarter of a pixel; then discrete Gaussians and a pixel's box over the cells; then noise and rounding.
 
 use contract::docking::{Field, Lines, Pose, StandOffCross, TargetModel};
@@ -9,8 +9,8 @@ use crate::docking::portions::tests::normal;
 
 /// Cells a pixel, along either axis.
 const CELLS: usize = 4;
-/// Scan lines a cell. Exactly horizontal edges are off by 1/512 px at most.
-const LINES: usize = 64;
+/// Scan lines a cell. Exactly horizontal edges are off by 1/256 px at most.
+const LINES: usize = 32;
 /// Pixels around the plate that are drawn.
 const MARGIN: i64 = 8;
 
@@ -80,9 +80,9 @@ pub(super) fn target() -> TargetModel {
 
 /// The expected DN of every pixel of the camera, row by row, without noise.
 pub(super) fn expected(camera: &Camera, target: &TargetModel, look: &Look, pose: &Pose) -> Vec<f64> {
-    let plate: Vec<[f64; 2]> = (0..720)
+    let plate: Vec<[f64; 2]> = (0..96)
         .map(|k| {
-            let (s, c) = libm::sincos(f64::from(k) * std::f64::consts::TAU / 720.0);
+            let (s, c) = libm::sincos(f64::from(k) * std::f64::consts::TAU / 96.0);
             [target.plate_radius_m * c, target.plate_radius_m * s]
         })
         .collect();
