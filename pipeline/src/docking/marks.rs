@@ -53,8 +53,7 @@ impl Plane {
         }
         let (p, q) = (p / square, q / square);
         let scale_px_m = libm::hypot(p, q);
-        let centre = mean_p
-            - Vector2::new(p * mean_y.x + q * mean_y.y, q * mean_y.x - p * mean_y.y);
+        let centre = mean_p - Vector2::new(p * mean_y.x + q * mean_y.y, q * mean_y.x - p * mean_y.y);
         (scale_px_m > 0.0).then_some(Self { centre, scale_px_m, roll_rad: libm::atan2(q, p) })
     }
 }
@@ -280,7 +279,8 @@ impl MarkSearch<'_> {
         let pad_m = (3.0 * BLUR_PX * to_m).max(0.6 * shape.half_width_m);
         let to_rim_m = self.plate_radius_m - shape.radius_m() - shape.half_length_m;
         let pad_along_m = pad_m.min((0.5 * to_rim_m).max(1.2 * to_m));
-        let (reach_along, reach_across) = (shape.half_length_m + pad_along_m, shape.half_width_m + pad_m + to_m);
+        let (reach_along, reach_across) =
+            (shape.half_length_m + pad_along_m, shape.half_width_m + pad_m + to_m);
         let middle = self.lens.to_camera(plane.place(shape.centre_m))?;
         let reach_px = libm::hypot(reach_along, reach_across) * plane.scale_px_m + 1.0;
         let columns = span(middle.x - reach_px, middle.x + reach_px, self.view.columns());
@@ -325,8 +325,7 @@ impl MarkSearch<'_> {
             sum_y += weight * (y - middle.y);
         }
         let area_px = sum * self.view.step() * stride as f64 / self.levels.contrast();
-        let nominal_px =
-            4.0 * shape.half_length_m * shape.half_width_m * plane.scale_px_m * plane.scale_px_m;
+        let nominal_px = 4.0 * shape.half_length_m * shape.half_width_m * plane.scale_px_m * plane.scale_px_m;
         let height = area_px / nominal_px;
         (height > 0.15).then(|| (PixelPoint::new(middle.x + sum_x / sum, middle.y + sum_y / sum), height))
     }
@@ -345,8 +344,8 @@ impl MarkSearch<'_> {
             let plane = Plane::fit(&pairs)?;
             let mut errors: Vec<f64> = pairs.iter().map(|(y, p)| (plane.place(*y) - p).norm()).collect();
             errors.sort_by(f64::total_cmp);
-            let mark_radius_px = plane.scale_px_m
-                * self.shapes.iter().map(MarkShape::radius_m).fold(0.0, f64::max);
+            let mark_radius_px =
+                plane.scale_px_m * self.shapes.iter().map(MarkShape::radius_m).fold(0.0, f64::max);
             // A tilt of ten degrees moves marks by 0.8 % of the radius from where a plane seen head on has them.
             let limit = (0.5 + 0.012 * mark_radius_px).max(3.0 * errors[errors.len() / 2]);
             let error = |m: &SeenMark| {
@@ -422,7 +421,8 @@ mod tests {
         let field = scene.field(lines);
         let shapes = shapes(&synthetic::target());
         let (view, lens) = (View::new(&field), synthetic::lens());
-        let search = MarkSearch { view: &view, lens: &lens, shapes: &shapes, plate_radius_m: 0.30, levels: LEVELS };
+        let search =
+            MarkSearch { view: &view, lens: &lens, shapes: &shapes, plate_radius_m: 0.30, levels: LEVELS };
         let truth = scene.plane();
         let radius = 0.25 * truth.scale_px_m;
         let start = Plane {

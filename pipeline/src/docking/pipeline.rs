@@ -245,9 +245,12 @@ fn check_target(target: &TargetModel) -> Result<(), PipelineError> {
     require("target.mark_circle_radius_m", target.mark_circle_radius_m, "greater than 0", positive)?;
     require("target.cross.height_m", target.cross.height_m, "greater than 0", positive)?;
     require("target.cross.half_length_m", target.cross.half_length_m, "greater than 0", positive)?;
-    require("target.cross.width_m", target.cross.width_m, "greater than 0, less than the half length", |v| {
-        v > 0.0 && v < target.cross.half_length_m
-    })?;
+    require(
+        "target.cross.width_m",
+        target.cross.width_m,
+        "greater than 0, less than the half length",
+        |v| v > 0.0 && v < target.cross.half_length_m,
+    )?;
     require("target.marks (their number)", target.marks.len() as f64, "5 to 1000", |v| {
         (5.0..=1000.0).contains(&v)
     })?;
@@ -283,7 +286,11 @@ fn outline_range(
     let Some(outline) = contour::find(overview, lens) else {
         // The thousandths hold a small target before an empty sky; a field is empty when they hold nothing.
         let range = whole.quantile(0.999) - whole.quantile(0.01);
-        return Err(if reason == NoPose::NoTarget && range < EMPTY_RANGE { NoPose::EmptyField } else { reason });
+        return Err(if reason == NoPose::NoTarget && range < EMPTY_RANGE {
+            NoPose::EmptyField
+        } else {
+            reason
+        });
     };
     let circle = camera_circle(lens, outline.circle.centre, outline.circle.radius);
     if let Some((centre, radius_px)) = circle {
@@ -314,10 +321,8 @@ fn camera_circle(lens: &Lens, centre: Vector2<f64>, radius: f64) -> Option<(Pixe
         })
         .collect::<Option<_>>()?;
     let n = POINTS as f64;
-    let middle = PixelPoint::new(
-        rim.iter().map(|p| p.x).sum::<f64>() / n,
-        rim.iter().map(|p| p.y).sum::<f64>() / n,
-    );
+    let middle =
+        PixelPoint::new(rim.iter().map(|p| p.x).sum::<f64>() / n, rim.iter().map(|p| p.y).sum::<f64>() / n);
     Some((middle, rim.iter().map(|p| p.distance(middle)).sum::<f64>() / n))
 }
 
@@ -481,9 +486,7 @@ mod tests {
         let mut pipeline = docking();
         let field = Scene::default().field(Lines::Even);
         let reports: Vec<bool> = (0..20)
-            .map(|i| {
-                pipeline.process(&field, &synthetic::telemetry(0.02 * f64::from(i))).motion.is_some()
-            })
+            .map(|i| pipeline.process(&field, &synthetic::telemetry(0.02 * f64::from(i))).motion.is_some())
             .collect();
         assert_eq!(reports.iter().filter(|r| **r).count(), 2);
         assert!(reports[9] && reports[19]);

@@ -98,11 +98,7 @@ impl Default for Scene {
 
 impl Scene {
     pub(crate) fn plane(&self) -> Plane {
-        Plane {
-            centre: self.disk_px,
-            scale_px_m: lens().focal_px() / self.range_m,
-            roll_rad: self.roll_rad,
-        }
+        Plane { centre: self.disk_px, scale_px_m: lens().focal_px() / self.range_m, roll_rad: self.roll_rad }
     }
 
     pub(crate) fn cross(&self) -> CrossSeed {
@@ -215,8 +211,7 @@ pub(crate) fn plain(dn: Vec<u16>, lines: Lines) -> Field {
 
 /// A field of a grey value a pixel.
 pub(crate) fn drawn(lines: Lines, grey: impl Fn(usize, usize) -> u16) -> Field {
-    let dn = (0..lines.rows(ROWS) * COLUMNS)
-        .map(|i| grey(i % COLUMNS, lines.camera_row(i / COLUMNS)))
-        .collect();
+    let dn =
+        (0..lines.rows(ROWS) * COLUMNS).map(|i| grey(i % COLUMNS, lines.camera_row(i / COLUMNS))).collect();
     plain(dn, lines)
 }
