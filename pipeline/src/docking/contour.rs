@@ -80,7 +80,7 @@ fn tolerance(radius: f64) -> f64 {
 /// best is refined on its points. Panels and antennas bring as many points as the body; only the body's are on one
 /// circle.
 fn most_agreed(points: &[Vector2<f64>], size: f64) -> Option<CircleFit> {
-    const TRIPLES: usize = 120;
+    const TRIPLES: usize = 200;
     let n = points.len();
     if n < 12 {
         return None;
@@ -92,9 +92,9 @@ fn most_agreed(points: &[Vector2<f64>], size: f64) -> Option<CircleFit> {
     };
     let mut best: Option<(usize, CircleFit)> = None;
     for i in 0..TRIPLES {
-        // Low-discrepancy triples: golden-ratio steps along the contour, a quarter to a half apart.
+        // Low-discrepancy triples: golden-ratio steps along the contour, near and far apart.
         let start = (i as f64 * 0.618_033_988_749_895).fract();
-        let spread = 0.12 + 0.2 * (i as f64 * 0.754_877_666_246_693).fract();
+        let spread = 0.04 + 0.30 * (i as f64 * 0.754_877_666_246_693).fract();
         let pick = |share: f64| points[((share.fract() * n as f64) as usize).min(n - 1)];
         let triple = [pick(start), pick(start + spread), pick(start + 2.0 * spread)];
         let Some(fit) = circle::first_guess(&triple) else { continue };

@@ -143,6 +143,7 @@ pub(crate) struct MarkSearch<'a> {
     pub(crate) view: &'a View<'a>,
     pub(crate) lens: &'a Lens,
     pub(crate) shapes: &'a [MarkShape],
+    pub(crate) plate_radius_m: f64,
     pub(crate) levels: Levels,
 }
 
@@ -273,9 +274,13 @@ impl MarkSearch<'_> {
     /// `None` when there is next to nothing.
     fn centroid(&self, plane: &Plane, shape: &MarkShape) -> Option<(PixelPoint, f64)> {
         let to_m = 1.0 / plane.scale_px_m;
-        // Wide enough for the blur and for an error of the prediction, short of anything else on the plate.
+        // Wide enough for the blur and for an error of the prediction; along the mark, short of the plate's rim, whose
+        // bright surroundings would pull the centroid outwards.
         let pad_m = (3.0 * BLUR_PX * to_m).max(0.6 * shape.half_width_m);
-        let (reach_along, reach_across) = (shape.half_length_m + pad_m, shape.half_width_m + pad_m + to_m);
+        let to_rim_m = self.plate_radius_m - shape.radius_m() - shape.half_length_m;
+        let pad_along_m = pad_m.min((0.5 * to_rim_m).max(1.2 * to_m));
+        let (reach_along, reach_across) =
+            (shape.half_length_m + pad_along_m, shape.half_width_m + pad_m + to_m);
         let middle = self.lens.to_camera(plane.place(shape.centre_m))?;
         let reach_px = libm::hypot(reach_along, reach_across) * plane.scale_px_m + 1.0;
         let columns = span(middle.x - reach_px, middle.x + reach_px, self.view.columns());
@@ -302,9 +307,7 @@ impl MarkSearch<'_> {
                 }
                 let grey = self.view.at(column, row);
                 inside.push((column as f64, y, grey));
-                if along > shape.half_length_m + 1.8 * BLUR_PX * to_m
-                    || across > shape.half_width_m + 1.8 * BLUR_PX * to_m
-                {
+                if across > shape.half_width_m + 1.8 * BLUR_PX * to_m {
                     beside.push(grey);
                 }
             }
@@ -314,12 +317,9 @@ impl MarkSearch<'_> {
         }
         beside.sort_by(f64::total_cmp);
         let background = beside[beside.len() / 2];
-        let spread = beside[beside.len() * 84 / 100] - background;
-        // Noise that is clipped at zero would pull the centroid to the middle of the window.
-        let floor = background + 2.0 * spread.min(0.1 * self.levels.contrast());
         let (mut sum, mut sum_x, mut sum_y) = (0.0, 0.0, 0.0);
         for (x, y, grey) in &inside {
-            let weight = if *grey > floor { grey - background } else { 0.0 };
+            let weight = grey - background;
             sum += weight;
             sum_x += weight * (x - middle.x);
             sum_y += weight * (y - middle.y);
@@ -421,7 +421,8 @@ mod tests {
         let field = scene.field(lines);
         let shapes = shapes(&synthetic::target());
         let (view, lens) = (View::new(&field), synthetic::lens());
-        let search = MarkSearch { view: &view, lens: &lens, shapes: &shapes, levels: LEVELS };
+        let search =
+            MarkSearch { view: &view, lens: &lens, shapes: &shapes, plate_radius_m: 0.30, levels: LEVELS };
         let truth = scene.plane();
         let radius = 0.25 * truth.scale_px_m;
         let start = Plane {

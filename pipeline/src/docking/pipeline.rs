@@ -309,7 +309,7 @@ fn outline_range(
 }
 
 /// Radius of the circle of the marks above which a target that is not found is missing, px.
-const RESOLVED_CIRCLE_PX: f64 = 30.0;
+const RESOLVED_CIRCLE_PX: f64 = 15.0;
 
 /// Centre and mean radius, in the camera's pixels, of a circle of the ideal image.
 fn camera_circle(lens: &Lens, centre: Vector2<f64>, radius: f64) -> Option<(PixelPoint, f64)> {

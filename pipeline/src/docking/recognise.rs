@@ -151,6 +151,13 @@ impl Recognition<'_> {
     fn complete(&self, cross: CrossFit, start: &Plane, reach_px: f64, stretch: f64) -> Result<Sight, NoPose> {
         let search =
             MarkSearch { view: self.view, lens: self.lens, shapes: self.shapes, levels: cross.levels };
+        let search = MarkSearch {
+            view: self.view,
+            lens: self.lens,
+            shapes: self.shapes,
+            plate_radius_m: self.model.plate_radius_m,
+            levels: cross.levels,
+        };
         let coarse = search.coarse(start, reach_px, stretch);
         let Some(marks) = search.measure(&coarse) else {
             let outside = self
