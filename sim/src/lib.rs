@@ -8,6 +8,7 @@ mod constants;
 pub mod draw;
 mod error;
 mod expose;
+pub mod mitsuba;
 mod moment;
 pub mod onboard;
 pub mod optics;
