@@ -40,6 +40,8 @@ pub enum Effect {
     Telegraph = 27,
     /// Hits of cosmic rays.
     CosmicRays = 28,
+    /// Layout of the blankets on a docking target's station (addressed with the target's seed).
+    Blankets = 40,
 }
 
 /// The generator behind every draw.
