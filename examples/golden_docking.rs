@@ -24,8 +24,7 @@ fn main() -> Result<(), MitsubaError> {
         }
         let settings = Settings { samples: cases.samples, crop: Some(case.crop(&cases)) };
         let renderer = MitsubaRenderer::new(MitsubaOptions { settings, ..MitsubaOptions::default() })?;
-        let image =
-            renderer.radiance(&scene, &case.lighting(&cases), &case.pose(), &case.camera(&cases))?;
+        let image = renderer.radiance(&scene, &case.lighting(&cases), &case.pose(), &case.camera(&cases))?;
         let path = folder.join(&case.name).with_extension("exr");
         // No writer replaces a file; this program is asked for nothing else.
         let _ = std::fs::remove_file(&path);

@@ -53,7 +53,12 @@ struct Pair<'a> {
 }
 
 impl<'a> Pair<'a> {
-    fn of(case: &'a Case, cases: &Cases, scene: &sim::scene::docking::DockingScene, model: &TargetModel) -> Self {
+    fn of(
+        case: &'a Case,
+        cases: &Cases,
+        scene: &sim::scene::docking::DockingScene,
+        model: &TargetModel,
+    ) -> Self {
         let (camera, pose, crop) = (case.camera(cases), case.pose(), case.crop(cases));
         let mut whole = RadianceImage::default();
         Drawer::new(&camera).unwrap().draw(scene, &case.lighting(cases), &pose, &mut whole);
@@ -107,7 +112,8 @@ impl<'a> Pair<'a> {
     /// rather across than along it.
     fn edge(&self, at: usize, step: usize, across: usize, (x, y): (f64, f64)) -> Option<Edge> {
         let value = |image: &RadianceImage, at: usize| f64::from(image.radiance[at]);
-        let slope = |at: usize, step: usize| value(&self.mitsuba, at + step) - value(&self.mitsuba, at - step);
+        let slope =
+            |at: usize, step: usize| value(&self.mitsuba, at + step) - value(&self.mitsuba, at - step);
         let (along, aside) = (slope(at, step), slope(at, across));
         if along.abs() < LEAST_STEP / 4.0 || aside.abs() > along.abs() {
             return None;
@@ -198,8 +204,7 @@ fn distance(point: PixelPoint, p: PixelPoint, q: PixelPoint) -> f64 {
 fn inside(point: PixelPoint, polygon: &[PixelPoint]) -> bool {
     let next = polygon.iter().cycle().skip(1);
     let crossings = polygon.iter().zip(next).filter(|(p, q)| {
-        (p.y > point.y) != (q.y > point.y)
-            && point.x < (q.x - p.x) * (point.y - p.y) / (q.y - p.y) + p.x
+        (p.y > point.y) != (q.y > point.y) && point.x < (q.x - p.x) * (point.y - p.y) / (q.y - p.y) + p.x
     });
     crossings.count() % 2 == 1
 }

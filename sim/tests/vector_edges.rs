@@ -8,8 +8,8 @@
 mod vector_scene;
 
 use boresight_sim::vector::RadianceImage;
-use contract::docking::Pose;
 use contract::Camera;
+use contract::docking::Pose;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -117,7 +117,8 @@ fn centre_and_radius_of_a_circle_are_those_of_its_moments() {
     );
     let (flux, centroid) = moments(&image, [0, 768], [0, 576]);
     // A polygon of n sides has n/(2π) sin(2π/n) of the circle's area.
-    let share = sides as f64 / (2.0 * std::f64::consts::PI) * libm::sin(2.0 * std::f64::consts::PI / sides as f64);
+    let share =
+        sides as f64 / (2.0 * std::f64::consts::PI) * libm::sin(2.0 * std::f64::consts::PI / sides as f64);
     let radius = (flux / share / std::f64::consts::PI).sqrt();
     assert!((radius - 1055.0 * 0.3 / 5.0).abs() < 1e-4, "{radius}");
     assert!((centroid[0] - (383.5 - 1055.0 * d[0] / d[2])).abs() < 1e-4, "{centroid:?}");
@@ -171,7 +172,8 @@ fn a_part_in_many_facets_is_the_part_in_one() {
 fn a_hole_shows_what_lies_behind() {
     let camera = camera(1055.0);
     let mut ring = flat(&circle([0.0, 0.0], 0.6, 64), 0.0, 1.0);
-    ring.holes.push(circle([0.0, 0.0], 0.4, 64).iter().rev().map(|[x, y]| Vector3::new(*x, *y, 0.0)).collect());
+    ring.holes
+        .push(circle([0.0, 0.0], 0.4, 64).iter().rev().map(|[x, y]| Vector3::new(*x, *y, 0.0)).collect());
     let behind = flat(&[[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]], -1.0, 0.25);
     let scene = scene(vec![part("behind", vec![behind]), part("ring", vec![ring])]);
     let image = draw(&camera, &scene, &plain(), &pose([0.0, 0.0, 4.0], [0.0; 3]));

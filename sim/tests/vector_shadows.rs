@@ -12,7 +12,9 @@ use std::f64::consts::PI;
 use boresight_sim::scene::docking::{Facet, Floodlight, Lighting};
 use contract::Camera;
 use nalgebra::Vector3;
-use vector_scene::{camera, circle, cross, draw, flat, moments, part, plain, pose, prism, scene, seen, sunlit};
+use vector_scene::{
+    camera, circle, cross, draw, flat, moments, part, plain, pose, prism, scene, seen, sunlit,
+};
 
 fn sheet(half: f64, height: f64, reflectance: f64) -> Facet {
     flat(&[[-half, -half], [half, -half], [half, half], [-half, half]], height, reflectance)
@@ -53,8 +55,7 @@ fn the_shadow_of_the_cross_lies_where_the_sun_puts_it() {
     let sun = Vector3::new(0.4, -0.3, 0.8).normalize();
     let (flux, centroid) = lost(vec![flat(&cross(0.15, 0.03), 0.3, 0.8)], &camera, &sunlit([0.4, -0.3, 0.8]));
     let shift = [-0.3 * sun.x / sun.z, -0.3 * sun.y / sun.z];
-    let shadow: Vec<[f64; 2]> =
-        cross(0.15, 0.03).iter().map(|[x, y]| [x + shift[0], y + shift[1]]).collect();
+    let shadow: Vec<[f64; 2]> = cross(0.15, 0.03).iter().map(|[x, y]| [x + shift[0], y + shift[1]]).collect();
     let expected = closed_form(&camera, &shadow, sun.z);
     // Asked for: 0.02 px. The shadow is drawn by the same exact areas as an outline.
     for axis in 0..2 {
@@ -94,7 +95,11 @@ fn the_cross_casts_on_the_plate_and_on_the_marks() {
     let view = pose([0.0, 0.0, 3.0], [0.0; 3]);
     let mark = |centre: [f64; 2]| {
         let (x, y) = (centre[0], centre[1]);
-        flat(&[[x - 0.02, y - 0.02], [x + 0.02, y - 0.02], [x + 0.02, y + 0.02], [x - 0.02, y + 0.02]], 0.0, 0.8)
+        flat(
+            &[[x - 0.02, y - 0.02], [x + 0.02, y - 0.02], [x + 0.02, y + 0.02], [x - 0.02, y + 0.02]],
+            0.0,
+            0.8,
+        )
     };
     let mut marks = part("marks", vec![mark([-0.3, 0.0]), mark([0.3, 0.0])]);
     marks.casts_shadow = false;
@@ -160,7 +165,12 @@ fn a_lamp_lights_by_distance_cosine_and_its_cone() {
     for radial in [0.0, -2e-7] {
         let camera = Camera { radial: [radial, 0.0, 0.0], ..camera(1055.0) };
         let view = pose([0.0, 0.0, 3.0], [0.0; 3]);
-        let image = draw(&camera, &scene(vec![part("wall", vec![sheet(9.0, 0.0, 0.5)])]), &lamp([0.3, 0.0, 3.0]), &view);
+        let image = draw(
+            &camera,
+            &scene(vec![part("wall", vec![sheet(9.0, 0.0, 0.5)])]),
+            &lamp([0.3, 0.0, 3.0]),
+            &view,
+        );
         for (row, column) in [(288, 384), (288, 500), (200, 450), (100, 490), (288, 100), (500, 650)] {
             let distorted = [column as f64 - 383.5, row as f64 - 287.5];
             let mut offset = distorted;

@@ -13,18 +13,18 @@ use sim::scene::docking::{Floodlight, Lighting, Sun, TargetFile};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Cases {
-    pub samples: u32,
+pub(crate) struct Cases {
+    pub(crate) samples: u32,
     light: Light,
     lamp: Lamp,
     camera: BTreeMap<String, Lens>,
-    pub case: Vec<Case>,
+    pub(crate) case: Vec<Case>,
 }
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Case {
-    pub name: String,
+pub(crate) struct Case {
+    pub(crate) name: String,
     camera: String,
     d_m: [f64; 3],
     phi_deg: [f64; 3],
@@ -32,6 +32,8 @@ pub struct Case {
     #[serde(default)]
     lamp: bool,
     crop_m: f64,
+    #[serde(default)]
+    crop_centre_m: [f64; 2],
 }
 
 #[derive(Debug, Deserialize)]
@@ -59,23 +61,24 @@ struct Lens {
 }
 
 /// golden/docking.
-pub fn folder() -> PathBuf {
+pub(crate) fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/docking")
 }
 
 /// The cases, and the target that they are of.
-pub fn load() -> (Cases, TargetFile) {
+pub(crate) fn load() -> (Cases, TargetFile) {
     let read = |name: &str| fs::read_to_string(folder().join(name)).unwrap();
     (toml::from_str(&read("cases.toml")).unwrap(), toml::from_str(&read("target.toml")).unwrap())
 }
 
 /// The matrix A: from the camera's axes to the target frame.
-pub fn target_from_camera(pose: &Pose) -> Matrix3<f64> {
-    Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * Rotation3::from_scaled_axis(pose.phi_rad).matrix()
+pub(crate) fn target_from_camera(pose: &Pose) -> Matrix3<f64> {
+    Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))
+        * Rotation3::from_scaled_axis(pose.phi_rad).matrix()
 }
 
 impl Case {
-    pub fn camera(&self, cases: &Cases) -> Camera {
+    pub(crate) fn camera(&self, cases: &Cases) -> Camera {
         let lens = &cases.camera[&self.camera];
         Camera {
             columns: 768,
@@ -90,12 +93,12 @@ impl Case {
         }
     }
 
-    pub fn pose(&self) -> Pose {
+    pub(crate) fn pose(&self) -> Pose {
         let phi_rad = Vector3::from(self.phi_deg.map(f64::to_radians));
         Pose { position_m: Vector3::from(self.d_m), phi_rad }
     }
 
-    pub fn lighting(&self, cases: &Cases) -> Lighting {
+    pub(crate) fn lighting(&self, cases: &Cases) -> Lighting {
         let sun = self.sun_deg.map(|angles_deg| {
             let [(sin_e, cos_e), (sin_a, cos_a)] = angles_deg.map(|deg| libm::sincos(deg.to_radians()));
             Sun {
@@ -118,11 +121,13 @@ impl Case {
         Lighting { sun, floodlight, fill_radiance, sky_radiance }
     }
 
-    /// A square about the image of the disk's centre, as much of it as is in the image.
-    pub fn crop(&self, cases: &Cases) -> Crop {
+    /// A square about the image of a point of the disk, as much of it as is in the image.
+    pub(crate) fn crop(&self, cases: &Cases) -> Crop {
         let (camera, pose) = (self.camera(cases), self.pose());
         let (focal_px, _) = camera.focal_length_px();
-        let centre = target_from_camera(&pose).transpose() * -pose.position_m;
+        let [y1, y2] = self.crop_centre_m;
+        let point = Vector3::new(y1, y2, 0.0);
+        let centre = target_from_camera(&pose).transpose() * (point - pose.position_m);
         let half_px = focal_px * self.crop_m / centre.z;
         let span = |middle: f64, side: usize| {
             let low = (middle - half_px).round().max(0.0) as usize;

@@ -2,12 +2,21 @@
 
 use std::collections::BTreeMap;
 
+use contract::docking::Pose;
 use earcut::Earcut;
 use nalgebra::Vector3;
 
+use super::Layer;
 use crate::SimError;
 use crate::error::require;
-use crate::scene::docking::{DockingScene, Facet, Part};
+use crate::scene::docking::{DockingScene, Facet, Part, Sun};
+
+/// How far behind the camera a shade is put, m.
+const BEHIND_CAMERA_M: f64 = 5.0;
+
+/// Below this sine of the Sun's height over the disk's plane a shade would have to be moved so far that Mitsuba's 32-bit
+/// numbers blur its shadow, and what faces a camera is hardly lit.
+const LEAST_SUN_HEIGHT: f64 = 0.02;
 
 /// The facets of a part that have the same reflectance.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,10 +31,19 @@ pub struct Mesh {
     pub ply: Vec<u8>,
 }
 
-/// One mesh for each visible part and reflectance.
-pub(super) fn meshes(scene: &DockingScene) -> Result<Vec<Mesh>, SimError> {
+/// One mesh for each visible part and reflectance; of the layer of the Sun, also for each unseen part that casts a shadow.
+pub(super) fn meshes(scene: &DockingScene, layer: &Layer, pose: &Pose) -> Result<Vec<Mesh>, SimError> {
     let mut meshes = Vec::new();
-    for (index, part) in scene.parts.iter().enumerate().filter(|(_, part)| part.visible) {
+    for (index, part) in scene.parts.iter().enumerate() {
+        let behind_camera = match layer {
+            Layer::Sun(sun) if !part.visible && part.casts_shadow => moved_behind(part, sun, pose),
+            _ => None,
+        };
+        let part = match &behind_camera {
+            Some(moved) => moved,
+            None if part.visible => part,
+            None => continue,
+        };
         for (number, (reflectance, triangles)) in by_reflectance(part)?.into_iter().enumerate() {
             let name: String =
                 part.name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
@@ -38,6 +56,30 @@ pub(super) fn meshes(scene: &DockingScene) -> Result<Vec<Mesh>, SimError> {
         }
     }
     Ok(meshes)
+}
+
+/// A shade that no camera sees, moved towards the Sun until it is behind the camera: its shadow stays where it is, and a
+/// camera that looks at the target does not see it. `None` when the Sun is not in front of the disk.
+fn moved_behind(part: &Part, sun: &Sun, pose: &Pose) -> Option<Part> {
+    let towards = sun.towards.normalize();
+    if towards.z < LEAST_SUN_HEIGHT {
+        return None;
+    }
+    let lowest_m = part
+        .facets
+        .iter()
+        .flat_map(|facet| &facet.outer)
+        .map(|corner| corner.z)
+        .fold(f64::INFINITY, f64::min);
+    let missing_m = (pose.position_m.z + BEHIND_CAMERA_M - lowest_m).max(0.0);
+    let way = towards * (missing_m / towards.z);
+    let mut moved = part.clone();
+    for facet in &mut moved.facets {
+        for corner in facet.outer.iter_mut().chain(facet.holes.iter_mut().flatten()) {
+            *corner += way;
+        }
+    }
+    Some(moved)
 }
 
 fn by_reflectance(part: &Part) -> Result<Vec<(f64, Triangles)>, SimError> {
@@ -119,6 +161,12 @@ impl Triangles {
 mod tests {
     use super::*;
 
+    const FILL: Layer = Layer::Fill { fill_radiance: 1.0, sky_radiance: 0.0 };
+
+    fn pose() -> Pose {
+        Pose { position_m: Vector3::new(0.1, 0.2, 20.0), phi_rad: Vector3::zeros() }
+    }
+
     fn square(half: f64, reflectance: f64) -> Facet {
         let outer = vec![
             Vector3::new(-half, -half, 1.0),
@@ -173,7 +221,7 @@ mod tests {
     fn a_visible_part_has_a_mesh_for_each_of_its_reflectances() {
         let facets = vec![square(1.0, 0.5), square(2.0, 0.04), square(3.0, 0.5)];
         let scene = DockingScene { parts: vec![part(facets.clone(), false), part(facets, true)] };
-        let meshes = meshes(&scene).unwrap();
+        let meshes = meshes(&scene, &FILL, &pose()).unwrap();
         let told: Vec<_> = meshes.iter().map(|m| (m.id.as_str(), m.file.as_str(), m.reflectance)).collect();
         assert_eq!(told, [("p1_a__b__0", "mesh-0000.ply", 0.04), ("p1_a__b__1", "mesh-0001.ply", 0.5)]);
         let text = String::from_utf8_lossy(&meshes[1].ply).into_owned();
@@ -184,9 +232,28 @@ mod tests {
     }
 
     #[test]
+    fn an_unseen_shade_is_behind_the_camera_with_its_shadow_where_it_was() {
+        let sun = Sun { towards: Vector3::new(0.48, -0.64, 0.6), irradiance: 1.0 };
+        let shade = part(vec![square(0.5, 0.0)], false);
+        let moved = moved_behind(&shade, &sun, &pose()).unwrap();
+        let shadow = |corner: &Vector3<f64>| corner - sun.towards * (corner.z / sun.towards.z);
+        for (before, after) in shade.facets[0].outer.iter().zip(&moved.facets[0].outer) {
+            assert!((after.z - 25.0).abs() < 1e-12, "{after}");
+            // Rounding of coordinates of some 20 m.
+            assert!((shadow(before) - shadow(after)).norm() < 1e-13);
+        }
+        let scene = DockingScene { parts: vec![shade] };
+        assert_eq!(meshes(&scene, &Layer::Sun(sun), &pose()).unwrap().len(), 1);
+        assert_eq!(meshes(&scene, &FILL, &pose()).unwrap().len(), 0);
+        let behind = Sun { towards: Vector3::new(0.8, 0.0, -0.6), ..sun };
+        assert_eq!(meshes(&scene, &Layer::Sun(behind), &pose()).unwrap().len(), 0);
+    }
+
+    #[test]
     fn what_no_surface_can_be_is_refused() {
         let of = |facet: Facet| {
-            meshes(&DockingScene { parts: vec![part(vec![facet], true)] }).unwrap_err().to_string()
+            let scene = DockingScene { parts: vec![part(vec![facet], true)] };
+            meshes(&scene, &FILL, &pose()).unwrap_err().to_string()
         };
         let message = of(square(1.0, f64::NAN));
         assert!(message.contains("reflectance of a facet is NaN"), "{message}");

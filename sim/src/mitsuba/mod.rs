@@ -4,8 +4,8 @@
 //! an image of its own ([`Layer`]); their sum is what [`crate::vector::Drawer`] draws.
 //!
 //! What Mitsuba is told differs from what the fast renderer does in nothing but method: the same facets and the same
-//! light, sampled by rays. Parts that no camera sees are left out, and every visible part casts shadows, because a
-//! body cannot do otherwise.
+//! light, sampled by rays. Every visible part casts shadows, because a body cannot do otherwise. A part that no camera sees
+//! shades sunlight from behind the camera, and is left out of the other layers.
 
 mod layer;
 mod mesh;

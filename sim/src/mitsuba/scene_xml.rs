@@ -38,7 +38,7 @@ impl SceneFiles {
         camera.check()?;
         let crop = settings.check(camera)?;
         let sensor = sensor(pose, camera, settings, &crop)?;
-        let meshes = meshes(scene)?;
+        let meshes = meshes(scene, layer, pose)?;
         let hide_emitters = !matches!(layer, Layer::Fill { .. });
         let mut xml = format!(
             "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<scene version=\"3.0.0\">\n  <integrator type=\"path\">\n    \

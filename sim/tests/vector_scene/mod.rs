@@ -5,11 +5,11 @@
 
 use std::f64::consts::PI;
 
+use boresight_sim::scene::docking::{DockingScene, Facet, Lighting, Part, Sun};
+use boresight_sim::vector::{Drawer, RadianceImage};
 use contract::Camera;
 use contract::docking::Pose;
 use nalgebra::Vector3;
-use boresight_sim::scene::docking::{DockingScene, Facet, Lighting, Part, Sun};
-use boresight_sim::vector::{Drawer, RadianceImage};
 
 pub(crate) type Point = Vector3<f64>;
 
@@ -61,7 +61,10 @@ pub(crate) fn prism(outline: &[[f64; 2]], front: f64, thickness: f64, reflectanc
     let reversed: Vec<[f64; 3]> = outline.iter().rev().map(|[x, y]| [*x, *y, back]).collect();
     let next = outline.iter().cycle().skip(1);
     let sides = outline.iter().zip(next).map(|(a, b)| {
-        facet(&[[a[0], a[1], front], [a[0], a[1], back], [b[0], b[1], back], [b[0], b[1], front]], reflectance)
+        facet(
+            &[[a[0], a[1], front], [a[0], a[1], back], [b[0], b[1], back], [b[0], b[1], front]],
+            reflectance,
+        )
     });
     // The normals come from the outline: corners of a cross may turn inwards.
     let mut facets: Vec<Facet> = vec![flat(outline, front, reflectance), facet(&reversed, reflectance)];
@@ -169,7 +172,8 @@ pub(crate) fn target() -> DockingScene {
             let radius = 0.25 + along;
             [radius * cos - across * sin, radius * sin + across * cos]
         };
-        let corners = [corner(-0.02, -0.006), corner(0.02, -0.006), corner(0.02, 0.006), corner(-0.02, 0.006)];
+        let corners =
+            [corner(-0.02, -0.006), corner(0.02, -0.006), corner(0.02, 0.006), corner(-0.02, 0.006)];
         marks.push(flat(&corners, 0.0, 0.8));
     }
     let mut marks = part("marks", marks);
