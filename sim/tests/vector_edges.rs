@@ -11,42 +11,12 @@ use boresight_sim::vector::RadianceImage;
 use contract::Camera;
 use contract::docking::Pose;
 use nalgebra::Vector3;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-use vector_scene::{camera, circle, cross, draw, flat, moments, part, plain, pose, scene, seen};
-
-/// Area of a convex polygon inside the pixel whose centre is (column, row), by cutting the polygon with its four sides.
-fn area_in_pixel(polygon: &[[f64; 2]], column: usize, row: usize) -> f64 {
-    let (x, y) = (column as f64, row as f64);
-    let sides = [(0, x - 0.5, 1.0), (0, x + 0.5, -1.0), (1, y - 0.5, 1.0), (1, y + 0.5, -1.0)];
-    let mut corners = polygon.to_vec();
-    for (axis, limit, sign) in sides {
-        let inside = |point: &[f64; 2]| sign * (point[axis] - limit);
-        let mut kept = Vec::new();
-        for i in 0..corners.len() {
-            let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
-            let (at_a, at_b) = (inside(&a), inside(&b));
-            if at_a >= 0.0 {
-                kept.push(a);
-            }
-            if at_a * at_b < 0.0 {
-                let t = at_a / (at_a - at_b);
-                kept.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
-            }
-        }
-        corners = kept;
-    }
-    shoelace(&corners).abs()
-}
-
-fn shoelace(polygon: &[[f64; 2]]) -> f64 {
-    (0..polygon.len())
-        .map(|i| {
-            let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
-            0.5 * (a[0] * b[1] - b[0] * a[1])
-        })
-        .sum()
-}
+use vector_scene::{
+    area_in_pixel, camera, circle, cross, draw, flat, moments, part, plain, pose, random_pose, scene, seen,
+    shoelace, small,
+};
 
 /// The largest difference of a pixel's coverage from its closed form. An edge that crosses a pixel from side to side is as far
 /// from its place, in px, as the coverage from its value.
@@ -59,18 +29,6 @@ fn worst_coverage(image: &RadianceImage, polygon: &[[f64; 2]]) -> f64 {
         }
     }
     worst
-}
-
-/// A small detector, so that the closed form of every pixel takes no long time.
-fn small() -> Camera {
-    Camera { columns: 96, rows: 72, principal_x_px: 47.5, principal_y_px: 35.5, ..camera(130.0) }
-}
-
-fn random_pose(random: &mut Xoshiro256PlusPlus) -> Pose {
-    let range = random.random_range(0.4..6.0);
-    let mut within = |limit: f64| random.random_range(-limit..limit);
-    let lateral = [within(0.3 * range), within(0.3 * range)];
-    pose([lateral[0], lateral[1], range], [within(0.25), within(0.25), within(3.1)])
 }
 
 #[test]

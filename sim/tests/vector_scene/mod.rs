@@ -1,8 +1,5 @@
 //! Scenes by hand for the tests of the fast renderer, and a projection written apart from it.
 
-// Each suite is a crate of its own and uses its share of this module.
-#![allow(dead_code)]
-
 use std::f64::consts::PI;
 
 use boresight_sim::scene::docking::{DockingScene, Facet, Lighting, Part, Sun};
@@ -10,6 +7,8 @@ use boresight_sim::vector::{Drawer, RadianceImage};
 use contract::Camera;
 use contract::docking::Pose;
 use nalgebra::Vector3;
+use rand::RngExt;
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 pub(crate) type Point = Vector3<f64>;
 
@@ -150,40 +149,47 @@ pub(crate) fn moments(image: &RadianceImage, columns: [usize; 2], rows: [usize; 
     (flux, sums.map(|sum| sum / flux))
 }
 
-/// A target like that of the station: face of tiles, plate with marks, post and cross.
-pub(crate) fn target() -> DockingScene {
-    let mut tiles = Vec::new();
-    for ring in 0..8 {
-        let (inner, outer) = (0.2 * f64::from(ring) + 0.45, 0.2 * f64::from(ring) + 0.65);
-        let count = 12 + 5 * ring;
-        for i in 0..count {
-            let angle = |j: f64| libm::sincos(2.0 * PI * (j + 0.3 * f64::from(ring)) / f64::from(count));
-            let corner = |radius: f64, j: f64| [radius * angle(j).1, radius * angle(j).0 - 1.25];
-            let (a, b) = (f64::from(i) + 0.02, f64::from(i) + 0.98);
-            let corners = [corner(inner, a), corner(outer, a), corner(outer, b), corner(inner, b)];
-            tiles.push(flat(&corners, -0.45, 0.22 + 0.024 * f64::from((i * 7 + ring * 3) % 11)));
+/// Area of a convex polygon inside the pixel whose centre is (column, row), by cutting the polygon with its four sides.
+pub(crate) fn area_in_pixel(polygon: &[[f64; 2]], column: usize, row: usize) -> f64 {
+    let (x, y) = (column as f64, row as f64);
+    let sides = [(0, x - 0.5, 1.0), (0, x + 0.5, -1.0), (1, y - 0.5, 1.0), (1, y + 0.5, -1.0)];
+    let mut corners = polygon.to_vec();
+    for (axis, limit, sign) in sides {
+        let inside = |point: &[f64; 2]| sign * (point[axis] - limit);
+        let mut kept = Vec::new();
+        for i in 0..corners.len() {
+            let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
+            let (at_a, at_b) = (inside(&a), inside(&b));
+            if at_a >= 0.0 {
+                kept.push(a);
+            }
+            if at_a * at_b < 0.0 {
+                let t = at_a / (at_a - at_b);
+                kept.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
+            }
         }
+        corners = kept;
     }
-    let base = vec![flat(&circle([0.0, -1.25], 2.05, 128), -0.47, 0.1)];
-    let mut marks = Vec::new();
-    for i in 0..12 {
-        let (sin, cos) = libm::sincos(2.0 * PI * f64::from(i) / 12.0);
-        let corner = |along: f64, across: f64| {
-            let radius = 0.25 + along;
-            [radius * cos - across * sin, radius * sin + across * cos]
-        };
-        let corners =
-            [corner(-0.02, -0.006), corner(0.02, -0.006), corner(0.02, 0.006), corner(-0.02, 0.006)];
-        marks.push(flat(&corners, 0.0, 0.8));
-    }
-    let mut marks = part("marks", marks);
-    marks.casts_shadow = false;
-    scene(vec![
-        part("base", base),
-        part("tiles", tiles),
-        part("plate", prism(&circle([0.0, 0.0], 0.30, 96), 0.0, 0.01, 0.04)),
-        marks,
-        part("post", prism(&circle([0.0, 0.0], 0.01, 16), 0.29, 0.29, 0.5)),
-        part("cross", prism(&cross(0.15, 0.03), 0.30, 0.01, 0.8)),
-    ])
+    shoelace(&corners).abs()
+}
+
+pub(crate) fn shoelace(polygon: &[[f64; 2]]) -> f64 {
+    (0..polygon.len())
+        .map(|i| {
+            let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+            0.5 * (a[0] * b[1] - b[0] * a[1])
+        })
+        .sum()
+}
+
+/// A small detector, so that the closed form of every pixel takes no long time.
+pub(crate) fn small() -> Camera {
+    Camera { columns: 96, rows: 72, principal_x_px: 47.5, principal_y_px: 35.5, ..camera(130.0) }
+}
+
+pub(crate) fn random_pose(random: &mut Xoshiro256PlusPlus) -> Pose {
+    let range = random.random_range(0.4..6.0);
+    let mut within = |limit: f64| random.random_range(-limit..limit);
+    let lateral = [within(0.3 * range), within(0.3 * range)];
+    pose([lateral[0], lateral[1], range], [within(0.25), within(0.25), within(3.1)])
 }
