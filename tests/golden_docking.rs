@@ -249,10 +249,18 @@ fn edges_shades_and_shadows_are_where_mitsuba_has_them() {
     for (kind, all) in kinds.iter().zip(&shifts) {
         let (count, rms, most) = figures(all, 0.99);
         println!("  {kind:?} {count} {rms:.4} {most:.4}");
+        assert!(count > 300 || *kind == Kind::Marks && count > 100, "{kind:?}: too few to judge by");
+        match kind {
+            Kind::Disk | Kind::Cross | Kind::Marks => assert!(rms <= 0.02, "{kind:?}: {rms} px rms"),
+            Kind::Shadow => assert!(most <= 0.1, "99 % of the shadows' edges within {most} px"),
+            Kind::Elsewhere => {}
+        }
     }
     println!("shades: number, 99.9 % within, worst, of full scale");
     for (place, all) in ["on the disk", "off the disk"].iter().zip(&shades) {
         let (count, _, most) = figures(all, 0.999);
         println!("  {place} {count} {most:.5} {:.4}", all.iter().fold(0.0_f64, |a, b| a.max(*b)));
     }
+    let worst = shades[0].iter().fold(0.0_f64, |a, b| a.max(*b));
+    assert!(shades[0].len() > 100_000 && worst <= 0.02, "shades on the disk within {worst} of full scale");
 }
