@@ -14,6 +14,7 @@ use sim::scene::docking::{Floodlight, Lighting, Sun, TargetFile};
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Cases {
+    #[allow(dead_code, reason = "read by the program that makes the images")]
     pub(crate) samples: u32,
     light: Light,
     lamp: Lamp,
