@@ -100,7 +100,8 @@ fn the_cross_moves_before_the_plate_as_its_height_says() {
     // docking paper, 3.1: Xc − Xo = −f b d1/(d3 (d3 − b)) with the disk's centre at −f d1/d3.
     let expected = [383.5 - 2917.0 * d[0] / (d[2] - b), 287.5 + 2917.0 * d[1] / (d[2] - b)];
     for axis in 0..2 {
-        assert!((centroid[axis] - expected[axis]).abs() < 1e-3, "{centroid:?} {expected:?}");
+        // A pixel counts at its centre: along upright edges, 186 px of 6600 px² on a side, that is 1/8 px at worst.
+        assert!((centroid[axis] - expected[axis]).abs() < 4e-3, "{centroid:?} {expected:?}");
     }
 }
 
@@ -123,6 +124,21 @@ fn a_part_in_many_facets_is_the_part_in_one() {
     let (one, many) = (draw(&camera, &whole, &plain(), &pose), draw(&camera, &cut, &plain(), &pose));
     let worst = one.radiance.iter().zip(&many.radiance).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     // Rounding of single precision over 16 edges in a row.
+    assert!(worst < 3e-6, "{worst}");
+}
+
+#[test]
+fn nothing_shows_between_parts_that_share_an_edge() {
+    let camera = camera(1055.0);
+    let pose = pose([0.1, 0.2, 3.0], [0.1, -0.05, 0.3]);
+    let behind = part("behind", vec![flat(&[[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]], -1.0, 0.0)]);
+    let left = flat(&[[-0.5, -0.5], [0.1, -0.5], [0.1, 0.5], [-0.5, 0.5]], 0.0, 0.7);
+    let right = flat(&[[0.1, -0.5], [0.5, -0.5], [0.5, 0.5], [0.1, 0.5]], 0.0, 0.7);
+    let apart =
+        scene(vec![behind.clone(), part("left", vec![left.clone()]), part("right", vec![right.clone()])]);
+    let whole = scene(vec![behind, part("sheet", vec![left, right])]);
+    let (one, two) = (draw(&camera, &whole, &plain(), &pose), draw(&camera, &apart, &plain(), &pose));
+    let worst = one.radiance.iter().zip(&two.radiance).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(worst < 3e-6, "{worst}");
 }
 

@@ -83,8 +83,9 @@ impl Coverage {
         let (upper, lower, sign) = if from[1] < to[1] { (from, to, 1.0) } else { (to, from, -1.0) };
         let top = upper[1].max(self.window.top as f64);
         let bottom = lower[1].min(self.window.bottom as f64);
-        // Written so that a coordinate that is no number adds nothing.
-        if !(top < bottom && (upper[0] + lower[0]).is_finite()) {
+        // Said this way round, a coordinate that is no number adds nothing.
+        let crosses_rows = top < bottom && (upper[0] + lower[0]).is_finite();
+        if !crosses_rows {
             return;
         }
         let per_row = (lower[0] - upper[0]) / (lower[1] - upper[1]);

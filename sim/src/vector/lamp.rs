@@ -36,7 +36,8 @@ impl<'a> LampOnPlane<'a> {
     fn at(&self, point: [f64; 2]) -> Node {
         let ray = self.view.attitude * self.view.lens.ray(point);
         let descent = -self.normal.dot(&ray);
-        if !(descent > 0.0) {
+        let meets_plane = descent > 0.0;
+        if !meets_plane {
             return Node::default();
         }
         let from_lamp = self.camera_from_lamp + ray * (self.camera_height / descent);
@@ -81,7 +82,7 @@ impl Node {
 #[derive(Debug, Clone, Default)]
 pub(super) struct LampGrid {
     nodes: Vec<Node>,
-    row: Vec<Node>,
+    lights: Vec<f32>,
 }
 
 impl LampGrid {
@@ -99,27 +100,29 @@ impl LampGrid {
         }
     }
 
-    /// Makes a row of the window the one that [`LampGrid::light`] tells.
-    pub(super) fn open_row(&mut self, window: Window, row: usize) {
+    /// Computes the light of a row of the window.
+    pub(super) fn light_row(&mut self, window: Window, row: usize) {
         let along = (window.right - window.left).div_ceil(Self::STEP) + 1;
-        let (cell, part) = Self::place(window.top, window.bottom, row);
+        let cell = (row - window.top) / Self::STEP;
+        let start = window.top + cell * Self::STEP;
+        let part = ((row - start) as f32 + 0.5) / Self::STEP.min(window.bottom - start) as f32;
         let upper = &self.nodes[cell * along..][..along];
         let lower = &self.nodes[(cell + 1) * along..][..along];
-        self.row.clear();
-        self.row.extend(upper.iter().zip(lower).map(|(upper, lower)| upper.towards(*lower, part)));
+        let node = |i: usize| upper[i].towards(lower[i], part);
+        self.lights.clear();
+        let mut left = node(0);
+        for i in 0..along - 1 {
+            let right = node(i + 1);
+            let length = Self::STEP.min(window.right - window.left - i * Self::STEP);
+            let pixel = 1.0 / length as f32;
+            let lights = (0..length).map(|j| left.towards(right, (j as f32 + 0.5) * pixel).light());
+            self.lights.extend(lights);
+            left = right;
+        }
     }
 
-    /// E/π at the centre of a pixel of the row.
-    pub(super) fn light(&self, window: Window, column: usize) -> f32 {
-        let (cell, part) = Self::place(window.left, window.right, column);
-        self.row[cell].towards(self.row[cell + 1], part).light()
-    }
-
-    /// The cell that holds a pixel's centre, and how far through the cell it is.
-    fn place(from: usize, to: usize, pixel: usize) -> (usize, f32) {
-        let cell = (pixel - from) / Self::STEP;
-        let start = from + cell * Self::STEP;
-        let length = Self::STEP.min(to - start);
-        (cell, ((pixel - start) as f32 + 0.5) / length as f32)
+    /// E/π at the centres of the pixels of that row, from the window's left.
+    pub(super) fn lights(&self) -> &[f32] {
+        &self.lights
     }
 }

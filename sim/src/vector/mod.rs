@@ -5,6 +5,7 @@
 //! what lies behind: neighbours leave no seam. Light is Lambert's: ρ (fill + E cos θ/π), where the light's part is weakened
 //! by the share of the pixel that lies in the [`shadow`] of other parts.
 
+mod body;
 mod clip;
 mod coverage;
 mod lamp;
@@ -16,6 +17,7 @@ mod view;
 use contract::Camera;
 use contract::docking::Pose;
 
+use self::body::Body;
 use self::coverage::Coverage;
 use self::painting::{Canvas, Painting};
 use self::planes::Prepared;
@@ -49,6 +51,7 @@ pub struct Drawer {
     lamp_shadows: Shadows,
     coverage: Coverage,
     painting: Painting,
+    body: Body,
 }
 
 impl Drawer {
@@ -66,6 +69,7 @@ impl Drawer {
             lamp_shadows: Shadows::default(),
             coverage: Coverage::new(camera.columns, camera.rows),
             painting: Painting::default(),
+            body: Body::default(),
         })
     }
 
@@ -99,9 +103,17 @@ impl Drawer {
             coverage: &mut self.coverage,
             radiance: &mut image.radiance,
             columns: self.columns,
+            body: &mut self.body,
+            in_body: false,
         };
-        for (part, ready) in self.prepared.scene.parts.iter().zip(&self.prepared.parts) {
-            self.painting.outline(part, ready, &canvas);
+        let ready = &self.prepared.parts;
+        for (index, (part, ready_part)) in self.prepared.scene.parts.iter().zip(ready).enumerate() {
+            let goes_on = ready.get(index + 1).is_some_and(|next| next.joins_previous);
+            canvas.in_body = goes_on || ready_part.joins_previous;
+            if goes_on && !ready_part.joins_previous {
+                canvas.body.begin(canvas.radiance);
+            }
+            self.painting.outline(part, ready_part, &canvas);
             self.painting.lay(part, lighting, &mut canvas);
             if let Some(sun) = &lighting.sun {
                 self.painting.shade(part, sun, &self.sun_shadows, &mut canvas);

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::body::Body;
 use super::coverage::{Coverage, Run, Window};
 use super::lamp::{LampGrid, LampOnPlane};
 use super::planes::{Plane, PreparedPart};
@@ -19,6 +20,10 @@ pub(super) struct Canvas<'a> {
     pub(super) coverage: &'a mut Coverage,
     pub(super) radiance: &'a mut [f32],
     pub(super) columns: usize,
+    /// What lies behind the body to which the part belongs, and how much of it is covered already.
+    pub(super) body: &'a mut Body,
+    /// Whether the part shares an edge with its neighbours in the scene, and so is of a body with them.
+    pub(super) in_body: bool,
 }
 
 /// A facet in the image.
@@ -62,8 +67,9 @@ impl Painting {
         }
         for index in ready.planes.clone() {
             let plane = &canvas.planes[index];
-            // Not "at most zero": a height that is no number sees nothing either.
-            if !(plane.height(&view.position) > 0.0) {
+            // Said this way round, a height that is no number sees nothing either.
+            let shows_front = plane.height(&view.position) > 0.0;
+            if !shows_front {
                 continue;
             }
             let first = self.facets.len();
@@ -89,6 +95,8 @@ impl Painting {
     }
 
     /// Lays the part over the image, lit by the Sun and from everywhere, as if nothing cast shadows on it.
+    ///
+    /// Here and below what rounding leaves under zero is zero: light is never negative.
     pub(super) fn lay(&self, part: &Part, lighting: &Lighting, canvas: &mut Canvas<'_>) {
         if self.planes.is_empty() {
             return;
@@ -103,19 +111,31 @@ impl Painting {
                 self.add(facet, canvas.coverage, [1.0, radiance as f32]);
             }
         }
-        let (columns, image) = (canvas.columns, &mut *canvas.radiance);
+        let columns = canvas.columns;
+        let image = &mut *canvas.radiance;
+        if canvas.in_body {
+            let body = &mut *canvas.body;
+            canvas.coverage.sweep(|row, column, run| {
+                let start = row * columns + column;
+                match run {
+                    Run::Each(sums) => body.join(image, start, sums.iter().copied()),
+                    Run::Same(sums, length) => body.join(image, start, std::iter::repeat_n(sums, length)),
+                }
+            });
+            return;
+        }
         canvas.coverage.sweep(|row, column, run| {
             let start = row * columns + column;
             match run {
                 Run::Each(sums) => {
                     for (pixel, [covered, light]) in image[start..start + sums.len()].iter_mut().zip(sums) {
-                        *pixel = *pixel * (1.0 - covered).clamp(0.0, 1.0) + light;
+                        *pixel = (*pixel * (1.0 - covered).clamp(0.0, 1.0) + light).max(0.0);
                     }
                 }
                 Run::Same([covered, light], length) => {
-                    let left = if covered > 1.0 - Coverage::RESIDUE { 0.0 } else { (1.0 - covered).max(0.0) };
+                    let left = if covered > 1.0 - Coverage::RESIDUE { 0.0 } else { 1.0 - covered };
                     for pixel in &mut image[start..start + length] {
-                        *pixel = *pixel * left + light;
+                        *pixel = (*pixel * left + light).max(0.0);
                     }
                 }
             }
@@ -148,12 +168,14 @@ impl Painting {
                 match run {
                     Run::Each(sums) => {
                         for (pixel, [shaded, lost]) in image[start..start + sums.len()].iter_mut().zip(sums) {
-                            *pixel -= lost * shaded.clamp(0.0, 1.0);
+                            *pixel = (*pixel - lost * shaded.clamp(0.0, 1.0)).max(0.0);
                         }
                     }
                     Run::Same([shaded, lost], length) => {
                         let lost = lost * shaded.clamp(0.0, 1.0);
-                        image[start..start + length].iter_mut().for_each(|pixel| *pixel -= lost);
+                        image[start..start + length]
+                            .iter_mut()
+                            .for_each(|pixel| *pixel = (*pixel - lost).max(0.0));
                     }
                 }
             });
@@ -171,7 +193,8 @@ impl Painting {
         for index in 0..self.planes.len() {
             let seen = self.planes[index].clone();
             let plane = &canvas.planes[seen.plane];
-            if !(plane.height(&lamp.position_m) > 0.0) {
+            let is_lit = plane.height(&lamp.position_m) > 0.0;
+            if !is_lit {
                 continue;
             }
             let Some(window) = seen.bounds.window(canvas.coverage.whole()) else { continue };
@@ -185,26 +208,24 @@ impl Painting {
             }
             let grid = &mut self.lamp_grid;
             grid.fill(&LampOnPlane::new(lamp, &canvas.view, plane), window);
-            let mut open_row = None;
             let (columns, image) = (canvas.columns, &mut *canvas.radiance);
+            let mut row_of_lights = None;
             canvas.coverage.sweep(|row, column, run| {
-                if open_row != Some(row) {
-                    grid.open_row(window, row);
-                    open_row = Some(row);
+                if row_of_lights != Some(row) {
+                    row_of_lights = Some(row);
+                    grid.light_row(window, row);
                 }
-                let start = row * columns + column;
+                let lights = &grid.lights()[column - window.left..];
+                let pixels = image[row * columns + column..].iter_mut().zip(lights);
                 match run {
                     Run::Each(sums) => {
-                        for (place, [reflected, shaded]) in sums.iter().enumerate() {
-                            let light = grid.light(window, column + place);
-                            image[start + place] += reflected * (1.0 - shaded.clamp(0.0, 1.0)) * light;
+                        for ((pixel, light), [reflected, shaded]) in pixels.zip(sums) {
+                            *pixel += reflected.max(0.0) * (1.0 - shaded.clamp(0.0, 1.0)) * light;
                         }
                     }
                     Run::Same([reflected, shaded], length) => {
                         let share = reflected * (1.0 - shaded.clamp(0.0, 1.0));
-                        for place in 0..length {
-                            image[start + place] += share * grid.light(window, column + place);
-                        }
+                        pixels.take(length).for_each(|(pixel, light)| *pixel += share * light);
                     }
                 }
             });

@@ -1,5 +1,6 @@
 //! A scene made ready to be drawn: its facets by the planes in which they lie, each in a sphere.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -82,6 +83,8 @@ pub(super) struct PreparedPart {
     pub(super) sphere: Sphere,
     /// One a facet; empty when the part casts no shadow.
     pub(super) casters: Vec<Caster>,
+    /// Whether it shares an edge with the part before it: both are surfaces of one body.
+    pub(super) joins_previous: bool,
 }
 
 /// The scene and what was made of it.
@@ -95,10 +98,10 @@ pub(super) struct Prepared {
 impl Prepared {
     pub(super) fn new(scene: &DockingScene) -> Self {
         let mut planes = Vec::new();
-        let parts = scene
-            .parts
-            .iter()
-            .map(|part| {
+        let before = std::iter::once(None).chain(scene.parts.iter().map(Some));
+        let parts = before
+            .zip(&scene.parts)
+            .map(|(before, part)| {
                 let start = planes.len();
                 if part.visible {
                     planes.extend(planes_of(part));
@@ -111,6 +114,7 @@ impl Prepared {
                     } else {
                         Vec::new()
                     },
+                    joins_previous: before.is_some_and(|before| share_an_edge(before, part)),
                 }
             })
             .collect();
@@ -122,6 +126,26 @@ impl Prepared {
 const SAME_PLANE: f64 = 1e-9;
 /// Boxes nearer than this touch, m: a plane along the axes has a flat one.
 const SAME_PLACE_M: f64 = 1e-6;
+
+/// Whether two visible parts have an edge in common, to the last bit of its ends.
+fn share_an_edge(one: &Part, other: &Part) -> bool {
+    fn edges(part: &Part) -> impl Iterator<Item = [[u64; 3]; 2]> {
+        let polygons = part.facets.iter().flat_map(|facet| std::iter::once(&facet.outer).chain(&facet.holes));
+        polygons.flat_map(|polygon| {
+            polygon.iter().zip(polygon.iter().cycle().skip(1)).map(|(from, to)| {
+                let mut ends =
+                    [from, to].map(|point| [point.x, point.y, point.z].map(|along| (along + 0.0).to_bits()));
+                ends.sort_unstable();
+                ends
+            })
+        })
+    }
+    if !(one.visible && other.visible) {
+        return false;
+    }
+    let known: BTreeSet<_> = edges(one).collect();
+    edges(other).any(|edge| known.contains(&edge))
+}
 
 fn planes_of(part: &Part) -> Vec<Plane> {
     let mut planes: Vec<Plane> = Vec::new();
