@@ -76,13 +76,13 @@ pub enum Body {
 }
 
 impl Bodies {
-    /// Checks every body; all of each lies between the heights `back_m` and `front_m` over the disk's plane, as `where_`
+    /// Checks every body; all of each lies between the heights `back_m` and `front_m` over the disk's plane, as `expected`
     /// says.
     pub(super) fn check(
         &self,
         table: &str,
         [back_m, front_m]: [f64; 2],
-        where_: &'static str,
+        expected: &'static str,
     ) -> Result<(), SimError> {
         check_source(&format!("{table}.source"), &self.source)?;
         if self.body.len() > MAX_BODIES {
@@ -94,7 +94,7 @@ impl Bodies {
             body.check(&path)?;
             let [low_m, high_m] = extent(&body.facets());
             if low_m < back_m || high_m > front_m {
-                return Err(entry(path, format!("at y3 of {low_m} to {high_m} m"), where_));
+                return Err(entry(path, format!("at y3 of {low_m} to {high_m} m"), expected));
             }
         }
         Ok(())

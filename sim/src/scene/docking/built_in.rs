@@ -3,8 +3,11 @@
 use super::TargetFile;
 
 /// Name and text of each.
-const BUILT_IN: [(&str, &str); 1] =
-    [("progress", include_str!("../../../../scenarios/targets/progress.toml"))];
+const BUILT_IN: [(&str, &str); 3] = [
+    ("apollo", include_str!("../../../../scenarios/targets/apollo.toml")),
+    ("idss", include_str!("../../../../scenarios/targets/idss.toml")),
+    ("progress", include_str!("../../../../scenarios/targets/progress.toml")),
+];
 
 impl TargetFile {
     /// The names of the built-in targets.

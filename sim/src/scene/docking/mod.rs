@@ -16,6 +16,11 @@ mod solid;
 mod station;
 mod target_file;
 
+#[cfg(test)]
+mod order_tests;
+#[cfg(test)]
+mod target_tests;
+
 pub use blankets::BlanketsTable;
 pub use body::{Bodies, Body};
 pub use cross::CrossTable;

@@ -76,8 +76,8 @@ pub(super) fn facet(outer: Vec<Vector3<f64>>, reflectance: f64) -> Facet {
     Facet { outer, holes: Vec::new(), normal: area.normalize(), reflectance }
 }
 
-/// The wall of a prism that stands on the disk's plane's parallels: one rectangle an edge of the outline
-/// (counter-clockwise seen from the front), from `back_m` to `front_m` along y3, facing outwards.
+/// The wall of a prism along y3, from `back_m` to `front_m`: one rectangle an edge of the outline (counter-clockwise seen
+/// from the front), facing outwards.
 pub(super) fn wall(outline: &[[f64; 2]], back_m: f64, front_m: f64, reflectance: f64) -> Vec<Facet> {
     let edges = outline.iter().zip(outline.iter().cycle().skip(1));
     edges

@@ -86,8 +86,8 @@ impl TargetFile {
         Ok(())
     }
 
-    /// The scene of a file that has been checked. From any camera in front of the target and within 60° of its normal, as
-    /// seen from the parts it looks at, a part never hides one that comes after it.
+    /// The scene of a file that has been checked. Parts come back to front for cameras in front of the target and up to
+    /// 17° aside, as far as bodies whose extents along y3 overlap stand apart (see [`Bodies`]).
     pub fn scene(&self) -> DockingScene {
         let mut parts = Vec::new();
         if let Some(structure) = &self.structure {
