@@ -20,11 +20,11 @@ use sim::vector::{Drawer, RadianceImage};
 
 /// Pixels of a profile on either side of its middle; the two outermost at each end are its plateaus.
 const HALF: usize = 4;
-/// Least step of an edge that is measured, of full scale: the noise of Mitsuba's flats and its 16 bits are then worth
-/// 0.01 px at most.
-const LEAST_STEP: f64 = 0.05;
-/// Two pixels of a plateau differ by no more, of full scale.
-const FLAT: f64 = 0.003;
+/// Least step of an edge that is measured, of full scale: a shadow on the disk has 0.03.
+const LEAST_STEP: f64 = 0.02;
+/// Two pixels of a plateau, and the plateaus of both images, differ by no more, of the step: what else is in the profile is then
+/// worth 0.02 px a pixel at most.
+const FLAT: f64 = 0.01;
 
 /// What an edge is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,16 +128,18 @@ impl<'a> Pair<'a> {
             i == HALF || other < along.abs() || (other == along.abs() && i > HALF)
         });
         let last = 2 * HALF;
-        let flat = (seen[0] - seen[1]).abs() < FLAT && (seen[last] - seen[last - 1]).abs() < FLAT;
         let (low, high) = plateaus(&seen);
-        let rises = seen.windows(2).all(|pair| (pair[1] - pair[0]) * (high - low).signum() > -FLAT);
-        if !(steepest && flat && rises) || (high - low).abs() < LEAST_STEP {
+        let step_of_light = high - low;
+        let least = FLAT * step_of_light.abs();
+        let flat = (seen[0] - seen[1]).abs() < least && (seen[last] - seen[last - 1]).abs() < least;
+        let rises = seen.windows(2).all(|pair| (pair[1] - pair[0]) * step_of_light.signum() > -least);
+        if !(steepest && flat && rises) || step_of_light.abs() < LEAST_STEP {
             return None;
         }
         let place = place_of_edge(&seen, (low, high));
         let drawn = profile(&self.fast);
         let (fast_low, fast_high) = plateaus(&drawn);
-        let same = (fast_low - low).abs() < FLAT && (fast_high - high).abs() < FLAT;
+        let same = (fast_low - low).abs() < least && (fast_high - high).abs() < least;
         let cosine = along.abs() / libm::hypot(along, aside);
         let shift_px = same.then(|| (place_of_edge(&drawn, (fast_low, fast_high)) - place) * cosine);
         let off = place - HALF as f64;
