@@ -15,6 +15,9 @@ pub enum Failure {
     /// A file that cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
+    /// An image that Mitsuba does not give.
+    #[error(transparent)]
+    Mitsuba(#[from] crate::mitsuba::MitsubaError),
     /// A simulation that cannot be made.
     #[error(transparent)]
     Simulation(#[from] sim::SimError),

@@ -7,6 +7,7 @@ pub mod failure;
 pub mod files;
 pub mod flight;
 pub mod inject;
+pub mod mitsuba;
 pub mod pipeline_choice;
 pub mod run;
 pub mod run_file;

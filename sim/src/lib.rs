@@ -9,6 +9,7 @@ pub mod docking;
 pub mod draw;
 mod error;
 mod expose;
+pub mod mitsuba;
 mod moment;
 pub mod onboard;
 pub mod optics;

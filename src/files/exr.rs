@@ -1,4 +1,4 @@
-//! OpenEXR: frames in DN, and the noise-free expectation in electrons.
+//! OpenEXR: frames in DN, the noise-free expectation in electrons, radiances of a scene.
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -7,8 +7,9 @@ use contract::Frame;
 use exr::prelude::attribute::AttributeValue;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels, ReadLayers,
-    Text, WritableImage, read as exr_reader,
+    Text, WritableImage, f16, read as exr_reader,
 };
+use sim::vector::RadianceImage;
 
 use super::error::{Place, create_new};
 use super::raw_image::{RawImage, check_claim, checked_size, dn_of_all};
@@ -41,7 +42,7 @@ pub(super) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
     attributes.exposure = Some(header.exposure_s as f32);
     attributes.software_name = Text::new_or_none(&software);
     let samples = frame.dn().iter().map(|&dn| f32::from(dn)).collect();
-    write_channel(path, (frame.columns(), frame.rows()), attributes, samples)
+    write_channel(path, (frame.columns(), frame.rows()), attributes, FlatSamples::F32(samples))
 }
 
 /// Writes an expectation as one float channel `Y` in electrons.
@@ -56,7 +57,7 @@ pub fn write_expected(path: &Path, expected: &Expected) -> Result<(), FileError>
         return Err(FileError::value(path, Place::Header, "pixels", got, format!("{}", columns * rows)));
     }
     let attributes = attributes(path, "electrons", "expected")?;
-    write_channel(path, (columns, rows), attributes, expected.electrons.clone())
+    write_channel(path, (columns, rows), attributes, FlatSamples::F32(expected.electrons.clone()))
 }
 
 /// Reads what [`write_expected`] writes, or any image of one channel.
@@ -66,6 +67,31 @@ pub fn write_expected(path: &Path, expected: &Expected) -> Result<(), FileError>
 pub fn read_expected(path: &Path) -> Result<Expected, FileError> {
     let channel = read_channel(path)?;
     Ok(Expected { columns: channel.columns, rows: channel.rows, electrons: channel.samples })
+}
+
+/// Writes radiances as one channel `Y` of 16-bit floats: small, and within a part in 2048.
+///
+/// # Errors
+/// [`FileError::Io`] when the file exists or cannot be written; [`FileError::Value`] when the number of values is
+/// not columns × rows.
+pub fn write_radiance(path: &Path, image: &RadianceImage) -> Result<(), FileError> {
+    let (columns, rows) = checked_size(path, image.columns as u64, image.rows as u64)?;
+    if image.radiance.len() != columns * rows {
+        let got = image.radiance.len();
+        return Err(FileError::value(path, Place::Header, "pixels", got, format!("{}", columns * rows)));
+    }
+    let attributes = attributes(path, "radiance", "radiance")?;
+    let samples = image.radiance.iter().map(|&v| f16::from_f32(v)).collect();
+    write_channel(path, (columns, rows), attributes, FlatSamples::F16(samples))
+}
+
+/// Reads what [`write_radiance`] writes, what Mitsuba renders, or any image of one channel.
+///
+/// # Errors
+/// A [`FileError`] for a file that cannot be read or has more than one channel.
+pub fn read_radiance(path: &Path) -> Result<RadianceImage, FileError> {
+    let channel = read_channel(path)?;
+    Ok(RadianceImage { columns: channel.columns, rows: channel.rows, radiance: channel.samples })
 }
 
 /// Reads a frame from an image of one channel in DN.
@@ -101,9 +127,9 @@ fn write_channel(
     path: &Path,
     size: (usize, usize),
     attributes: LayerAttributes,
-    samples: Vec<f32>,
+    samples: FlatSamples,
 ) -> Result<(), FileError> {
-    let channel = AnyChannel::new("Y", FlatSamples::F32(samples));
+    let channel = AnyChannel::new("Y", samples);
     let channels = AnyChannels::sort(std::iter::once(channel).collect());
     let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
     let mut file = BufWriter::new(create_new(path)?);
@@ -191,6 +217,22 @@ mod tests {
         assert_eq!(read_expected(&path).unwrap(), expected);
         let short = Expected { columns: 5, ..expected };
         assert!(write_expected(&directory.path().join("short.exr"), &short).is_err());
+    }
+
+    #[test]
+    fn radiances_come_back_within_the_precision_of_their_16_bits() {
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("radiance.exr");
+        let radiance: Vec<f32> = (0..12).map(|i| 0.1 * i as f32).collect();
+        let image = RadianceImage { columns: 4, rows: 3, radiance };
+        write_radiance(&path, &image).unwrap();
+        let back = read_radiance(&path).unwrap();
+        assert_eq!((back.columns, back.rows), (4, 3));
+        for (written, read) in image.radiance.iter().zip(&back.radiance) {
+            assert!((written - read).abs() <= written / 2048.0, "{written} {read}");
+        }
+        let short = RadianceImage { columns: 5, ..image };
+        assert!(write_radiance(&directory.path().join("short.exr"), &short).is_err());
     }
 
     #[test]

@@ -28,7 +28,7 @@ mod video;
 mod wcs;
 mod windows;
 
-pub use self::exr::{Expected, read_expected, write_expected};
+pub use self::exr::{Expected, read_expected, read_radiance, write_expected, write_radiance};
 pub use clusters::FrameCluster;
 pub use dataset::{CameraFile, Dataset, DatasetFrame};
 pub use directory::RunDirectory;

@@ -1,0 +1,273 @@
+//! The fast renderer against Mitsuba: the images of golden/docking, made by rays, hold the one made by areas to its edges,
+//! its shades and its shadows.
+//!
+//! Every clean edge of Mitsuba's image is measured along rows or columns in both images by the same estimator: the area
+//! under the profile between its plateaus. Edges are sorted by what the target's dimensions say is there, with a
+//! projection of this test's own.
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails by panicking; clippy sees only the test functions as tests"
+)]
+
+mod docking_cases;
+
+use boresight::files::read_radiance;
+use contract::PixelPoint;
+use contract::docking::TargetModel;
+use docking_cases::{Case, Cases, folder, load, target_from_camera};
+use nalgebra::Vector3;
+use sim::vector::{Drawer, RadianceImage};
+
+/// Pixels of a profile on either side of its middle; the two outermost at each end are its plateaus.
+const HALF: usize = 4;
+/// Least step of an edge that is measured, of full scale: a shadow on the disk has 0.03.
+const LEAST_STEP: f64 = 0.02;
+/// Two pixels of a plateau, and the plateaus of both images, differ by no more, of the step: what else is in the profile is then
+/// worth 0.02 px a pixel at most.
+const FLAT: f64 = 0.01;
+
+/// What an edge is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Disk,
+    Cross,
+    Marks,
+    /// On the disk, where no part of the target has an edge: of a shadow.
+    Shadow,
+    /// Off the disk: of the station, its docking unit, and their shadows.
+    Elsewhere,
+}
+
+/// An edge, and by how much the fast image has it elsewhere, across it, px; `None` where the shades beside it differ, so that
+/// there is no one edge to compare.
+struct Edge {
+    kind: Kind,
+    shift_px: Option<f64>,
+}
+
+/// Both images of a case.
+struct Pair<'a> {
+    case: &'a Case,
+    fast: RadianceImage,
+    mitsuba: RadianceImage,
+    outlines: Vec<(Kind, Vec<PixelPoint>)>,
+}
+
+impl<'a> Pair<'a> {
+    fn of(
+        case: &'a Case,
+        cases: &Cases,
+        scene: &sim::scene::docking::DockingScene,
+        model: &TargetModel,
+    ) -> Self {
+        let (camera, pose, crop) = (case.camera(cases), case.pose(), case.crop(cases));
+        let mut whole = RadianceImage::default();
+        Drawer::new(&camera).unwrap().draw(scene, &case.lighting(cases), &pose, &mut whole);
+        let rows = (crop.y..crop.y + crop.rows).map(|y| y * whole.columns + crop.x);
+        let radiance = rows.flat_map(|at| whole.radiance[at..at + crop.columns].to_vec()).collect();
+        let fast = RadianceImage { columns: crop.columns, rows: crop.rows, radiance };
+        let mitsuba = read_radiance(&folder().join(&case.name).with_extension("exr")).unwrap();
+        assert_eq!((mitsuba.columns, mitsuba.rows), (crop.columns, crop.rows), "{}", case.name);
+
+        let (focal_px, _) = camera.focal_length_px();
+        let axes = target_from_camera(&pose).transpose();
+        let project = |y1: f64, y2: f64, y3: f64| {
+            let x = axes * (Vector3::new(y1, y2, y3) - pose.position_m);
+            PixelPoint::new(
+                camera.principal_x_px + focal_px * x.x / x.z - crop.x as f64,
+                camera.principal_y_px + focal_px * x.y / x.z - crop.y as f64,
+            )
+        };
+        let disk = (0..720).map(|i| {
+            let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::PI / 360.0);
+            project(model.plate_radius_m * cos, model.plate_radius_m * sin, 0.0)
+        });
+        let mut outlines = vec![(Kind::Disk, disk.collect())];
+        for mark in &model.marks {
+            outlines.push((Kind::Marks, mark.iter().map(|[y1, y2]| project(*y1, *y2, 0.0)).collect()));
+        }
+        let (long, wide) = (model.cross.half_length_m, model.cross.width_m / 2.0);
+        for y3 in [model.cross.height_m, model.cross.height_m - model.cross.thickness_m] {
+            for (a, b) in [(long, wide), (wide, long)] {
+                let corners = [(-a, -b), (a, -b), (a, b), (-a, b)];
+                outlines.push((Kind::Cross, corners.map(|(y1, y2)| project(y1, y2, y3)).to_vec()));
+            }
+        }
+        Self { case, fast, mitsuba, outlines }
+    }
+
+    fn edges(&self) -> Vec<Edge> {
+        let (columns, rows) = (self.mitsuba.columns, self.mitsuba.rows);
+        let mut edges = Vec::new();
+        for y in HALF..rows - HALF {
+            for x in HALF..columns - HALF {
+                let at = y * columns + x;
+                edges.extend(self.edge(at, 1, columns, (x as f64, y as f64)));
+                edges.extend(self.edge(at, columns, 1, (x as f64, y as f64)));
+            }
+        }
+        edges
+    }
+
+    /// The edge whose steepest place along a row (`step` is 1) or a column is the pixel `at`, if there is a clean one that runs
+    /// rather across than along it.
+    fn edge(&self, at: usize, step: usize, across: usize, (x, y): (f64, f64)) -> Option<Edge> {
+        let value = |image: &RadianceImage, at: usize| f64::from(image.radiance[at]);
+        let slope =
+            |at: usize, step: usize| value(&self.mitsuba, at + step) - value(&self.mitsuba, at - step);
+        let (along, aside) = (slope(at, step), slope(at, across));
+        if along.abs() < LEAST_STEP / 4.0 || aside.abs() > along.abs() {
+            return None;
+        }
+        let profile = |image: &RadianceImage| -> [f64; 2 * HALF + 1] {
+            std::array::from_fn(|i| value(image, at + i * step - HALF * step))
+        };
+        let seen = profile(&self.mitsuba);
+        let steepest = (1..2 * HALF).all(|i| {
+            let other = (seen[i + 1] - seen[i - 1]).abs();
+            i == HALF || other < along.abs() || (other == along.abs() && i > HALF)
+        });
+        let last = 2 * HALF;
+        let (low, high) = plateaus(&seen);
+        let step_of_light = high - low;
+        let least = FLAT * step_of_light.abs();
+        let flat = (seen[0] - seen[1]).abs() < least && (seen[last] - seen[last - 1]).abs() < least;
+        let rises = seen.windows(2).all(|pair| (pair[1] - pair[0]) * step_of_light.signum() > -least);
+        if !(steepest && flat && rises) || step_of_light.abs() < LEAST_STEP {
+            return None;
+        }
+        let place = place_of_edge(&seen, (low, high));
+        let drawn = profile(&self.fast);
+        let (fast_low, fast_high) = plateaus(&drawn);
+        let same = (fast_low - low).abs() < least && (fast_high - high).abs() < least;
+        let cosine = along.abs() / libm::hypot(along, aside);
+        let shift_px = same.then(|| (place_of_edge(&drawn, (fast_low, fast_high)) - place) * cosine);
+        let off = place - HALF as f64;
+        let point = if step == 1 { PixelPoint::new(x + off, y) } else { PixelPoint::new(x, y + off) };
+        Some(Edge { kind: self.kind(point), shift_px })
+    }
+
+    fn kind(&self, point: PixelPoint) -> Kind {
+        let near = |outline: &[PixelPoint]| {
+            let next = outline.iter().cycle().skip(1);
+            outline.iter().zip(next).any(|(p, q)| distance(point, *p, *q) < 1.0)
+        };
+        match self.outlines.iter().find(|(_, outline)| near(outline)) {
+            Some((kind, _)) => *kind,
+            None if inside(point, &self.outlines[0].1) => Kind::Shadow,
+            None => Kind::Elsewhere,
+        }
+    }
+
+    /// Differences of shade, of full scale, on the disk and off it, where Mitsuba's image is even over 5 × 5 px: no edge within
+    /// 1.5 px.
+    fn shades(&self) -> [Vec<f64>; 2] {
+        let (columns, rows) = (self.mitsuba.columns, self.mitsuba.rows);
+        let mut differences = [Vec::new(), Vec::new()];
+        for y in 2..rows - 2 {
+            for x in 2..columns - 2 {
+                let around = (y - 2..=y + 2).flat_map(|y| (x - 2..=x + 2).map(move |x| y * columns + x));
+                let (low, high) = around.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), at| {
+                    (low.min(self.mitsuba.radiance[at]), high.max(self.mitsuba.radiance[at]))
+                });
+                if high - low < 0.01 {
+                    let at = y * columns + x;
+                    let on_disk = inside(PixelPoint::new(x as f64, y as f64), &self.outlines[0].1);
+                    differences[usize::from(!on_disk)]
+                        .push(f64::from(self.fast.radiance[at] - self.mitsuba.radiance[at]).abs());
+                }
+            }
+        }
+        differences
+    }
+}
+
+fn plateaus(profile: &[f64; 2 * HALF + 1]) -> (f64, f64) {
+    let last = 2 * HALF;
+    ((profile[0] + profile[1]) / 2.0, (profile[last] + profile[last - 1]) / 2.0)
+}
+
+/// Where the step is, px from the first pixel of the profile: the same area lies under it as under the profile.
+fn place_of_edge(profile: &[f64; 2 * HALF + 1], (low, high): (f64, f64)) -> f64 {
+    let area: f64 = profile.iter().map(|v| (v - low) / (high - low)).sum();
+    2.0 * HALF as f64 + 0.5 - area
+}
+
+fn distance(point: PixelPoint, p: PixelPoint, q: PixelPoint) -> f64 {
+    let (dx, dy) = (q.x - p.x, q.y - p.y);
+    let along = ((point.x - p.x) * dx + (point.y - p.y) * dy) / (dx * dx + dy * dy);
+    let along = along.clamp(0.0, 1.0);
+    point.distance(PixelPoint::new(p.x + along * dx, p.y + along * dy))
+}
+
+fn inside(point: PixelPoint, polygon: &[PixelPoint]) -> bool {
+    let next = polygon.iter().cycle().skip(1);
+    let crossings = polygon.iter().zip(next).filter(|(p, q)| {
+        (p.y > point.y) != (q.y > point.y) && point.x < (q.x - p.x) * (point.y - p.y) / (q.y - p.y) + p.x
+    });
+    crossings.count() % 2 == 1
+}
+
+/// Number, root of the mean square, and the value that a share of them does not exceed.
+fn figures(values: &[f64], share: f64) -> (usize, f64, f64) {
+    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let rms = (sizes.iter().map(|v| v * v).sum::<f64>() / sizes.len().max(1) as f64).sqrt();
+    let at = (share * sizes.len() as f64).ceil() as usize;
+    (sizes.len(), rms, sizes.get(at.saturating_sub(1)).copied().unwrap_or(0.0))
+}
+
+#[test]
+fn edges_shades_and_shadows_are_where_mitsuba_has_them() {
+    let (cases, target) = load();
+    target.check().unwrap();
+    let (scene, model) = (target.scene(), target.model());
+    let kinds = [Kind::Disk, Kind::Cross, Kind::Marks, Kind::Shadow, Kind::Elsewhere];
+    let mut shifts: Vec<Vec<f64>> = vec![Vec::new(); kinds.len()];
+    let mut others = vec![0; kinds.len()];
+    let mut shades = [Vec::new(), Vec::new()];
+    for case in &cases.case {
+        let pair = Pair::of(case, &cases, &scene, &model);
+        let edges = pair.edges();
+        print!("{:20}", pair.case.name);
+        for ((kind, all), others) in kinds.iter().zip(&mut shifts).zip(&mut others) {
+            let of_kind = || edges.iter().filter(|edge| edge.kind == *kind);
+            let own: Vec<f64> = of_kind().filter_map(|edge| edge.shift_px).collect();
+            *others += of_kind().count() - own.len();
+            let (count, rms, most) = figures(&own, 0.99);
+            print!(" {kind:?} {count} {rms:.4}/{most:.3}");
+            all.extend(own);
+        }
+        for (place, (own, all)) in ["on", "off"].iter().zip(pair.shades().iter().zip(&mut shades)) {
+            let (count, _, most) = figures(own, 0.999);
+            let worst = own.iter().fold(0.0_f64, |a, b| a.max(*b));
+            print!(" {place} {count} {most:.4}/{worst:.3}");
+            all.extend(own);
+        }
+        println!();
+    }
+    println!("edges: kind, number, rms px, 99 % within px, number beside which shades differ");
+    for ((kind, all), others) in kinds.iter().zip(&shifts).zip(others) {
+        let (count, rms, most) = figures(all, 0.99);
+        println!("  {kind:?} {count} {rms:.4} {most:.4} {others}");
+        // The disk is seen before blankets, whose shadows on the gaps between them only Mitsuba has.
+        let few = if *kind == Kind::Disk { count / 5 } else { count / 20 };
+        assert!(
+            *kind == Kind::Elsewhere || others <= few,
+            "{kind:?}: {others} of {count} between other shades"
+        );
+        assert!(count > 300 || *kind == Kind::Marks && count > 100, "{kind:?}: too few to judge by");
+        match kind {
+            Kind::Disk | Kind::Cross | Kind::Marks => assert!(rms <= 0.02, "{kind:?}: {rms} px rms"),
+            Kind::Shadow => assert!(most <= 0.1, "99 % of the shadows' edges within {most} px"),
+            Kind::Elsewhere => {}
+        }
+    }
+    println!("shades: number, 99.9 % within, worst, of full scale");
+    for (place, all) in ["on the disk", "off the disk"].iter().zip(&shades) {
+        let (count, _, most) = figures(all, 0.999);
+        println!("  {place} {count} {most:.5} {:.4}", all.iter().fold(0.0_f64, |a, b| a.max(*b)));
+    }
+    let worst = shades[0].iter().fold(0.0_f64, |a, b| a.max(*b));
+    assert!(shades[0].len() > 100_000 && worst <= 0.02, "shades on the disk within {worst} of full scale");
+}
