@@ -156,6 +156,6 @@ impl Lens {
 
     /// As the camera sees it; `None` beyond the fold of the distortion.
     pub(crate) fn to_camera(&self, ideal: Vector2<f64>) -> Option<PixelPoint> {
-        self.model.from_ideal(ideal.x, ideal.y / self.row_px)
+        self.model.place_of_ideal(ideal.x, ideal.y / self.row_px)
     }
 }
