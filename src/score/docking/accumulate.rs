@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use contract::docking::{DockingOutcome, DockingSetup, DockingSolution};
 use indexmap::IndexMap;
-use sim::SimError;
 
 use super::bins::{bin, group_name, lens_names};
 use super::cause::MissCause;
@@ -13,8 +12,8 @@ use super::errors::PoseErrors;
 use super::figures::figures;
 use super::portions::{MotionVerdict, PortionVerdict};
 use super::report::{DockingGroup, DockingScore, names};
-use super::sight::SightLines;
-use super::truth::TrueField;
+use super::sight::Sights;
+use super::truth::{TrueField, View};
 use super::verdict::{Gross, Verdict, gross};
 use crate::score::{Figure, ScoreError};
 
@@ -57,7 +56,7 @@ pub(super) struct FieldVerdict {
 /// Scores the fields of a docking run one after the other.
 pub struct DockingScorer {
     context: DockingContext,
-    lines: SightLines,
+    sights: Sights,
     verdicts: Vec<FieldVerdict>,
     last_field: Option<u64>,
     portions: PortionClock,
@@ -74,13 +73,10 @@ struct PortionClock {
 
 impl DockingScorer {
     /// A scorer that has seen no field.
-    ///
-    /// # Errors
-    /// [`SimError`] for a camera that is none.
-    pub fn new(context: DockingContext) -> Result<Self, SimError> {
-        let lines = SightLines::new(&context.setup)?;
+    pub fn new(context: DockingContext) -> Self {
+        let sights = Sights::new(&context.setup);
         let portions = PortionClock::default();
-        Ok(Self { context, lines, verdicts: Vec::new(), last_field: None, portions })
+        Self { context, sights, verdicts: Vec::new(), last_field: None, portions }
     }
 
     /// Judges the next field; `outcome` is `None` when the measurements have no row for it.
@@ -92,8 +88,7 @@ impl DockingScorer {
             return Err(ScoreError::Order { previous, frame: truth.field });
         }
         self.last_field = Some(truth.field);
-        let sight = self.lines.sight(truth.camera, &truth.pose);
-        let verdict = Verdict::of(&self.lines, truth, sight, outcome);
+        let verdict = Verdict::of(&self.sights, truth, outcome);
         let measurement = outcome.and_then(DockingOutcome::measurement);
         let success = measurement.filter(|_| matches!(verdict, Verdict::Success { .. }));
         let error = success.map(|measurement| {
@@ -109,7 +104,7 @@ impl DockingScorer {
         self.verdicts.push(FieldVerdict {
             group: (bin(range_m), truth.camera),
             range_m,
-            is_clear: sight.is_some_and(|sight| sight.is_clear()),
+            is_clear: truth.view == View::Whole && self.sights.resolves(truth.camera, &truth.pose),
             is_measured: measurement.is_some(),
             verdict,
             nees: error.and_then(|(error, covariance)| nees(&error, covariance)),
@@ -117,7 +112,7 @@ impl DockingScorer {
                 std::array::from_fn(|i| within_3_sigma(error[i], covariance[(i, i)].sqrt()))
             }),
             paper,
-            paper_is_wrong: paper.is_some_and(|errors| gross(&self.lines, truth, &errors).is_some()),
+            paper_is_wrong: paper.is_some_and(|errors| gross(&self.sights, truth, &errors).is_some()),
             portion,
         });
         Ok(())
@@ -132,8 +127,8 @@ impl DockingScorer {
         let report = outcome?.motion.as_ref()?;
         let verdict = PortionVerdict {
             number: clock.reports,
-            best: MotionVerdict::of(&self.lines, truth, &report.best),
-            paper: report.paper.as_ref().map(|motion| MotionVerdict::of(&self.lines, truth, motion)),
+            best: MotionVerdict::of(&self.sights, truth, &report.best),
+            paper: report.paper.as_ref().map(|motion| MotionVerdict::of(&self.sights, truth, motion)),
             fields: clock.fields,
             interval_s: clock.last_report_s.map(|last| truth.time_s - last),
         };

@@ -2,8 +2,7 @@
 
 use contract::docking::NoPose;
 
-use super::sight::{Sight, View};
-use super::truth::TrueField;
+use super::truth::{TrueField, View};
 
 /// Why there is no pose and no range. When several hold, the first in this order is the cause: what is known of the answer
 /// at all, then what no pipeline could have helped, by the truth alone, then what the pipeline says.
@@ -11,7 +10,7 @@ use super::truth::TrueField;
 pub enum MissCause {
     /// The measurements have no row for the field.
     NotReported,
-    /// The target is not resolved: a bar of its cross is narrower than [`Sight::RESOLVED_BAR_PX`].
+    /// The target is not resolved: a bar of its cross is narrower than two pixels.
     TooFar,
     /// The target is outside the image ([`View::Outside`]), or partly so and the pipeline says it.
     OutsideField,
@@ -47,10 +46,10 @@ impl MissCause {
     ];
 
     /// The cause of a field without a pose; `said` is the pipeline's reason, `None` when it did not answer.
-    pub(super) fn of(truth: &TrueField, sight: Option<Sight>, said: Option<&NoPose>) -> Self {
+    pub(super) fn of(truth: &TrueField, is_resolved: bool, said: Option<&NoPose>) -> Self {
         let Some(said) = said else { return Self::NotReported };
-        let (resolved, view) = sight.map_or((true, View::Outside), |sight| (sight.is_resolved(), sight.view));
-        if !resolved {
+        let view = truth.view;
+        if !is_resolved {
             Self::TooFar
         } else if view == View::Outside || (view == View::Part && *said == NoPose::OutOfField) {
             Self::OutsideField
@@ -84,11 +83,10 @@ mod tests {
     use super::*;
     use crate::score::docking::hand_made::field;
 
-    fn cause(change: impl FnOnce(&mut TrueField, &mut Sight), said: Option<NoPose>) -> &'static str {
-        let mut truth = field(0, 10.0);
-        let mut sight = Sight { bar_width_px: 9.0, view: View::Whole };
-        change(&mut truth, &mut sight);
-        let code = MissCause::of(&truth, Some(sight), said.as_ref()).code();
+    fn cause(change: impl FnOnce(&mut TrueField, &mut bool), said: Option<NoPose>) -> &'static str {
+        let (mut truth, mut is_resolved) = (field(0, 10.0), true);
+        change(&mut truth, &mut is_resolved);
+        let code = MissCause::of(&truth, is_resolved, said.as_ref()).code();
         assert!(MissCause::CODES.contains(&code), "{code}");
         code
     }
@@ -96,17 +94,17 @@ mod tests {
     #[test]
     fn the_truth_comes_before_what_the_pipeline_says() {
         let said = || Some(NoPose::NoTarget);
-        assert_eq!(cause(|_, sight| sight.bar_width_px = 1.9, said()), "too_far");
-        assert_eq!(cause(|_, sight| sight.view = View::Outside, said()), "outside_field");
+        assert_eq!(cause(|_, is_resolved| *is_resolved = false, said()), "too_far");
+        assert_eq!(cause(|truth, _| truth.view = View::Outside, said()), "outside_field");
         assert_eq!(cause(|truth, _| truth.lost_lines = 0.2, said()), "lost_lines");
         assert_eq!(cause(|truth, _| truth.marks_in_shadow = 0.6, said()), "in_shadow");
         assert_eq!(cause(|_, _| (), said()), "no_target");
-        assert_eq!(cause(|_, sight| sight.bar_width_px = 1.9, None), "not_reported");
+        assert_eq!(cause(|_, is_resolved| *is_resolved = false, None), "not_reported");
     }
 
     #[test]
     fn a_target_partly_outside_is_the_cause_when_the_pipeline_says_so() {
-        let partly = |_: &mut TrueField, sight: &mut Sight| sight.view = View::Part;
+        let partly = |truth: &mut TrueField, _: &mut bool| truth.view = View::Part;
         assert_eq!(cause(partly, Some(NoPose::OutOfField)), "outside_field");
         assert_eq!(cause(partly, Some(NoPose::TooFewFeatures)), "too_few_features");
         assert_eq!(cause(|_, _| (), Some(NoPose::OutOfField)), "out_of_field");

@@ -26,6 +26,5 @@ pub use cause::MissCause;
 pub use errors::PoseErrors;
 pub use report::{DockingGroup, DockingScore, names};
 pub use shown::Shown;
-pub use sight::{Sight, SightLines, View};
-pub use truth::TrueField;
+pub use truth::{TrueField, View};
 pub use verdict::{Gross, Limits, Verdict};

@@ -6,7 +6,7 @@ use nalgebra::{Matrix6, Vector6};
 use super::consistency::{nees, within_3_sigma};
 use super::errors::PoseErrors;
 use super::shown::Shown;
-use super::sight::SightLines;
+use super::sight::Sights;
 use super::truth::TrueField;
 use super::verdict::gross;
 
@@ -24,7 +24,7 @@ pub(super) struct MotionVerdict {
 }
 
 impl MotionVerdict {
-    pub(super) fn of(lines: &SightLines, truth: &TrueField, motion: &Motion) -> Self {
+    pub(super) fn of(sights: &Sights, truth: &TrueField, motion: &Motion) -> Self {
         let shown = Shown::of(&motion.pose, &motion.velocity_m_s);
         let errors = shown.minus(&Shown::of(&truth.pose, &truth.velocity_m_s));
         let sigmas = Shown::sigmas(motion);
@@ -37,7 +37,7 @@ impl MotionVerdict {
             Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z)
         };
         Self {
-            is_wrong: gross(lines, truth, &PoseErrors::new(&motion.pose, &truth.pose)).is_some(),
+            is_wrong: gross(sights, truth, &PoseErrors::new(&motion.pose, &truth.pose)).is_some(),
             errors: errors.into(),
             within,
             nees: [
@@ -85,7 +85,7 @@ mod tests {
     #[test]
     fn errors_and_their_normalised_squares_are_those_of_a_sum_by_hand() {
         let truth = field(0, 10.0);
-        let lines = SightLines::new(&setup()).unwrap();
+        let sights = Sights::new(&setup());
         let motion = Motion {
             time_s: 0.0,
             pose: Pose {
@@ -99,7 +99,7 @@ mod tests {
             cross_covariance: Matrix3::zeros(),
             fields: 10,
         };
-        let verdict = MotionVerdict::of(&lines, &truth, &motion);
+        let verdict = MotionVerdict::of(&sights, &truth, &motion);
         assert!(!verdict.is_wrong);
         let expected = [0.02, -0.01, 0.0, 0.0, 0.001, 0.0, -0.002];
         for (error, expected) in verdict.errors.iter().zip(expected) {

@@ -1,10 +1,10 @@
 //! What became of a field: one verdict each.
 
-use contract::docking::{DockingOutcome, DockingSolution, Pose};
+use contract::docking::{DockingOutcome, DockingSolution, NoPose, Pose};
 
 use super::cause::MissCause;
 use super::errors::PoseErrors;
-use super::sight::{Sight, SightLines};
+use super::sight::Sights;
 use super::truth::TrueField;
 
 /// In what a pose is grossly wrong: not measured badly, but of something else.
@@ -62,10 +62,10 @@ impl Limits {
     pub const ANGLE_RAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
 
     /// Of a true pose; `None` for a camera that is not there.
-    pub fn at(lines: &SightLines, camera: usize, truth: &Pose) -> Option<Self> {
+    pub(super) fn at(sights: &Sights, camera: usize, truth: &Pose) -> Option<Self> {
         let rho = truth.position_m.norm();
-        let target = lines.target();
-        let pixel_rad = rho / (lines.focal_px(camera)? * target.cross.height_m);
+        let target = sights.target();
+        let pixel_rad = rho / (sights.focal_px(camera)? * target.cross.height_m);
         Some(Self {
             range_m: Self::RANGE * rho,
             place_rad: libm::atan2(0.5 * target.mark_circle_radius_m, rho),
@@ -74,7 +74,7 @@ impl Limits {
     }
 
     /// In what a pose of these errors is grossly wrong, if it is.
-    pub fn gross(&self, errors: &PoseErrors) -> Option<Gross> {
+    pub(super) fn gross(&self, errors: &PoseErrors) -> Option<Gross> {
         // Negated, so that a NaN is gross.
         let within = |error: f64, limit: f64| error.abs() <= limit;
         let held = [
@@ -122,15 +122,14 @@ pub enum Verdict {
 impl Verdict {
     /// Judges an answer; `None`: there is none.
     pub(super) fn of(
-        lines: &SightLines,
+        sights: &Sights,
         truth: &TrueField,
-        sight: Option<Sight>,
         outcome: Option<&DockingOutcome>,
     ) -> Self {
         match outcome.map(|outcome| &outcome.solution) {
             Some(DockingSolution::Measured(measurement)) => {
                 let errors = PoseErrors::new(&measurement.best.pose, &truth.pose);
-                match gross(lines, truth, &errors) {
+                match gross(sights, truth, &errors) {
                     Some(gross) => Self::Wrong { gross },
                     None => Self::Success { errors },
                 }
@@ -143,17 +142,22 @@ impl Verdict {
                     Self::Wrong { gross: Gross::Outline }
                 }
             }
-            Some(DockingSolution::NoSolution(said)) => {
-                Self::Missed { cause: MissCause::of(truth, sight, Some(said)) }
-            }
-            None => Self::Missed { cause: MissCause::of(truth, sight, None) },
+            Some(DockingSolution::NoSolution(said)) => Self::missed(sights, truth, Some(said)),
+            None => Self::missed(sights, truth, None),
         }
     }
 }
 
+impl Verdict {
+    fn missed(sights: &Sights, truth: &TrueField, said: Option<&NoPose>) -> Self {
+        let is_resolved = sights.resolves(truth.camera, &truth.pose);
+        Self::Missed { cause: MissCause::of(truth, is_resolved, said) }
+    }
+}
+
 /// In what a pose is grossly wrong. Of a camera that the setup does not have nothing can be said, and nothing is.
-pub(super) fn gross(lines: &SightLines, truth: &TrueField, errors: &PoseErrors) -> Option<Gross> {
-    Limits::at(lines, truth.camera, &truth.pose).and_then(|limits| limits.gross(errors))
+pub(super) fn gross(sights: &Sights, truth: &TrueField, errors: &PoseErrors) -> Option<Gross> {
+    Limits::at(sights, truth.camera, &truth.pose).and_then(|limits| limits.gross(errors))
 }
 
 #[cfg(test)]
@@ -164,10 +168,7 @@ mod tests {
     use crate::score::docking::hand_made::{ahead, field, measured, range_only, setup};
 
     fn verdict(range_m: f64, outcome: &DockingOutcome) -> Verdict {
-        let lines = SightLines::new(&setup()).unwrap();
-        let truth = field(0, range_m);
-        let sight = lines.sight(0, &truth.pose);
-        Verdict::of(&lines, &truth, sight, Some(outcome))
+        Verdict::of(&Sights::new(&setup()), &field(0, range_m), Some(outcome))
     }
 
     fn gross_of(range_m: f64, change: impl FnOnce(&mut Pose)) -> Option<Gross> {

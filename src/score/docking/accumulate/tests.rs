@@ -11,7 +11,7 @@ fn score(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScore {
         version: "0.1.0".to_owned(),
         setup: setup(),
     };
-    let mut scorer = DockingScorer::new(context).unwrap();
+    let mut scorer = DockingScorer::new(context);
     for (truth, outcome) in fields {
         scorer.add(truth, outcome.as_ref()).unwrap();
     }
@@ -184,7 +184,7 @@ fn a_score_of_nothing_and_of_nothing_right_has_no_nan() {
 fn a_field_met_twice_is_refused() {
     let context =
         DockingContext { scenario: String::new(), seed: 0, version: String::new(), setup: setup() };
-    let mut scorer = DockingScorer::new(context).unwrap();
+    let mut scorer = DockingScorer::new(context);
     scorer.add(&field(3, 10.0), None).unwrap();
     assert_eq!(scorer.add(&field(3, 10.0), None), Err(ScoreError::Order { previous: 3, frame: 3 }));
 }
