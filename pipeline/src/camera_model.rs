@@ -58,13 +58,7 @@ impl CameraModel {
         if r.z.is_nan() || r.z <= 0.0 {
             return None;
         }
-        let (u, v) = (self.focal_x_px * (r.x / r.z), self.focal_y_px * (r.y / r.z));
-        if u * u + v * v > self.fold_radius_px * self.fold_radius_px {
-            return None;
-        }
-        let (du, dv) = self.distort(u, v);
-        let point = PixelPoint::new(self.principal.x + du, self.principal.y + dv);
-        (point.x.is_finite() && point.y.is_finite()).then_some(point)
+        self.from_ideal(self.focal_x_px * (r.x / r.z), self.focal_y_px * (r.y / r.z))
     }
 
     /// The direction seen at a pixel, h⁻¹; `None` when the distortion has no inverse there.
@@ -72,6 +66,27 @@ impl CameraModel {
         let (x, y) = (point.x - self.principal.x, point.y - self.principal.y);
         let (u, v) = self.undistort(x, y)?;
         Direction::from_vector(Vector3::new(u / self.focal_x_px, v / self.focal_y_px, 1.0)).ok()
+    }
+
+    /// Focal length along columns and along rows, px.
+    pub(crate) fn focal_px(&self) -> (f64, f64) {
+        (self.focal_x_px, self.focal_y_px)
+    }
+
+    /// A pixel without distortion, from the principal point: (f x1/x3, f x2/x3), px. In this plane straight lines
+    /// of space are straight. `None` when the distortion has no inverse there.
+    pub(crate) fn to_ideal(&self, point: PixelPoint) -> Option<(f64, f64)> {
+        self.undistort(point.x - self.principal.x, point.y - self.principal.y)
+    }
+
+    /// The inverse of [`CameraModel::to_ideal`]; `None` beyond the fold of the distortion.
+    pub(crate) fn from_ideal(&self, u: f64, v: f64) -> Option<PixelPoint> {
+        if u * u + v * v > self.fold_radius_px * self.fold_radius_px {
+            return None;
+        }
+        let (du, dv) = self.distort(u, v);
+        let point = PixelPoint::new(self.principal.x + du, self.principal.y + dv);
+        (point.x.is_finite() && point.y.is_finite()).then_some(point)
     }
 
     /// Whether a point lies in the image domain Ω, borders of the outer pixels included.

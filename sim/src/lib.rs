@@ -17,6 +17,7 @@ pub mod regular_file;
 pub mod scene;
 pub mod sensor;
 mod simulator;
+pub mod television;
 pub mod truth;
 pub mod vector;
 mod view;

@@ -40,6 +40,16 @@ pub enum Effect {
     Telegraph = 27,
     /// Hits of cosmic rays.
     CosmicRays = 28,
+    /// Noise of a video signal, pixel by pixel.
+    VideoNoise = 40,
+    /// Phases of the slow drift of a video signal's contrast and brightness.
+    VideoDrift = 41,
+    /// Shift of each line of a field.
+    LineJitter = 42,
+    /// Which lines of a field are lost, and what stands in their place.
+    LostLines = 43,
+    /// Level of each line of a field.
+    LineLevel = 44,
 }
 
 /// The generator behind every draw.

@@ -131,16 +131,17 @@ impl Dataset {
         let table = directory.join("telemetry.csv");
         let rows = read_with_lines(&table)?;
         let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
-        let locate = |(line, row): (u64, TelemetryRow)| match image_path(directory, &root, &row) {
-            Ok(path) => Ok(DatasetFrame { path, row }),
-            Err(reason) => Err(FileError::MissingImage {
-                path: table.clone(),
-                line,
-                frame: row.frame,
-                file: row.file.unwrap_or_default(),
-                reason,
-            }),
-        };
+        let locate =
+            |(line, row): (u64, TelemetryRow)| match locate_image(directory, &root, row.file.as_deref()) {
+                Ok(path) => Ok(DatasetFrame { path, row }),
+                Err(reason) => Err(FileError::MissingImage {
+                    path: table.clone(),
+                    line,
+                    frame: row.frame,
+                    file: row.file.unwrap_or_default(),
+                    reason,
+                }),
+            };
         let frames: Vec<DatasetFrame> = rows.into_iter().map(locate).collect::<Result<_, _>>()?;
         refuse_unnamed(&table, &frames)?;
         Ok(Self { camera, frames })
@@ -217,9 +218,13 @@ impl DatasetFrame {
     }
 }
 
-/// The path of a row's image, or what is wrong with it.
-fn image_path(directory: &Path, root: &Path, row: &TelemetryRow) -> Result<PathBuf, &'static str> {
-    let file = Path::new(row.file.as_deref().ok_or("not named")?);
+/// The path of an image that a row of a table names, or what is wrong with it.
+pub(super) fn locate_image(
+    directory: &Path,
+    root: &Path,
+    file: Option<&str>,
+) -> Result<PathBuf, &'static str> {
+    let file = Path::new(file.ok_or("not named")?);
     if !file.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
         return Err("outside the dataset's directory");
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use contract::{Camera, Frame};
 use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageBuffer, ImageDecoder, ImageReader, Limits, Luma};
+use image::{ExtendedColorType, ImageBuffer, ImageDecoder, ImageEncoder, ImageReader, Limits, Luma};
 
 use super::FileError;
 use super::error::{Place, create_new};
@@ -20,6 +20,24 @@ pub(super) fn write_png(path: &Path, frame: &Frame) -> Result<(), FileError> {
     };
     let mut file = BufWriter::new(create_new(path)?);
     pixels.write_with_encoder(PngEncoder::new(&mut file)).map_err(|error| image_error(path, error))?;
+    file.flush().map_err(|source| FileError::io(path, "write", source))
+}
+
+/// Writes the digital numbers as grey PNG of 8 bits where the converter has no more, otherwise of 16, not stretched.
+pub(super) fn write_png_of_depth(path: &Path, frame: &Frame) -> Result<(), FileError> {
+    if frame.bit_depth() > 8 {
+        return write_png(path, frame);
+    }
+    let narrow = |&dn: &u16| u8::try_from(dn).ok();
+    let pixels: Option<Vec<u8>> = frame.dn().iter().map(narrow).collect();
+    let Some(pixels) = pixels else {
+        return Err(FileError::value(path, Place::Header, "DN", "above 255", "8 bits"));
+    };
+    let mut file = BufWriter::new(create_new(path)?);
+    let (columns, rows) = (frame.columns() as u32, frame.rows() as u32);
+    PngEncoder::new(&mut file)
+        .write_image(&pixels, columns, rows, ExtendedColorType::L8)
+        .map_err(|error| image_error(path, error))?;
     file.flush().map_err(|source| FileError::io(path, "write", source))
 }
 

@@ -11,6 +11,7 @@ mod directory;
 pub mod docking;
 mod error;
 mod exr;
+mod field_telemetry;
 mod fits;
 mod fits_cards;
 mod frame_file;
@@ -24,6 +25,7 @@ mod telemetry;
 mod time;
 mod truth;
 mod unit;
+mod video;
 mod wcs;
 mod windows;
 
@@ -32,6 +34,7 @@ pub use clusters::FrameCluster;
 pub use dataset::{CameraFile, Dataset, DatasetFrame};
 pub use directory::RunDirectory;
 pub use error::{FileError, Place};
+pub use field_telemetry::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
 pub use frame_file::{FrameHeader, ImageFormat, read_frame, write_frame};
 pub use measurements::{MeasurementWriter, read_measurements};
 pub use parquet_table::{Column, Columns, Row, TableReader, TableWriter};
@@ -39,4 +42,7 @@ pub use partial::PartialFiles;
 pub use stars::{StarRow, read_stars, write_stars};
 pub use telemetry::{TelemetryRow, TelemetryWriter, read_telemetry};
 pub use time::{format_utc, parse_utc};
+pub use video::{
+    AviCoding, AviWriter, FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions, write_field,
+};
 pub use wcs::{SipTerm, TanSip, WcsError};

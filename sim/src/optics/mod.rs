@@ -1,6 +1,7 @@
 //! Optics: where a direction falls on the detector, and how its light spreads there.
 
 mod field;
+mod image_blur;
 mod projection;
 mod psf;
 mod radiometry;
@@ -9,6 +10,8 @@ mod trail;
 mod vignetting;
 
 pub use field::OpticsConfig;
+pub use image_blur::ImageBlur;
+pub(crate) use image_blur::{correlate, gaussian_kernel, pad};
 pub use projection::Projection;
 pub use psf::{Psf, PsfConfig};
 pub use radiometry::{KnownDetector, QuantumEfficiency, Radiometry, RadiometryConfig, SUN_V_MAG_AT_1_AU};

@@ -110,6 +110,22 @@ impl Projection {
         Direction::from_vector(vector).ok()
     }
 
+    /// Where an undistorted offset from the principal point falls, px, for outlines that go on beyond the detector.
+    ///
+    /// Beyond the radius within which the distortion is known to be one-to-one it is continued in proportion along the
+    /// ray, so that nothing from there comes back into the image.
+    pub(crate) fn place(&self, u: f64, v: f64) -> PixelPoint {
+        let radius = Offset { u, v }.length();
+        let scale = if radius > self.domain_px { self.domain_px / radius } else { 1.0 };
+        let distorted = self.distortion.apply(Offset { u: u * scale, v: v * scale });
+        PixelPoint::new(self.principal.x + distorted.u / scale, self.principal.y + distorted.v / scale)
+    }
+
+    /// Whether straight lines bend.
+    pub(crate) fn is_distorted(&self) -> bool {
+        self.domain_px.is_finite()
+    }
+
     /// The largest angle between the boresight and a direction that falls on the detector: the radius of the cone
     /// that holds the whole field, distortion included.
     pub fn half_diagonal(&self) -> Angle {

@@ -57,3 +57,4 @@ pub use poisson::poisson;
 pub use raw_image::RawImage;
 pub use readout::Sensor;
 pub use telegraph::TelegraphConfig;
+pub(crate) use ziggurat::Ziggurat;

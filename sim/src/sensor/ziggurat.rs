@@ -13,7 +13,7 @@ const TAIL_FROM: f64 = 3.654_152_885_361_009;
 /// Journal of Statistical Software 5(8), 2000), on words of 64 bits: the lowest eight choose the layer, the highest 53 the
 /// number, so that neither tells of the other (Doornik 2005).
 #[derive(Debug, Clone)]
-pub(super) struct Ziggurat {
+pub(crate) struct Ziggurat {
     layers: Box<[Layer; LAYERS]>,
 }
 
@@ -55,7 +55,7 @@ impl Ziggurat {
     /// A normal number of mean 0 and standard deviation 1 from a uniform word. One word in a hundred does not decide: then
     /// the rest comes from the stream that `more` gives.
     #[inline(always)]
-    pub(super) fn draw(&self, word: u64, more: impl FnOnce() -> Stream) -> f64 {
+    pub(crate) fn draw(&self, word: u64, more: impl FnOnce() -> Stream) -> f64 {
         let layer = &self.layers[(word % LAYERS as u64) as usize];
         let x = signed_unit(word) * layer.width;
         if x.abs() < layer.inner { x } else { self.draw_on(word, &mut more()) }

@@ -1,6 +1,7 @@
 //! Truth: where everything is, and how it looks from the chaser.
 
 mod apparent;
+pub mod approach;
 mod attitude;
 pub mod clock;
 mod drift;

@@ -1,13 +1,31 @@
 //! The fast renderer of docking scenes: facets in, linear radiance out.
+//!
+//! Every facet is drawn by the exact area that it covers of every pixel ([`coverage`]), and parts are laid over each other from
+//! the back. Within a part facets are disjoint, so that their light and their coverage add up before the part is laid over
+//! what lies behind: neighbours leave no seam. Light is Lambert's: ρ (fill + E cos θ/π), where the light's part is weakened
+//! by the share of the pixel that lies in the [`shadow`] of other parts.
+
+mod clip;
+mod coverage;
+mod lamp;
+mod painting;
+mod planes;
+mod shadow;
+mod view;
 
 use contract::Camera;
 use contract::docking::Pose;
 
+use self::coverage::Coverage;
+use self::painting::{Canvas, Painting};
+use self::planes::Prepared;
+use self::shadow::{Shadows, Source};
+use self::view::{Lens, View};
 use crate::SimError;
 use crate::scene::docking::{DockingScene, Lighting};
 
 /// Mean radiance over each pixel of the camera (box filter, no point spread), row by row; units of [`Lighting`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct RadianceImage {
     /// Columns of the camera.
     pub columns: usize,
@@ -17,10 +35,20 @@ pub struct RadianceImage {
     pub radiance: Vec<f32>,
 }
 
-/// Draws docking scenes as one camera sees them; keeps its buffers from image to image.
+/// Draws docking scenes as one camera sees them.
+///
+/// It keeps its buffers from image to image, and the shadows from image to image as long as scene and light stay the same. What
+/// it draws depends on nothing but the arguments of [`Drawer::draw`].
 #[derive(Debug, Clone)]
 pub struct Drawer {
-    camera: Camera,
+    lens: Lens,
+    columns: usize,
+    rows: usize,
+    prepared: Prepared,
+    sun_shadows: Shadows,
+    lamp_shadows: Shadows,
+    coverage: Coverage,
+    painting: Painting,
 }
 
 impl Drawer {
@@ -29,21 +57,58 @@ impl Drawer {
     /// # Errors
     /// [`SimError`] when the camera's data are not allowed.
     pub fn new(camera: &Camera) -> Result<Self, SimError> {
-        camera.check()?;
-        Ok(Self { camera: camera.clone() })
+        Ok(Self {
+            lens: Lens::new(camera)?,
+            columns: camera.columns,
+            rows: camera.rows,
+            prepared: Prepared::default(),
+            sun_shadows: Shadows::default(),
+            lamp_shadows: Shadows::default(),
+            coverage: Coverage::new(camera.columns, camera.rows),
+            painting: Painting::default(),
+        })
     }
 
-    /// Draws the scene as seen from `pose` into `image`, which is made the camera's size.
+    /// Draws the scene as seen from `pose` into `image`, which is made the camera's size. From the first image of a scene
+    /// on, with the Sun in its place, nothing is allocated.
     pub fn draw(
         &mut self,
-        _scene: &DockingScene,
+        scene: &DockingScene,
         lighting: &Lighting,
-        _pose: &Pose,
+        pose: &Pose,
         image: &mut RadianceImage,
     ) {
-        image.columns = self.camera.columns;
-        image.rows = self.camera.rows;
+        image.columns = self.columns;
+        image.rows = self.rows;
         image.radiance.clear();
-        image.radiance.resize(image.columns * image.rows, lighting.sky_radiance as f32);
+        image.radiance.resize(self.columns * self.rows, lighting.sky_radiance as f32);
+        if self.prepared.scene != *scene {
+            self.prepared = Prepared::new(scene);
+            self.sun_shadows.forget();
+            self.lamp_shadows.forget();
+        }
+        if let Some(sun) = &lighting.sun {
+            self.sun_shadows.update(&self.prepared, Source::Parallel(sun.towards));
+        }
+        if let Some(lamp) = &lighting.floodlight {
+            self.lamp_shadows.update(&self.prepared, Source::Point(lamp.position_m));
+        }
+        let mut canvas = Canvas {
+            view: View::new(&self.lens, pose),
+            planes: &self.prepared.planes,
+            coverage: &mut self.coverage,
+            radiance: &mut image.radiance,
+            columns: self.columns,
+        };
+        for (part, ready) in self.prepared.scene.parts.iter().zip(&self.prepared.parts) {
+            self.painting.outline(part, ready, &canvas);
+            self.painting.lay(part, lighting, &mut canvas);
+            if let Some(sun) = &lighting.sun {
+                self.painting.shade(part, sun, &self.sun_shadows, &mut canvas);
+            }
+            if let Some(lamp) = &lighting.floodlight {
+                self.painting.illuminate(part, lamp, &self.lamp_shadows, &mut canvas);
+            }
+        }
     }
 }

@@ -1,0 +1,87 @@
+//! All parameters of the docking method.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::edges::EdgeConfig;
+use super::histogram::AutoContrastConfig;
+use super::region::RegionConfig;
+use crate::PipelineError;
+use crate::error::require;
+
+/// Parameters of the docking method; every one has a default.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DockingConfig {
+    /// Where the target is looked for: a window given from outside, and prediction from field to field.
+    pub region: RegionConfig,
+    /// Automatic contrast and brightness of the digitiser.
+    pub auto_contrast: AutoContrastConfig,
+    /// Thresholds of the edge-based method.
+    pub edges: EdgeConfig,
+    /// Least difference between cross and plate, in 255ths of full scale, 2 to 200.
+    pub min_contrast: f64,
+    /// Most candidates for the cross that are examined in a field, 1 to 200.
+    pub max_candidates: u32,
+}
+
+impl Default for DockingConfig {
+    fn default() -> Self {
+        Self {
+            region: RegionConfig::default(),
+            auto_contrast: AutoContrastConfig::default(),
+            edges: EdgeConfig::default(),
+            min_contrast: 10.0,
+            max_candidates: 24,
+        }
+    }
+}
+
+impl DockingConfig {
+    /// Checks every parameter.
+    ///
+    /// # Errors
+    /// [`PipelineError::Parameter`] for the first one outside its range, by its path.
+    pub fn check(&self) -> Result<(), PipelineError> {
+        self.region.check()?;
+        self.auto_contrast.check()?;
+        self.edges.check()?;
+        require("min_contrast", self.min_contrast, "2 to 200", |v| (2.0..=200.0).contains(&v))?;
+        require("max_candidates", f64::from(self.max_candidates), "1 to 200", |v| (1.0..=200.0).contains(&v))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defaults_are_allowed_and_are_the_empty_document() {
+        DockingConfig::default().check().unwrap();
+        assert_eq!(serde_json::from_str::<DockingConfig>("{}").unwrap(), DockingConfig::default());
+    }
+
+    #[test]
+    fn a_refusal_names_path_value_and_expectation() {
+        let refusal = |json: &str| {
+            serde_json::from_str::<DockingConfig>(json).unwrap().check().unwrap_err().to_string()
+        };
+        assert_eq!(refusal(r#"{"min_contrast": 1.0}"#), "min_contrast is 1, expected 2 to 200");
+        assert!(refusal(r#"{"edges": {"low": 200.0, "high": 100.0}}"#).contains("edges.high"));
+        assert!(refusal(r#"{"auto_contrast": {"bright_level": 2.0}}"#).contains("auto_contrast.bright_level"));
+        assert!(refusal(r#"{"region": {"max_gap_s": 0.0}}"#).contains("region.max_gap_s"));
+    }
+
+    #[test]
+    fn unknown_keys_are_refused() {
+        assert!(serde_json::from_str::<DockingConfig>(r#"{"min_contras": 3}"#).is_err());
+    }
+
+    #[test]
+    fn the_schema_describes_every_parameter() {
+        let schema = serde_json::to_value(schemars::schema_for!(DockingConfig)).unwrap();
+        for (name, property) in schema["properties"].as_object().unwrap() {
+            assert!(property["description"].is_string(), "{name} has no description");
+        }
+    }
+}

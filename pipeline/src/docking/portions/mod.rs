@@ -1,0 +1,62 @@
+//! Motion by portions of fields (docking paper, 3.2): linear in time, each portion with the one before as a prior that is
+//! forgotten by a factor.
+//!
+//! - [`PaperPortions`]: the paper's two stages, on cross and circle, with its standard deviations as printed;
+//! - [`ExactPortions`]: the same idea on poses with their full covariance, position and attitude together, with the
+//!   covariance that the forgetting really leaves;
+//! - [`Indicators`]: what the operator is shown.
+
+mod exact;
+mod indicators;
+mod paper;
+
+pub use exact::{ExactPortionConfig, ExactPortions};
+pub use indicators::{Indicator, Indicators};
+pub use paper::{PaperPortionConfig, PaperPortions};
+
+use nalgebra::{Cholesky, Const, DimMin, SMatrix};
+
+/// Inverse of a symmetric positive definite matrix whose rows have units of their own: scaled to a unit diagonal first, so
+/// that metres beside radians cost no digits. `None` when it is singular.
+pub(super) fn inverse<const N: usize>(matrix: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>>
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>>,
+{
+    let scale = matrix.diagonal().map(|d| 1.0 / d.sqrt());
+    if !scale.iter().all(|s| s.is_finite()) {
+        return None;
+    }
+    let scaled = SMatrix::<f64, N, N>::from_fn(|i, j| matrix[(i, j)] * scale[i] * scale[j]);
+    let inverse = Cholesky::new(scaled)?.inverse();
+    let inverse =
+        SMatrix::<f64, N, N>::from_fn(|i, j| 0.5 * (inverse[(i, j)] + inverse[(j, i)]) * scale[i] * scale[j]);
+    inverse.iter().all(|v| v.is_finite()).then_some(inverse)
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use contract::docking::Pose;
+    use nalgebra::Vector3;
+
+    /// A glide: 0.3 m/s from 6 m, slow lateral and angular motion.
+    pub(super) fn approach(t: f64) -> Pose {
+        Pose {
+            position_m: Vector3::new(0.1 - 0.01 * t, -0.05 + 0.02 * t, 6.0 - 0.3 * t),
+            phi_rad: Vector3::new(0.01 + 0.002 * t, -0.005 + 0.001 * t, 0.02 - 0.003 * t),
+        }
+    }
+
+    /// A uniform number in (0, 1) of an address: SplitMix64 (Steele, Lea & Flood 2014).
+    pub(in crate::docking) fn uniform(address: u64) -> f64 {
+        let mut z = address.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64 + 1e-17
+    }
+
+    /// A standard normal number of an address (Box & Muller).
+    pub(in crate::docking) fn normal(address: u64) -> f64 {
+        let (u, v) = (uniform(2 * address), uniform(2 * address + 1));
+        (-2.0 * libm::log(u)).sqrt() * libm::cos(std::f64::consts::TAU * v)
+    }
+}

@@ -1,0 +1,94 @@
+//! Whether what was found has the structure that the scene must have.
+
+use contract::docking::{MarkUse, NoPose, TargetModel};
+
+use super::cross::CrossFit;
+use super::docking_unit::{self, DiskEdge, Side};
+use super::marks::{MarksFit, Plane};
+use super::view::{Lens, View};
+
+/// Fewest good marks that tell a target from something else in a field of which nothing is known.
+pub(crate) const MIN_MARKS_TO_FIND: usize = 5;
+
+/// Fewest good marks that fix the disk's place and size.
+pub(crate) const MIN_MARKS_TO_MEASURE: usize = 3;
+
+/// Largest distance between cross and disk's centre, as a share of the marks' circle: farther from the target's axis than
+/// some 20° the marks are hidden or foreshortened beyond recognition.
+const MAX_PARALLAX: f64 = 0.5;
+
+/// Cross and marks against each other.
+///
+/// # Errors
+/// [`NoPose::Inconsistent`] when sizes, places or angles contradict the target's model, [`NoPose::TooFewFeatures`] and
+/// [`NoPose::OutOfField`] when too few marks are left.
+pub(crate) fn cross_and_marks(
+    model: &TargetModel,
+    focal_px: f64,
+    cross: &CrossFit,
+    marks: &MarksFit,
+) -> Result<(), NoPose> {
+    if marks.count(MarkUse::Used) < MIN_MARKS_TO_MEASURE {
+        return Err(if 2 * marks.count(MarkUse::OutOfField) > marks.marks.len() {
+            NoPose::OutOfField
+        } else {
+            NoPose::TooFewFeatures
+        });
+    }
+    let plane = &marks.plane;
+    let d3 = focal_px / plane.scale_px_m;
+    let depth = d3 - model.cross.height_m;
+    let radius_px = model.mark_circle_radius_m * plane.scale_px_m;
+    // The cross is inside the circle of the marks.
+    let inside = (cross.seed.centre - plane.centre).norm() < MAX_PARALLAX * radius_px * d3 / depth;
+    // The bars and the circle have the sizes of one target at one distance.
+    let expected_px = focal_px * model.cross.half_length_m / depth;
+    let error_px = (cross.seed.half_length_px - expected_px).abs();
+    let sizes = depth > 0.0 && error_px < 0.08 * expected_px + 1.2;
+    // The marks stand at the angles that the bars say.
+    let turn = (libm::atan(cross.seed.slope) - plane.roll_rad).abs();
+    let angles = turn < 0.03 + 1.5 / radius_px;
+    if inside && sizes && angles { Ok(()) } else { Err(NoPose::Inconsistent) }
+}
+
+/// Looks for the docking unit's disk where the target says that it is.
+pub(crate) fn docking_unit(
+    view: &View<'_>,
+    lens: &Lens,
+    model: &TargetModel,
+    cross: &CrossFit,
+    plane: &Plane,
+    side: Side,
+) -> DiskEdge {
+    let place = docking_unit::predict(
+        model,
+        &model.docking_unit,
+        lens.focal_px(),
+        plane,
+        cross.seed.centre,
+        side,
+    );
+    docking_unit::find(view, lens, place, (0.12 * cross.levels.contrast()).max(8.0))
+}
+
+/// Whether the docking unit is on the right side. Cross and marks look the same upside down.
+///
+/// # Errors
+/// [`NoPose::Inconsistent`] when its disk is plainly seen on another side of the target and not where it should be.
+pub(crate) fn upright(
+    view: &View<'_>,
+    lens: &Lens,
+    model: &TargetModel,
+    cross: &CrossFit,
+    plane: &Plane,
+    nominal: &DiskEdge,
+) -> Result<(), NoPose> {
+    if nominal.share > 0.4 {
+        return Ok(());
+    }
+    let elsewhere = Side::OTHERS
+        .into_iter()
+        .map(|side| docking_unit(view, lens, model, cross, plane, side))
+        .any(|edge| edge.in_field > 0.6 && edge.share > 0.7);
+    if elsewhere { Err(NoPose::Inconsistent) } else { Ok(()) }
+}

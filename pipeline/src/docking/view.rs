@@ -1,0 +1,159 @@
+//! A field as the steps read it: grey values at places of the camera.
+
+use contract::docking::Field;
+use contract::{Camera, ContractError, PixelPoint};
+use imageproc::image::{GrayImage, Luma};
+use nalgebra::{Vector2, Vector3};
+
+use crate::CameraModel;
+
+/// Grey values of a field, 0 to [`View::WHITE`], by places in the camera's pixels.
+///
+/// A field holds every second row of the camera, so its image is squeezed: all steps count in camera pixels.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct View<'a> {
+    field: &'a Field,
+    first_row: f64,
+    step: f64,
+    scale: f64,
+}
+
+impl<'a> View<'a> {
+    /// Grey value of the digitiser's full scale.
+    pub(crate) const WHITE: f64 = 255.0;
+
+    pub(crate) fn new(field: &'a Field) -> Self {
+        Self {
+            field,
+            first_row: field.lines().camera_row(0) as f64,
+            step: field.lines().step() as f64,
+            scale: Self::WHITE / f64::from(field.image().full_scale_dn()),
+        }
+    }
+
+    pub(crate) fn columns(&self) -> usize {
+        self.field.image().columns()
+    }
+
+    pub(crate) fn rows(&self) -> usize {
+        self.field.image().rows()
+    }
+
+    /// Rows of the camera from one row of the image to the next.
+    pub(crate) fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Camera row of the image's row `row`.
+    pub(crate) fn camera_row(&self, row: usize) -> f64 {
+        self.first_row + self.step * row as f64
+    }
+
+    /// Row of the image, with its fraction, at the camera's row `y`.
+    pub(crate) fn image_row(&self, y: f64) -> f64 {
+        (y - self.first_row) / self.step
+    }
+
+    /// Grey value of a pixel of the image.
+    pub(crate) fn at(&self, column: usize, row: usize) -> f64 {
+        f64::from(self.field.image().at(column, row)) * self.scale
+    }
+
+    /// Grey value at a place, bilinear between pixels; `None` beyond the centres of the outer pixels.
+    pub(crate) fn sample(&self, point: PixelPoint) -> Option<f64> {
+        let (x, row) = (point.x, self.image_row(point.y));
+        let (last_x, last_row) = (self.columns() as f64 - 1.0, self.rows() as f64 - 1.0);
+        if !(x >= 0.0 && row >= 0.0 && x <= last_x && row <= last_row) {
+            return None;
+        }
+        let (left, top) = (x.floor(), row.floor());
+        let (fx, fy) = (x - left, row - top);
+        let (x0, y0) = (left as usize, top as usize);
+        let (x1, y1) = ((x0 + 1).min(self.columns() - 1), (y0 + 1).min(self.rows() - 1));
+        let upper = self.at(x0, y0) * (1.0 - fx) + self.at(x1, y0) * fx;
+        let lower = self.at(x0, y1) * (1.0 - fx) + self.at(x1, y1) * fx;
+        Some(upper * (1.0 - fy) + lower * fy)
+    }
+
+    /// Whether a place is in the image, `margin` camera pixels away from its border.
+    pub(crate) fn holds(&self, point: PixelPoint, margin: f64) -> bool {
+        let bottom = self.camera_row(self.rows().saturating_sub(1));
+        point.x >= margin
+            && point.y >= self.first_row + margin
+            && point.x <= self.columns() as f64 - 1.0 - margin
+            && point.y <= bottom - margin
+    }
+
+    /// The field with square pixels of 2 × 2 camera pixels: what regions and edges are looked for in.
+    pub(crate) fn overview(&self) -> Overview {
+        let rows_each = if self.step > 1.5 { 1 } else { 2 };
+        let (width, height) = (self.columns() / 2, self.rows() / rows_each);
+        let mut grey = GrayImage::new(width as u32, height as u32);
+        let weight = 1.0 / (2 * rows_each) as f64;
+        for y in 0..height {
+            for x in 0..width {
+                let sum: f64 = (0..rows_each)
+                    .map(|k| self.at(2 * x, rows_each * y + k) + self.at(2 * x + 1, rows_each * y + k))
+                    .sum();
+                grey.put_pixel(x as u32, y as u32, Luma([(sum * weight + 0.5) as u8]));
+            }
+        }
+        let first_y = if rows_each == 1 { self.first_row } else { 0.5 };
+        Overview { grey, first_x: 0.5, first_y }
+    }
+}
+
+/// A field with square pixels, each [`Overview::PIXEL`] camera pixels wide and high.
+#[derive(Debug, Clone)]
+pub(crate) struct Overview {
+    /// Grey values.
+    pub(crate) grey: GrayImage,
+    first_x: f64,
+    first_y: f64,
+}
+
+impl Overview {
+    /// Camera pixels along a side of a pixel.
+    pub(crate) const PIXEL: f64 = 2.0;
+
+    /// The place in the camera of a place in the overview (centre of its first pixel: (0, 0)).
+    pub(crate) fn to_camera(&self, x: f64, y: f64) -> PixelPoint {
+        PixelPoint::new(self.first_x + Self::PIXEL * x, self.first_y + Self::PIXEL * y)
+    }
+
+    /// The place in the overview of a place in the camera.
+    pub(crate) fn of_camera(&self, point: PixelPoint) -> (f64, f64) {
+        ((point.x - self.first_x) / Self::PIXEL, (point.y - self.first_y) / Self::PIXEL)
+    }
+}
+
+/// The way between the camera's pixels and the ideal image of the paper's formulas: (f x1/x3, f x2/x3), px, from the
+/// principal point, f along columns.
+#[derive(Debug, Clone)]
+pub(crate) struct Lens {
+    model: CameraModel,
+    focal_px: f64,
+}
+
+impl Lens {
+    pub(crate) fn new(camera: &Camera) -> Result<Self, ContractError> {
+        Ok(Self { model: CameraModel::new(camera)?, focal_px: camera.focal_length_px().0 })
+    }
+
+    /// f, px.
+    pub(crate) fn focal_px(&self) -> f64 {
+        self.focal_px
+    }
+
+    /// Without distortion; `None` where the lens model has no inverse.
+    pub(crate) fn to_ideal(&self, point: PixelPoint) -> Option<Vector2<f64>> {
+        let ray = self.model.back_project(point)?;
+        let ray = ray.vector();
+        Some(Vector2::new(self.focal_px * ray.x / ray.z, self.focal_px * ray.y / ray.z))
+    }
+
+    /// As the camera sees it; `None` beyond the fold of the distortion.
+    pub(crate) fn to_camera(&self, ideal: Vector2<f64>) -> Option<PixelPoint> {
+        self.model.project_vector(&Vector3::new(ideal.x / self.focal_px, ideal.y / self.focal_px, 1.0))
+    }
+}

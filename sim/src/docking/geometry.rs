@@ -1,0 +1,202 @@
+//! What of the target a camera sees, and what the Sun shines on: exact projections and rays.
+
+use std::f64::consts::PI;
+
+use contract::docking::{Pose, TargetModel};
+use contract::{Camera, Direction, PixelPoint};
+use nalgebra::Vector3;
+
+use super::occlusion::Occluders;
+use crate::SimError;
+use crate::optics::Projection;
+use crate::scene::docking::DockingScene;
+use crate::television::SunImage;
+use crate::truth::approach::target_from_camera;
+
+/// Angular radius of the Sun at 1 au, rad (959.63″, Auwers 1891, as in the Astronomical Almanac).
+const SUN_RADIUS_RAD: f64 = 959.63 / 3600.0 * PI / 180.0;
+/// Points on the rim of a circle that are projected.
+const RIM_POINTS: u32 = 32;
+/// Places on each side of a mark at which its light is looked at.
+const MARK_PLACES: u32 = 5;
+/// Points across the Sun's disk at which it is looked whether something hides it.
+const SUN_PLACES: i32 = 7;
+
+/// A camera with its exact projection.
+#[derive(Debug, Clone)]
+pub(super) struct Eye {
+    projection: Projection,
+    focal_px: f64,
+    columns: f64,
+    rows: f64,
+    principal: PixelPoint,
+}
+
+impl Eye {
+    pub(super) fn new(camera: &Camera) -> Result<Self, SimError> {
+        Ok(Self {
+            projection: Projection::new(camera)?,
+            focal_px: camera.focal_length_px().0,
+            columns: camera.columns as f64,
+            rows: camera.rows as f64,
+            principal: PixelPoint::new(camera.principal_x_px, camera.principal_y_px),
+        })
+    }
+
+    /// Image of a direction of the target frame.
+    fn image_of_direction(&self, pose: &Pose, direction: &Vector3<f64>) -> Option<PixelPoint> {
+        let seen = target_from_camera(pose).transpose() * direction;
+        self.projection.project(&Direction::from_vector(seen).ok()?)
+    }
+
+    /// Image of a point of the target frame.
+    pub(super) fn image_of(&self, pose: &Pose, point_m: &Vector3<f64>) -> Option<PixelPoint> {
+        self.image_of_direction(pose, &(point_m - pose.position_m))
+    }
+
+    fn holds(&self, point: Option<PixelPoint>, margin_px: f64) -> bool {
+        point.is_some_and(|p| {
+            (-0.5 - margin_px..=self.columns - 0.5 + margin_px).contains(&p.x)
+                && (-0.5 - margin_px..=self.rows - 0.5 + margin_px).contains(&p.y)
+        })
+    }
+
+    fn sees_all(&self, pose: &Pose, points: &[Vector3<f64>]) -> bool {
+        points.iter().all(|point| self.holds(self.image_of(pose, point), 0.0))
+    }
+}
+
+/// The target's points, and what stands in the way of light.
+#[derive(Debug, Clone)]
+pub(super) struct TargetGeometry {
+    mark_circle_radius_m: f64,
+    cross_centre: Vector3<f64>,
+    marks: Vec<[Vector3<f64>; 4]>,
+    cross_ends: Vec<Vector3<f64>>,
+    plate_rim: Vec<Vector3<f64>>,
+    plate_places: Vec<Vector3<f64>>,
+    shading: Occluders,
+    hiding: Occluders,
+}
+
+impl TargetGeometry {
+    pub(super) fn new(model: &TargetModel, scene: &DockingScene) -> Self {
+        let cross = &model.cross;
+        let (length, half, height) = (cross.half_length_m, 0.5 * cross.width_m, cross.height_m);
+        let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let cross_ends = signs
+            .iter()
+            .flat_map(|(s, t)| [[s * length, t * half], [s * half, t * length]])
+            .map(|[y1, y2]| Vector3::new(y1, y2, height))
+            .collect();
+        let radius = model.plate_radius_m;
+        // Rings of equal area; 96 places.
+        let rings = [0.25, 0.5, 0.75, 0.95].map(|share| circle(share * radius, (share * 39.2) as u32));
+        Self {
+            mark_circle_radius_m: model.mark_circle_radius_m,
+            cross_centre: Vector3::new(0.0, 0.0, height),
+            marks: model
+                .marks
+                .iter()
+                .map(|mark| mark.map(|[y1, y2]| Vector3::new(y1, y2, 0.0)))
+                .collect(),
+            cross_ends,
+            plate_rim: circle(radius, RIM_POINTS),
+            plate_places: rings.into_iter().flatten().collect(),
+            // What lies in or behind the plate's plane cannot shade it.
+            shading: Occluders::new(scene.parts.iter().filter(|part| part.casts_shadow), |facet| {
+                facet.outer.iter().any(|corner| corner.z > 1e-6)
+            }),
+            hiding: Occluders::new(scene.parts.iter().filter(|part| part.visible), |_| true),
+        }
+    }
+
+    /// Image of the centre of the cross, of the disk, and f r/x3.
+    pub(super) fn centres(
+        &self,
+        eye: &Eye,
+        pose: &Pose,
+    ) -> (Option<PixelPoint>, Option<PixelPoint>, Option<f64>) {
+        let depth_m = -pose.position_m.dot(&target_from_camera(pose).column(2));
+        let radius_px = (depth_m > 0.0).then(|| eye.focal_px * self.mark_circle_radius_m / depth_m);
+        (eye.image_of(pose, &self.cross_centre), eye.image_of(pose, &Vector3::zeros()), radius_px)
+    }
+
+    /// Bit i: mark i is wholly in the picture.
+    pub(super) fn marks_in_field(&self, eye: &Eye, pose: &Pose) -> u64 {
+        self.bits(|mark| eye.sees_all(pose, mark))
+    }
+
+    pub(super) fn cross_in_field(&self, eye: &Eye, pose: &Pose) -> bool {
+        eye.sees_all(pose, &self.cross_ends)
+    }
+
+    /// Whether plate, marks and cross are in the picture.
+    pub(super) fn target_in_field(&self, eye: &Eye, pose: &Pose) -> bool {
+        self.cross_in_field(eye, pose)
+            && eye.sees_all(pose, &self.plate_rim)
+            && self.marks.iter().all(|mark| eye.sees_all(pose, mark))
+    }
+
+    /// Bit i: some of mark i is not lit by a Sun in this direction.
+    pub(super) fn marks_shadowed(&self, sun: &Vector3<f64>) -> u64 {
+        self.bits(|mark| places(mark).any(|place| !self.is_lit(&place, sun)))
+    }
+
+    /// Share of the plate that a Sun in this direction shines on.
+    pub(super) fn plate_lit(&self, sun: &Vector3<f64>) -> f64 {
+        let lit = self.plate_places.iter().filter(|place| self.is_lit(place, sun)).count();
+        lit as f64 / self.plate_places.len().max(1) as f64
+    }
+
+    fn is_lit(&self, place: &Vector3<f64>, sun: &Vector3<f64>) -> bool {
+        sun.z > 0.0 && !self.shading.hide(place, sun)
+    }
+
+    fn bits(&self, holds: impl Fn(&[Vector3<f64>; 4]) -> bool) -> u64 {
+        self.marks.iter().enumerate().fold(0, |bits, (i, mark)| bits | u64::from(holds(mark)) << i)
+    }
+
+    /// The Sun as the camera sees it, when some of its disk is in the picture and not hidden.
+    pub(super) fn sun_image(&self, eye: &Eye, pose: &Pose, sun: &Vector3<f64>) -> Option<SunImage> {
+        let centre = eye.image_of_direction(pose, sun)?;
+        let radius_px = SUN_RADIUS_RAD * eye.focal_px;
+        if !eye.holds(Some(centre), radius_px) {
+            return None;
+        }
+        let aside = sun.cross(&if sun.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() }).normalize();
+        let above = sun.cross(&aside);
+        let (mut places, mut seen) = (0_u32, 0_u32);
+        let middle = SUN_PLACES / 2;
+        for (i, j) in (0..SUN_PLACES).flat_map(|i| (0..SUN_PLACES).map(move |j| (i - middle, j - middle))) {
+            let (u, v) = (f64::from(i) / f64::from(middle), f64::from(j) / f64::from(middle));
+            if u * u + v * v <= 1.0 {
+                places += 1;
+                let towards = (sun + (aside * u + above * v) * SUN_RADIUS_RAD).normalize();
+                seen += u32::from(!self.hiding.hide(&pose.position_m, &towards));
+            }
+        }
+        let ghost = PixelPoint::new(2.0 * eye.principal.x - centre.x, 2.0 * eye.principal.y - centre.y);
+        let visible = f64::from(seen) / f64::from(places);
+        (seen > 0).then_some(SunImage { centre, ghost, radius_px, focal_px: eye.focal_px, visible })
+    }
+}
+
+fn circle(radius_m: f64, points: u32) -> Vec<Vector3<f64>> {
+    (0..points)
+        .map(|i| {
+            let (sin, cos) = libm::sincos(2.0 * PI * f64::from(i) / f64::from(points));
+            Vector3::new(radius_m * cos, radius_m * sin, 0.0)
+        })
+        .collect()
+}
+
+/// Places spread over a mark, its border included.
+fn places(mark: &[Vector3<f64>; 4]) -> impl Iterator<Item = Vector3<f64>> {
+    let [a, b, c, d] = *mark;
+    let share = |i: u32| f64::from(i) / f64::from(MARK_PLACES - 1);
+    (0..MARK_PLACES * MARK_PLACES).map(move |i| {
+        let (u, v) = (share(i % MARK_PLACES), share(i / MARK_PLACES));
+        (a * (1.0 - u) + b * u) * (1.0 - v) + (d * (1.0 - u) + c * u) * v
+    })
+}

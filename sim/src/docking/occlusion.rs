@@ -1,0 +1,127 @@
+//! Whether a straight line meets the scene: which marks lie in shadow, and how much of the Sun is hidden.
+
+use nalgebra::Vector3;
+
+use crate::scene::docking::{Facet, Part};
+
+/// Distance from which on a facet can hide something, m: a point on a surface is not hidden by that surface.
+const CLEARANCE_M: f64 = 1e-6;
+
+/// Facets that hide what is behind them, from whichever side.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Occluders {
+    plates: Vec<Plate>,
+}
+
+/// A facet, with its boundary as seen along the axis on which its normal is longest.
+#[derive(Debug, Clone, PartialEq)]
+struct Plate {
+    normal: Vector3<f64>,
+    distance_m: f64,
+    axes: (usize, usize),
+    low: [f64; 2],
+    high: [f64; 2],
+    rings: Vec<Vec<[f64; 2]>>,
+}
+
+impl Occluders {
+    /// The facets of `parts` of which `keep` says so.
+    pub(super) fn new<'a>(
+        parts: impl IntoIterator<Item = &'a Part>,
+        keep: impl Fn(&Facet) -> bool,
+    ) -> Self {
+        let facets = parts.into_iter().flat_map(|part| &part.facets).filter(|facet| keep(facet));
+        Self { plates: facets.filter_map(Plate::new).collect() }
+    }
+
+    /// Whether the ray from `from` along the unit vector `towards` meets one of them.
+    pub(super) fn hide(&self, from: &Vector3<f64>, towards: &Vector3<f64>) -> bool {
+        self.plates.iter().any(|plate| plate.meets(from, towards))
+    }
+}
+
+impl Plate {
+    /// `None` for a facet without corners.
+    fn new(facet: &Facet) -> Option<Self> {
+        let normal = facet.normal;
+        let axes = match normal.iamax() {
+            0 => (1, 2),
+            1 => (2, 0),
+            _ => (0, 1),
+        };
+        let flat = |ring: &Vec<Vector3<f64>>| ring.iter().map(|p| [p[axes.0], p[axes.1]]).collect::<Vec<_>>();
+        let outer = flat(&facet.outer);
+        let bound = |pick: fn(f64, f64) -> f64, start: f64| {
+            [0, 1].map(|i| outer.iter().fold(start, |bound, corner| pick(bound, corner[i])))
+        };
+        Some(Self {
+            normal,
+            distance_m: normal.dot(facet.outer.first()?),
+            axes,
+            low: bound(f64::min, f64::INFINITY),
+            high: bound(f64::max, f64::NEG_INFINITY),
+            rings: std::iter::once(outer).chain(facet.holes.iter().map(flat)).collect(),
+        })
+    }
+
+    fn meets(&self, from: &Vector3<f64>, towards: &Vector3<f64>) -> bool {
+        let along = self.normal.dot(towards);
+        let distance = (self.distance_m - self.normal.dot(from)) / along;
+        // An infinite or undefined distance is a ray in the plane: it meets nothing.
+        if !(distance.is_finite() && distance > CLEARANCE_M) {
+            return false;
+        }
+        let (a, b) = self.axes;
+        let point = [from[a] + distance * towards[a], from[b] + distance * towards[b]];
+        let inside = |i: usize| (self.low[i]..=self.high[i]).contains(&point[i]);
+        // A point in a hole is inside two rings.
+        inside(0) && inside(1) && self.rings.iter().fold(false, |odd, ring| odd ^ encloses(ring, point))
+    }
+}
+
+/// Whether a polygon encloses a point: the parity of the edges that a half-line crosses.
+fn encloses(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let next = ring.iter().cycle().skip(1);
+    ring.iter().zip(next).fold(false, |inside, (p, q)| {
+        let crosses = (p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0]);
+        inside ^ crosses
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of side 2 at y3 = 1 with a square hole of side 1.
+    fn framed() -> Occluders {
+        let square = |half: f64, sign: f64| {
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+                .map(|[x, y]: [f64; 2]| Vector3::new(sign * half * x, half * y, 1.0))
+                .to_vec()
+        };
+        let facet = Facet {
+            outer: square(1.0, 1.0),
+            holes: vec![square(0.5, -1.0)],
+            normal: Vector3::z(),
+            reflectance: 0.5,
+        };
+        let part = Part { name: "frame".into(), facets: vec![facet], casts_shadow: true, visible: true };
+        Occluders::new([&part], |_| true)
+    }
+
+    #[test]
+    fn a_frame_hides_but_not_through_its_hole_nor_behind() {
+        let frame = framed();
+        let up = Vector3::z();
+        for (x, y, hidden) in [(0.75, 0.0, true), (0.0, -0.9, true), (0.2, 0.3, false), (1.1, 0.0, false)] {
+            assert_eq!(frame.hide(&Vector3::new(x, y, 0.0), &up), hidden, "{x} {y}");
+            assert!(!frame.hide(&Vector3::new(x, y, 2.0), &up), "from beyond");
+            assert!(!frame.hide(&Vector3::new(x, y, 1.0), &up), "from itself");
+        }
+        let slanting = Vector3::new(0.6, 0.0, 0.8);
+        // At y3 = 1 it is 0.75 farther along y1.
+        assert!(frame.hide(&Vector3::zeros(), &slanting));
+        assert!(!frame.hide(&Vector3::new(-0.5, 0.0, 0.0), &slanting));
+        assert!(!frame.hide(&Vector3::zeros(), &Vector3::x()), "a ray along the plane");
+    }
+}

@@ -1,0 +1,150 @@
+//! Bloom: what is brighter than white has a wide, weak halo.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::optics::{correlate, gaussian_kernel, pad};
+
+/// Side of the cells on which the halo is computed, px of the camera.
+const CELL_PX: usize = 8;
+/// Light above white that a pixel can give to the halo, in units of the white level: the target of a camera tube, or a
+/// well, holds no more.
+const MOST_EXCESS: f32 = 30.0;
+
+/// A halo about pixels above white: a Gaussian of a share of the light above white.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct BloomConfig {
+    /// Share of the light above white that goes into the halo, 0 to 1.
+    pub share: f64,
+    /// Standard deviation of the halo, px of the camera, 4 to 200.
+    pub sigma_px: f64,
+}
+
+impl Default for BloomConfig {
+    fn default() -> Self {
+        Self { share: 0.1, sigma_px: 14.0 }
+    }
+}
+
+impl BloomConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        require("television.bloom.share", self.share, "0 to 1", |v| (0.0..=1.0).contains(&v))?;
+        require("television.bloom.sigma_px", self.sigma_px, "4 to 200", |v| (4.0..=200.0).contains(&v))
+    }
+}
+
+/// Computes halos on coarse cells; keeps its buffers.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Bloom {
+    cells: Vec<f32>,
+    along: Vec<f32>,
+    padded: Vec<f32>,
+}
+
+impl Bloom {
+    /// Adds the halo to the rows of a field, `step` rows of the camera apart.
+    pub(super) fn add(&mut self, config: &BloomConfig, signal: &mut [f32], columns: usize, step: usize) {
+        let rows_a_cell = CELL_PX / step;
+        let rows = signal.len() / columns;
+        let (across, down) = (columns.div_ceil(CELL_PX), rows.div_ceil(rows_a_cell));
+        if !signal.iter().any(|&s| s > 1.0) {
+            return;
+        }
+        self.cells.clear();
+        self.cells.resize(across * down, 0.0);
+        let share = config.share as f32 / (CELL_PX * rows_a_cell) as f32;
+        for (y, row) in signal.chunks_exact(columns).enumerate() {
+            let cells = &mut self.cells[y / rows_a_cell * across..][..across];
+            for (cell, pixels) in cells.iter_mut().zip(row.chunks(CELL_PX)) {
+                *cell += share * pixels.iter().map(|s| (s - 1.0).clamp(0.0, MOST_EXCESS)).sum::<f32>();
+            }
+        }
+        self.spread(&gaussian_kernel(config.sigma_px / CELL_PX as f64), across, down);
+        for (y, row) in signal.chunks_exact_mut(columns).enumerate() {
+            let (above, below, v) = between(y, rows_a_cell, down);
+            self.along.clear();
+            let (top, bottom) = (&self.cells[above * across..][..across], &self.cells[below * across..][..across]);
+            self.along.extend(top.iter().zip(bottom).map(|(a, b)| a + v * (b - a)));
+            for (x, pixel) in row.iter_mut().enumerate() {
+                let (left, right, u) = between(x, CELL_PX, across);
+                *pixel += self.along[left] + u * (self.along[right] - self.along[left]);
+            }
+        }
+    }
+
+    /// Blurs the cells; beyond the picture's border there is no light.
+    fn spread(&mut self, kernel: &[f32], across: usize, down: usize) {
+        let reach = kernel.len() / 2;
+        for row in self.cells.chunks_exact_mut(across) {
+            dark_pad(row, reach, &mut self.padded);
+            row.fill(0.0);
+            correlate(&self.padded, kernel, row);
+        }
+        for x in 0..across {
+            self.along.clear();
+            self.along.extend((0..down).map(|y| self.cells[y * across + x]));
+            dark_pad(&self.along, reach, &mut self.padded);
+            self.along.fill(0.0);
+            correlate(&self.padded, kernel, &mut self.along);
+            for (y, value) in self.along.iter().enumerate() {
+                self.cells[y * across + x] = *value;
+            }
+        }
+    }
+}
+
+fn dark_pad(row: &[f32], reach: usize, padded: &mut Vec<f32>) {
+    pad(row, reach, reach, padded);
+    let end = padded.len() - reach;
+    padded[..reach].fill(0.0);
+    padded[end..].fill(0.0);
+}
+
+/// The two cells whose centres a pixel lies between, and how far.
+fn between(pixel: usize, side: usize, cells: usize) -> (usize, usize, f32) {
+    let place = ((pixel as f32 + 0.5) / side as f32 - 0.5).clamp(0.0, (cells - 1) as f32);
+    let first = place as usize;
+    (first, (first + 1).min(cells - 1), place - first as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_halo_has_its_share_of_the_light_and_its_width() {
+        let (columns, rows) = (320, 240);
+        let mut signal = vec![0.0_f32; columns * rows];
+        for y in 112..120 {
+            signal[y * columns + 152..y * columns + 160].fill(11.0);
+        }
+        let before = signal.clone();
+        let config = BloomConfig { share: 0.2, sigma_px: 16.0 };
+        Bloom::default().add(&config, &mut signal, columns, 1);
+        let halo: Vec<f64> = signal.iter().zip(&before).map(|(a, b)| f64::from(a - b)).collect();
+        let sum: f64 = halo.iter().sum();
+        // 64 pixels, 10 above white each; f32 sums.
+        assert!((sum - 0.2 * 640.0).abs() < 0.05, "{sum}");
+        let variance = halo
+            .iter()
+            .enumerate()
+            .map(|(i, h)| {
+                let x = (i % columns) as f64 - 155.5;
+                x * x * h / sum
+            })
+            .sum::<f64>();
+        // The source's cell (64/12), the interpolation between cells (2 × 64/12), and the tails that are cut at 4 σ (0.1 %).
+        let theory = 256.0 + 64.0 / 12.0 + 64.0 / 6.0;
+        assert!((variance / theory - 1.0).abs() < 0.02, "{variance} {theory}");
+    }
+
+    #[test]
+    fn without_a_glint_nothing_changes() {
+        let mut signal = vec![1.0_f32; 6400];
+        Bloom::default().add(&BloomConfig::default(), &mut signal, 80, 2);
+        assert!(signal.iter().all(|&s| s == 1.0));
+    }
+}

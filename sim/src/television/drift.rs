@@ -1,0 +1,84 @@
+//! Slow drift of the camera's contrast and brightness.
+
+use std::f64::consts::PI;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::randomness::{Effect, Seed, uniform};
+
+/// Most sinusoids.
+const MAX_PERIODS: usize = 16;
+
+/// Contrast and brightness of the camera as sums of sinusoids of equal strength whose phases are drawn from the seed: a
+/// function of time, with no memory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DriftConfig {
+    /// Root mean square of the relative change of contrast, 0 to 0.3.
+    pub contrast_rms: f64,
+    /// Root mean square of the change of brightness, in units of the white level, 0 to 0.3.
+    pub brightness_rms: f64,
+    /// Periods, s, 0.1 to 1e5, 1 to 16 of them.
+    pub periods_s: Vec<f64>,
+}
+
+impl Default for DriftConfig {
+    fn default() -> Self {
+        Self { contrast_rms: 0.04, brightness_rms: 0.01, periods_s: vec![97.0, 41.0, 13.0] }
+    }
+}
+
+impl DriftConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        let share = |v: f64| (0.0..=0.3).contains(&v);
+        require("television.drift.contrast_rms", self.contrast_rms, "0 to 0.3", share)?;
+        require("television.drift.brightness_rms", self.brightness_rms, "0 to 0.3", share)?;
+        require(
+            "television.drift.periods_s (how many)",
+            self.periods_s.len() as f64,
+            "1 to 16",
+            |n| (1.0..=MAX_PERIODS as f64).contains(&n),
+        )?;
+        self.periods_s.iter().try_for_each(|&period| {
+            require("television.drift.periods_s", period, "0.1 to 1e5", |p| (0.1..=1e5).contains(&p))
+        })
+    }
+
+    /// Contrast (about 1) and brightness (about 0) at a time.
+    pub(super) fn at(&self, seed: &Seed, time_s: f64) -> (f64, f64) {
+        // A sinusoid of amplitude a has the mean square a²/2.
+        let amplitude = (2.0 / self.periods_s.len().max(1) as f64).sqrt();
+        let mut sums = [0.0; 2];
+        for (i, period_s) in (0..).zip(&self.periods_s) {
+            let mut stream = seed.stream(0, Effect::VideoDrift, i);
+            for sum in &mut sums {
+                let phase = 2.0 * PI * uniform(&mut stream);
+                *sum += amplitude * libm::sin(2.0 * PI * time_s / period_s + phase);
+            }
+        }
+        (1.0 + self.contrast_rms * sums[0], self.brightness_rms * sums[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_drift_has_its_root_mean_square() {
+        let config = DriftConfig { contrast_rms: 0.05, brightness_rms: 0.02, periods_s: vec![10.0, 4.0] };
+        // Ten seconds hold whole periods of 10 s, and 20 s of both.
+        let n = 2000;
+        let mut squares = [0.0; 2];
+        for i in 0..n {
+            let (contrast, brightness) = config.at(&Seed { seed: 1, case: 0 }, 20.0 * f64::from(i) / f64::from(n));
+            squares[0] += (contrast - 1.0) * (contrast - 1.0) / f64::from(n);
+            squares[1] += brightness * brightness / f64::from(n);
+        }
+        // Exact over whole periods, to rounding.
+        assert!((squares[0].sqrt() - 0.05).abs() < 1e-12 && (squares[1].sqrt() - 0.02).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,151 @@
+//! The analogue line: limited bandwidth and ringing, as one filter along each line.
+
+use std::f64::consts::PI;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::optics::{correlate, gaussian_kernel, pad};
+
+/// Limited bandwidth of the video channel, as a Gaussian along the line.
+///
+/// A channel whose amplitude has fallen by 3 dB at the frequency f (cycles a pixel) has σ = 0.1325/f px: 5.5 MHz of
+/// a 625-line system with square pixels (14.75 MHz) are 0.355 px.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct BandwidthConfig {
+    /// Standard deviation along the line, px, 0 to 10.
+    pub sigma_px: f64,
+}
+
+impl Default for BandwidthConfig {
+    fn default() -> Self {
+        Self { sigma_px: 0.36 }
+    }
+}
+
+impl BandwidthConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        require("television.bandwidth.sigma_px", self.sigma_px, "0 to 10", |v| (0.0..=10.0).contains(&v))
+    }
+}
+
+/// Ringing: an edge of the height 1 is followed by amplitude × exp(−x/decay) sin(2π x/period), x pixels after it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RingingConfig {
+    /// Amplitude, in units of the edge, 0 to 0.5.
+    pub amplitude: f64,
+    /// Period, px, 2 to 50.
+    pub period_px: f64,
+    /// Decay to 1/e, px, 0.5 to 20.
+    pub decay_px: f64,
+}
+
+impl Default for RingingConfig {
+    fn default() -> Self {
+        Self { amplitude: 0.06, period_px: 5.0, decay_px: 2.5 }
+    }
+}
+
+impl RingingConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        require("television.ringing.amplitude", self.amplitude, "0 to 0.5", |v| (0.0..=0.5).contains(&v))?;
+        require("television.ringing.period_px", self.period_px, "2 to 50", |v| (2.0..=50.0).contains(&v))?;
+        require("television.ringing.decay_px", self.decay_px, "0.5 to 20", |v| (0.5..=20.0).contains(&v))
+    }
+
+    /// The impulse response from the edge on: differences of the response to an edge, of unit sum.
+    fn impulse(&self) -> Vec<f64> {
+        let edge = |i: i32| {
+            let x = f64::from(i);
+            1.0 + self.amplitude * libm::exp(-x / self.decay_px) * libm::sin(2.0 * PI * x / self.period_px)
+        };
+        let length = (6.0 * self.decay_px).ceil() as i32;
+        let mut impulse = vec![edge(0)];
+        impulse.extend((1..length).map(|i| edge(i) - edge(i - 1)));
+        let sum: f64 = impulse.iter().sum();
+        impulse.iter().map(|h| h / sum).collect()
+    }
+}
+
+/// Bandwidth and ringing together.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct LineFilter {
+    /// In the order of increasing column, as correlated with the line.
+    kernel: Vec<f32>,
+    before: usize,
+    padded: Vec<f32>,
+}
+
+impl LineFilter {
+    /// `None` when both are off.
+    pub(super) fn new(bandwidth: Option<&BandwidthConfig>, ringing: Option<&RingingConfig>) -> Option<Self> {
+        if bandwidth.is_none() && ringing.is_none() {
+            return None;
+        }
+        let gaussian = gaussian_kernel(bandwidth.map_or(0.0, |config| config.sigma_px));
+        let reach = gaussian.len() / 2;
+        let impulse = ringing.map_or_else(|| vec![1.0], RingingConfig::impulse);
+        let mut kernel = vec![0.0_f64; gaussian.len() + impulse.len() - 1];
+        for (i, g) in gaussian.iter().enumerate() {
+            // Ringing follows: it takes from columns before, so the impulse runs backwards in a correlation.
+            for (j, h) in impulse.iter().rev().enumerate() {
+                kernel[i + j] += f64::from(*g) * h;
+            }
+        }
+        let before = reach + impulse.len() - 1;
+        Some(Self { kernel: kernel.iter().map(|k| *k as f32).collect(), before, padded: Vec::new() })
+    }
+
+    /// Filters every line.
+    pub(super) fn apply(&mut self, signal: &mut [f32], columns: usize) {
+        let after = self.kernel.len() - 1 - self.before;
+        for row in signal.chunks_exact_mut(columns) {
+            pad(row, self.before, after, &mut self.padded);
+            row.fill(0.0);
+            correlate(&self.padded, &self.kernel, row);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_edge_is_followed_by_a_damped_oscillation() {
+        let config = RingingConfig { amplitude: 0.1, period_px: 8.0, decay_px: 4.0 };
+        let mut line = vec![0.0_f32; 100];
+        line[40..].fill(1.0);
+        LineFilter::new(None, Some(&config)).unwrap().apply(&mut line, 100);
+        assert!(line[..40].iter().all(|v| v.abs() < 1e-6), "nothing comes before the edge");
+        for x in 0..20 {
+            let t = x as f64;
+            let theory = 1.0 + 0.1 * libm::exp(-t / 4.0) * libm::sin(2.0 * PI * t / 8.0);
+            // What is cut off after 6 decays, 2.5e-4 of the amplitude, is spread over the response.
+            assert!((f64::from(line[40 + x]) - theory).abs() < 1e-4, "{x}: {} {theory}", line[40 + x]);
+        }
+        assert!((line[99] - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_bandwidth_leaves_levels_and_has_its_width() {
+        let config = BandwidthConfig { sigma_px: 1.0 };
+        let mut line = vec![0.5_f32; 60];
+        line[30] = 1.5;
+        LineFilter::new(Some(&config), None).unwrap().apply(&mut line, 60);
+        assert!((line[0] - 0.5).abs() < 1e-6 && (line[59] - 0.5).abs() < 1e-6);
+        let variance: f64 =
+            line.iter().enumerate().map(|(x, v)| (x as f64 - 30.0) * (x as f64 - 30.0) * (f64::from(*v) - 0.5)).sum();
+        // A sampled Gaussian of σ = 1, cut at 4 σ: 0.999.
+        assert!((variance - 1.0).abs() < 2e-3, "{variance}");
+    }
+
+    #[test]
+    fn without_either_there_is_no_filter() {
+        assert_eq!(LineFilter::new(None, None), None);
+    }
+}

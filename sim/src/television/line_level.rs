@@ -1,0 +1,89 @@
+//! Faint horizontal bands and lines: mains hum, and a level of each line's own.
+
+use std::f64::consts::PI;
+
+use contract::docking::Lines;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::randomness::{Effect, Seed, normal};
+
+/// Added to every pixel of a line: a band that wanders over the picture, and a normal number of the line.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct LineLevelConfig {
+    /// Amplitude of the hum, in units of the white level, 0 to 0.5.
+    pub hum_amplitude: f64,
+    /// Rows of the camera from one band of the hum to the next, 2 to 10000.
+    pub hum_period_rows: f64,
+    /// Bands of the hum that pass a row in a second, −25 to 25, Hz.
+    pub hum_beat_hz: f64,
+    /// Standard deviation of a line's own level, in units of the white level, 0 to 0.5.
+    pub line_sigma: f64,
+}
+
+impl Default for LineLevelConfig {
+    fn default() -> Self {
+        Self { hum_amplitude: 0.004, hum_period_rows: 288.0, hum_beat_hz: 0.7, line_sigma: 0.004 }
+    }
+}
+
+impl LineLevelConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        let level = |v: f64| (0.0..=0.5).contains(&v);
+        require("television.line_level.hum_amplitude", self.hum_amplitude, "0 to 0.5", level)?;
+        require("television.line_level.hum_period_rows", self.hum_period_rows, "2 to 10000", |v| {
+            (2.0..=1e4).contains(&v)
+        })?;
+        require("television.line_level.hum_beat_hz", self.hum_beat_hz, "-25 to 25", |v| v.abs() <= 25.0)?;
+        require("television.line_level.line_sigma", self.line_sigma, "0 to 0.5", level)
+    }
+
+    /// Level of a row of the camera in a field exposed at a time.
+    pub(super) fn level(&self, seed: &Seed, field: u64, row: usize, time_s: f64) -> f64 {
+        let turns = row as f64 / self.hum_period_rows - self.hum_beat_hz * time_s;
+        let own = normal(&mut seed.stream(field, Effect::LineLevel, row as u64));
+        self.hum_amplitude * libm::sin(2.0 * PI * turns) + self.line_sigma * own
+    }
+
+    /// Adds the levels to the lines of a field.
+    pub(super) fn apply(
+        &self,
+        seed: &Seed,
+        field: u64,
+        time_s: f64,
+        lines: Lines,
+        signal: &mut [f32],
+        columns: usize,
+    ) {
+        for (k, row) in signal.chunks_exact_mut(columns).enumerate() {
+            let level = self.level(seed, field, lines.camera_row(k), time_s) as f32;
+            row.iter_mut().for_each(|s| *s += level);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_are_a_band_and_a_normal_number() {
+        let config =
+            LineLevelConfig { hum_amplitude: 0.1, hum_period_rows: 100.0, hum_beat_hz: 2.0, line_sigma: 0.01 };
+        let seed = Seed { seed: 3, case: 0 };
+        let n = 20_000_u64;
+        let (mut band, mut square) = (0.0, 0.0);
+        for field in 0..n {
+            // A row at the crest of the hum: a quarter of a period, and whole turns of the beat.
+            let own = config.level(&seed, field, 25, 0.5 * field as f64) - 0.1;
+            band += own / n as f64;
+            square += own * own / n as f64;
+        }
+        // Standard errors 0.01/√n and 0.01²√(2/n); four of them.
+        assert!(band.abs() < 2.9e-4, "{band}");
+        assert!((square / 1e-4 - 1.0).abs() < 0.04, "{square}");
+    }
+}

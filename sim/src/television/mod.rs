@@ -1,0 +1,306 @@
+//! The television chain: from light in the focal plane to a video signal, and to digital numbers.
+//!
+//! In the order of the signal: veiling glare and bloom in the lens and the tube, gain, bandwidth and ringing, jitter and loss of
+//! lines, their levels, noise, and the overlay. Each effect is a file, has a switch of its own (it is on when it has its
+//! section) and draws of its own: every other draw is the same with and without it.
+
+mod auto_gain;
+mod bloom;
+mod drift;
+mod glyphs;
+mod line_filter;
+mod line_jitter;
+mod line_level;
+mod lost_lines;
+mod noise;
+mod overlay;
+mod sun_glare;
+mod video;
+
+use contract::docking::Lines;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::randomness::Seed;
+use crate::sensor::Ziggurat;
+pub use auto_gain::AutoGainConfig;
+use bloom::Bloom;
+pub use bloom::BloomConfig;
+pub use drift::DriftConfig;
+use line_filter::LineFilter;
+pub use line_filter::{BandwidthConfig, RingingConfig};
+pub use line_jitter::LineJitterConfig;
+pub use line_level::LineLevelConfig;
+pub use lost_lines::LostLinesConfig;
+pub use noise::VideoNoiseConfig;
+pub use overlay::OverlayConfig;
+pub(crate) use overlay::Caption;
+use overlay::Overlay;
+pub use sun_glare::{SunGlareConfig, SunImage};
+pub use video::{BIT_DEPTH, VideoField};
+
+/// Light that the automatic gain counts in a pixel at most, in units of the white level: the Sun is not to darken all.
+const METER_LIMIT: f32 = 4.0;
+
+/// Which rows are exposed together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Interlace {
+    /// Two fields a frame, at moments half a frame apart; the first holds rows 0, 2, 4, …
+    #[default]
+    TopFirst,
+    /// Two fields a frame; the first holds rows 1, 3, 5, …
+    BottomFirst,
+    /// Progressive: every row at one moment.
+    Off,
+}
+
+impl Interlace {
+    /// Rows of the field of this number.
+    pub fn lines(self, field: u64) -> Lines {
+        match (self, field.is_multiple_of(2)) {
+            (Self::Off, _) => Lines::All,
+            (Self::TopFirst, true) | (Self::BottomFirst, false) => Lines::Even,
+            (Self::TopFirst, false) | (Self::BottomFirst, true) => Lines::Odd,
+        }
+    }
+
+    /// Fields a frame: 1 or 2.
+    pub fn fields_a_frame(self) -> u32 {
+        match self {
+            Self::TopFirst | Self::BottomFirst => 2,
+            Self::Off => 1,
+        }
+    }
+}
+
+/// The television chain. An effect is on when its section is there; noise is always there and may be 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct TelevisionConfig {
+    /// Which rows are exposed together: top_first, bottom_first, off.
+    pub interlace: Interlace,
+    /// Frames a second, Hz, 1 to 1000; twice as many fields when interlaced.
+    pub frame_rate_hz: f64,
+    /// Radiance of the white level at a gain of 1, in the units of the lighting (a white surface that faces the Sun has
+    /// irradiance/π), 1e-6 to 1e6.
+    pub white_radiance: f64,
+    /// Signal of a black scene, in units of the white level, −0.5 to 0.5: above 0, so that noise is not clipped.
+    pub pedestal: f64,
+    /// Signal at which the camera clips, in units of the white level, 1 to 10.
+    pub clip_level: f64,
+    /// Noise.
+    pub noise: VideoNoiseConfig,
+    /// Slow drift of contrast and brightness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drift: Option<DriftConfig>,
+    /// Automatic gain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub auto_gain: Option<AutoGainConfig>,
+    /// Halo about what is brighter than white.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bloom: Option<BloomConfig>,
+    /// The Sun when it is in the field of view.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun_glare: Option<SunGlareConfig>,
+    /// Limited bandwidth.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bandwidth: Option<BandwidthConfig>,
+    /// Ringing after edges.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ringing: Option<RingingConfig>,
+    /// Shifts of lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line_jitter: Option<LineJitterConfig>,
+    /// Loss of lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lost_lines: Option<LostLinesConfig>,
+    /// Hum and levels of lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line_level: Option<LineLevelConfig>,
+    /// Reticle and text.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overlay: Option<OverlayConfig>,
+}
+
+impl Default for TelevisionConfig {
+    /// Interlace and noise, nothing else: for studies of accuracy.
+    fn default() -> Self {
+        Self {
+            interlace: Interlace::TopFirst,
+            frame_rate_hz: 25.0,
+            white_radiance: 1.0,
+            pedestal: 0.05,
+            clip_level: 1.3,
+            noise: VideoNoiseConfig::default(),
+            drift: None,
+            auto_gain: None,
+            bloom: None,
+            sun_glare: None,
+            bandwidth: None,
+            ringing: None,
+            line_jitter: None,
+            lost_lines: None,
+            line_level: None,
+            overlay: None,
+        }
+    }
+}
+
+impl TelevisionConfig {
+    /// Every effect at its default size.
+    pub fn all() -> Self {
+        Self {
+            drift: Some(DriftConfig::default()),
+            auto_gain: Some(AutoGainConfig::default()),
+            bloom: Some(BloomConfig::default()),
+            sun_glare: Some(SunGlareConfig::default()),
+            bandwidth: Some(BandwidthConfig::default()),
+            ringing: Some(RingingConfig::default()),
+            line_jitter: Some(LineJitterConfig::default()),
+            lost_lines: Some(LostLinesConfig::default()),
+            line_level: Some(LineLevelConfig::default()),
+            overlay: Some(OverlayConfig::default()),
+            ..Self::default()
+        }
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), SimError> {
+        require("television.frame_rate_hz", self.frame_rate_hz, "1 to 1000", |v| (1.0..=1e3).contains(&v))?;
+        require("television.white_radiance", self.white_radiance, "1e-6 to 1e6", |v| {
+            (1e-6..=1e6).contains(&v)
+        })?;
+        require("television.pedestal", self.pedestal, "-0.5 to 0.5", |v| v.abs() <= 0.5)?;
+        require("television.clip_level", self.clip_level, "1 to 10", |v| (1.0..=10.0).contains(&v))?;
+        self.noise.check()?;
+        self.drift.as_ref().map_or(Ok(()), DriftConfig::check)?;
+        self.auto_gain.as_ref().map_or(Ok(()), AutoGainConfig::check)?;
+        self.bloom.as_ref().map_or(Ok(()), BloomConfig::check)?;
+        self.sun_glare.as_ref().map_or(Ok(()), SunGlareConfig::check)?;
+        self.bandwidth.as_ref().map_or(Ok(()), BandwidthConfig::check)?;
+        self.ringing.as_ref().map_or(Ok(()), RingingConfig::check)?;
+        self.line_jitter.as_ref().map_or(Ok(()), LineJitterConfig::check)?;
+        self.lost_lines.as_ref().map_or(Ok(()), LostLinesConfig::check)?;
+        self.line_level.as_ref().map_or(Ok(()), LineLevelConfig::check)?;
+        self.overlay.as_ref().map_or(Ok(()), OverlayConfig::check)
+    }
+
+    /// Fields (or progressive frames) a second.
+    pub fn field_rate_hz(&self) -> f64 {
+        self.frame_rate_hz * f64::from(self.interlace.fields_a_frame())
+    }
+}
+
+/// Whether the overlay can write a text.
+pub(crate) fn can_be_written(text: &str) -> bool {
+    text.chars().all(glyphs::has)
+}
+
+/// What the chain is told of a field besides its light.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FieldLabel<'a> {
+    pub(crate) number: u64,
+    pub(crate) time_s: f64,
+    pub(crate) lines: Lines,
+    pub(crate) sun: Option<SunImage>,
+    pub(crate) caption: Caption<'a>,
+}
+
+/// What the chain did to a field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VideoTruth {
+    /// Signal a radiance of the white level has above the pedestal: automatic gain × drift of contrast.
+    pub contrast: f64,
+    /// Signal of a black scene: pedestal + drift of brightness.
+    pub brightness: f64,
+    /// Lines lost on the way.
+    pub lost_lines: u32,
+}
+
+/// A chain that was checked, with the buffers that fields reuse. One a thread.
+#[derive(Debug, Clone)]
+pub(crate) struct Television {
+    config: TelevisionConfig,
+    seed: Seed,
+    columns: usize,
+    ziggurat: Ziggurat,
+    bloom: Bloom,
+    filter: Option<LineFilter>,
+    overlay: Option<Overlay>,
+    padded: Vec<f32>,
+}
+
+impl Television {
+    /// For cameras of `columns` × `rows`; `config` was checked.
+    pub(crate) fn new(config: &TelevisionConfig, seed: Seed, columns: usize, rows: usize) -> Self {
+        Self {
+            config: config.clone(),
+            seed,
+            columns,
+            ziggurat: Ziggurat::default(),
+            bloom: Bloom::default(),
+            filter: LineFilter::new(config.bandwidth.as_ref(), config.ringing.as_ref()),
+            overlay: config.overlay.as_ref().map(|overlay| Overlay::new(overlay, columns, rows)),
+            padded: Vec::new(),
+        }
+    }
+
+    /// Turns the radiance of a field's rows into its video signal, in place.
+    pub(crate) fn transmit(&mut self, field: &FieldLabel<'_>, signal: &mut [f32]) -> VideoTruth {
+        let (config, seed, columns) = (&self.config, &self.seed, self.columns);
+        let (number, time_s, lines) = (field.number, field.time_s, field.lines);
+        let per_white = (1.0 / config.white_radiance) as f32;
+        signal.iter_mut().for_each(|s| *s *= per_white);
+        if let (Some(glare), Some(sun)) = (&config.sun_glare, &field.sun) {
+            sun_glare::add(glare, sun, signal, columns, lines);
+        }
+        if let Some(bloom) = &config.bloom {
+            self.bloom.add(bloom, signal, columns, lines.step());
+        }
+        let (contrast, brightness) = config.drift.as_ref().map_or((1.0, 0.0), |drift| drift.at(seed, time_s));
+        let gain = config.auto_gain.map_or(1.0, |auto| auto.gain(metered_mean(signal, columns)));
+        let truth = VideoTruth {
+            contrast: gain * contrast,
+            brightness: config.pedestal + brightness,
+            lost_lines: 0,
+        };
+        let (slope, offset) = (truth.contrast as f32, truth.brightness as f32);
+        let clip = config.clip_level as f32;
+        signal.iter_mut().for_each(|s| *s = (slope * *s + offset).min(clip));
+
+        if let Some(filter) = &mut self.filter {
+            filter.apply(signal, columns);
+        }
+        if let Some(jitter) = &config.line_jitter {
+            jitter.apply(seed, number, lines, signal, columns, &mut self.padded);
+        }
+        let lost_lines =
+            config.lost_lines.map_or(0, |lost| lost.apply(seed, number, lines, signal, columns));
+        if let Some(level) = &config.line_level {
+            level.apply(seed, number, time_s, lines, signal, columns);
+        }
+        config.noise.apply(&self.ziggurat, seed, number, lines, signal, columns);
+        if let Some(overlay) = &self.overlay {
+            overlay.draw(&field.caption, lines, signal);
+        }
+        VideoTruth { lost_lines, ..truth }
+    }
+}
+
+/// Mean of a field as the automatic gain counts it.
+fn metered_mean(signal: &[f32], columns: usize) -> f64 {
+    let sum: f64 = signal
+        .chunks(columns)
+        .map(|row| f64::from(row.iter().map(|s| s.min(METER_LIMIT)).sum::<f32>()))
+        .sum();
+    sum / signal.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,81 @@
+//! Noise of the video signal.
+
+use contract::docking::Lines;
+use rand::Rng;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::randomness::{Effect, Seed};
+use crate::sensor::Ziggurat;
+
+/// White Gaussian noise, independent from pixel to pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct VideoNoiseConfig {
+    /// Standard deviation, in 1/255 of the white level (8-bit digital numbers at a contrast of 1), 0 to 100; 0 is without.
+    pub sigma_dn8: f64,
+}
+
+impl Default for VideoNoiseConfig {
+    fn default() -> Self {
+        Self { sigma_dn8: 2.0 }
+    }
+}
+
+impl VideoNoiseConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        require("television.noise.sigma_dn8", self.sigma_dn8, "0 to 100", |v| (0.0..=100.0).contains(&v))
+    }
+
+    /// Adds noise to the lines of a field. A row of the camera has one stream, at place = row, of which every pixel takes one
+    /// word; one whose word does not decide goes on at an address of its own.
+    pub(super) fn apply(
+        &self,
+        ziggurat: &Ziggurat,
+        seed: &Seed,
+        field: u64,
+        lines: Lines,
+        signal: &mut [f32],
+        columns: usize,
+    ) {
+        if self.sigma_dn8 == 0.0 {
+            return;
+        }
+        let sigma = self.sigma_dn8 / 255.0;
+        let streams = seed.streams(field, Effect::VideoNoise);
+        for (k, row) in signal.chunks_exact_mut(columns).enumerate() {
+            let y = lines.camera_row(k) as u64;
+            let mut stream = streams.at(y);
+            for (x, value) in (0..).zip(row) {
+                let own = contract::Camera::MAX_SIDE_PX as u64 * (y + 1) + x;
+                *value += (sigma * ziggurat.draw(stream.next_u64(), || streams.at(own))) as f32;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_noise_is_normal_white_and_as_large_as_said() {
+        let (columns, rows) = (768, 288);
+        let mut signal = vec![0.0_f32; columns * rows];
+        let seed = Seed { seed: 4, case: 0 };
+        let config = VideoNoiseConfig { sigma_dn8: 3.0 };
+        config.apply(&Ziggurat::default(), &seed, 17, Lines::Odd, &mut signal, columns);
+        let n = signal.len() as f64;
+        let moment = |f: &dyn Fn(f64) -> f64| signal.iter().map(|s| f(f64::from(*s) * 85.0)).sum::<f64>() / n;
+        let lagged = |lag: usize| {
+            signal.windows(lag + 1).map(|w| f64::from(w[0]) * f64::from(w[lag]) * 85.0 * 85.0).sum::<f64>() / n
+        };
+        // Standard errors 1/√n, √(2/n), √(96/n), 1/√n with n = 221 184; four of them.
+        assert!(moment(&|s| s).abs() < 0.0086);
+        assert!((moment(&|s| s * s) - 1.0).abs() < 0.0121);
+        assert!((moment(&|s| s * s * s * s) - 3.0).abs() < 0.084);
+        assert!(lagged(1).abs() < 0.0086 && lagged(columns).abs() < 0.0086);
+    }
+}

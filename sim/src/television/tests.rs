@@ -1,0 +1,180 @@
+use super::*;
+use contract::PixelPoint;
+
+const COLUMNS: usize = 96;
+const ROWS: usize = 72;
+const SEED: Seed = Seed { seed: 11, case: 0 };
+
+/// A picture with a bright square on a grey ground.
+fn light(lines: Lines) -> Vec<f32> {
+    let mut light = vec![0.2_f32; COLUMNS * lines.rows(ROWS)];
+    for row in light.chunks_exact_mut(COLUMNS).skip(10).take(12) {
+        row[30..50].fill(1.6);
+    }
+    light
+}
+
+fn transmitted(config: &TelevisionConfig, number: u64) -> (Vec<f32>, VideoTruth) {
+    let lines = config.interlace.lines(number);
+    let mut signal = light(lines);
+    let sun = SunImage {
+        centre: PixelPoint::new(70.0, 20.0),
+        ghost: PixelPoint::new(20.0, 50.0),
+        radius_px: 5.0,
+        focal_px: 1000.0,
+        visible: 1.0,
+    };
+    let caption =
+        Caption { clock: "14:07:32", camera: "TV-1", range_m: 5.0, range_rate_m_s: -0.1 };
+    let label =
+        FieldLabel { number, time_s: number as f64 / config.field_rate_hz(), lines, sun: Some(sun), caption };
+    let truth = Television::new(config, SEED, COLUMNS, ROWS).transmit(&label, &mut signal);
+    (signal, truth)
+}
+
+#[test]
+fn a_plain_chain_is_linear() {
+    let config = TelevisionConfig {
+        white_radiance: 2.0,
+        pedestal: 0.1,
+        noise: VideoNoiseConfig { sigma_dn8: 0.0 },
+        ..TelevisionConfig::default()
+    };
+    let (signal, truth) = transmitted(&config, 0);
+    for (signal, light) in signal.iter().zip(light(Lines::Even)) {
+        assert!((signal - (0.5 * light + 0.1)).abs() < 1e-6);
+    }
+    assert_eq!(truth, VideoTruth { contrast: 1.0, brightness: 0.1, lost_lines: 0 });
+}
+
+type Change = fn(&mut TelevisionConfig);
+
+const EFFECTS: [(&str, Change); 10] = [
+    ("drift", |c| c.drift = Some(DriftConfig::default())),
+    ("auto_gain", |c| c.auto_gain = Some(AutoGainConfig::default())),
+    ("bloom", |c| c.bloom = Some(BloomConfig::default())),
+    ("sun_glare", |c| c.sun_glare = Some(SunGlareConfig::default())),
+    ("bandwidth", |c| c.bandwidth = Some(BandwidthConfig::default())),
+    ("ringing", |c| c.ringing = Some(RingingConfig::default())),
+    ("line_jitter", |c| c.line_jitter = Some(LineJitterConfig { sigma_px: 0.5 })),
+    ("lost_lines", |c| c.lost_lines = Some(LostLinesConfig { probability: 0.2 })),
+    ("line_level", |c| c.line_level = Some(LineLevelConfig::default())),
+    ("overlay", |c| c.overlay = Some(OverlayConfig::default())),
+];
+
+#[test]
+fn every_effect_changes_the_picture() {
+    let plain = transmitted(&TelevisionConfig::default(), 4).0;
+    for (name, change) in EFFECTS {
+        let mut config = TelevisionConfig::default();
+        change(&mut config);
+        assert_ne!(transmitted(&config, 4).0, plain, "{name}");
+    }
+}
+
+/// Noise is added to whatever came before it: with and without an effect the same numbers.
+#[test]
+fn an_effect_leaves_the_draws_of_noise_as_they_were() {
+    for (name, change) in EFFECTS {
+        let with = |sigma_dn8| {
+            let mut config =
+                TelevisionConfig { noise: VideoNoiseConfig { sigma_dn8 }, ..TelevisionConfig::default() };
+            change(&mut config);
+            // The overlay covers the noise: it must not reach the place that is looked at.
+            transmitted(&config, 4).0
+        };
+        let plain = |sigma_dn8| {
+            let noise = VideoNoiseConfig { sigma_dn8 };
+            transmitted(&TelevisionConfig { noise, ..TelevisionConfig::default() }, 4).0
+        };
+        let (noisy, clean, noisy_plain, clean_plain) = (with(2.0), with(0.0), plain(2.0), plain(0.0));
+        let mut looked_at = 0;
+        for i in 0..noisy.len() {
+            if name == "overlay" && clean[i] != clean_plain[i] {
+                continue;
+            }
+            looked_at += 1;
+            let (here, there) = (noisy[i] - clean[i], noisy_plain[i] - clean_plain[i]);
+            // Rounding of f32 sums.
+            assert!((here - there).abs() < 1e-6, "{name} at {i}: {here} {there}");
+        }
+        assert!(looked_at > noisy.len() / 2);
+    }
+}
+
+/// As above for the draws of lines: which are lost, and by how much they are shifted.
+#[test]
+fn an_effect_leaves_the_draws_of_lines_as_they_were() {
+    for (name, change) in EFFECTS {
+        let mut config = TelevisionConfig {
+            lost_lines: Some(LostLinesConfig { probability: 0.2 }),
+            ..TelevisionConfig::default()
+        };
+        let alone = transmitted(&config, 4).1.lost_lines;
+        change(&mut config);
+        assert_eq!(transmitted(&config, 4).1.lost_lines, alone, "{name}");
+    }
+}
+
+#[test]
+fn a_field_alone_is_the_field_of_the_run() {
+    let config = TelevisionConfig::all();
+    let mut chain = Television::new(&config, SEED, COLUMNS, ROWS);
+    let caption = Caption { clock: "00:00:00", camera: "TV-1", range_m: 5.0, range_rate_m_s: 0.0 };
+    let expose = |chain: &mut Television, number: u64| {
+        let lines = config.interlace.lines(number);
+        let label = FieldLabel { number, time_s: 0.02 * number as f64, lines, sun: None, caption };
+        let mut signal = light(lines);
+        let truth = chain.transmit(&label, &mut signal);
+        (signal, truth)
+    };
+    let run: Vec<_> = (0..6).map(|number| expose(&mut chain, number)).collect();
+    for number in [5, 2] {
+        let mut fresh = Television::new(&config, SEED, COLUMNS, ROWS);
+        assert_eq!(expose(&mut fresh, number), run[number as usize]);
+    }
+}
+
+#[test]
+fn fields_alternate_and_progressive_frames_hold_every_row() {
+    let lines = |interlace: Interlace| [0, 1, 2].map(|field| interlace.lines(field));
+    assert_eq!(lines(Interlace::TopFirst), [Lines::Even, Lines::Odd, Lines::Even]);
+    assert_eq!(lines(Interlace::BottomFirst), [Lines::Odd, Lines::Even, Lines::Odd]);
+    assert_eq!(lines(Interlace::Off), [Lines::All; 3]);
+    let off = TelevisionConfig { interlace: Interlace::Off, ..TelevisionConfig::default() };
+    assert_eq!((off.field_rate_hz(), TelevisionConfig::default().field_rate_hz()), (25.0, 50.0));
+}
+
+#[test]
+fn bad_values_are_refused_with_their_path() {
+    let refused = |path: &str, change: Change| {
+        let mut config = TelevisionConfig::all();
+        change(&mut config);
+        let message = config.check().unwrap_err().to_string();
+        assert!(message.starts_with(path), "{message}");
+    };
+    assert!(TelevisionConfig::all().check().is_ok());
+    refused("television.frame_rate_hz", |c| c.frame_rate_hz = 0.0);
+    refused("television.white_radiance", |c| c.white_radiance = f64::NAN);
+    refused("television.pedestal", |c| c.pedestal = 2.0);
+    refused("television.clip_level", |c| c.clip_level = 0.5);
+    refused("television.noise.sigma_dn8", |c| c.noise.sigma_dn8 = -1.0);
+    refused("television.drift.periods_s", |c| c.drift = Some(DriftConfig { periods_s: vec![], ..DriftConfig::default() }));
+    refused("television.auto_gain.least", |c| {
+        c.auto_gain = Some(AutoGainConfig { least: 0.0, ..AutoGainConfig::default() });
+    });
+    refused("television.bloom.sigma_px", |c| c.bloom = Some(BloomConfig { share: 0.1, sigma_px: 1.0 }));
+    refused("television.sun_glare.disk_level", |c| {
+        c.sun_glare = Some(SunGlareConfig { disk_level: -1.0, ..SunGlareConfig::default() });
+    });
+    refused("television.bandwidth.sigma_px", |c| c.bandwidth = Some(BandwidthConfig { sigma_px: 99.0 }));
+    refused("television.ringing.period_px", |c| {
+        c.ringing = Some(RingingConfig { period_px: 0.0, ..RingingConfig::default() });
+    });
+    refused("television.line_jitter.sigma_px", |c| c.line_jitter = Some(LineJitterConfig { sigma_px: 2.0 }));
+    refused("television.lost_lines.probability", |c| c.lost_lines = Some(LostLinesConfig { probability: 1.5 }));
+    refused("television.line_level.hum_period_rows", |c| {
+        c.line_level = Some(LineLevelConfig { hum_period_rows: 0.0, ..LineLevelConfig::default() });
+    });
+    refused("television.overlay.level", |c| c.overlay = Some(OverlayConfig { level: f64::INFINITY }));
+}

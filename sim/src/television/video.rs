@@ -1,0 +1,93 @@
+//! A field as a video signal, and its way through the frame grabber.
+
+use contract::Frame;
+use contract::docking::{Digitiser, Field, Lines};
+
+/// Bits of the frame grabber.
+pub const BIT_DEPTH: u8 = 8;
+
+/// One field before the digitiser: 0 is the black level of the video and 1 its white level.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VideoField {
+    number: u64,
+    columns: usize,
+    camera_rows: usize,
+    lines: Lines,
+    signal: Vec<f32>,
+}
+
+impl VideoField {
+    /// The rows `lines` of a camera of `columns` × `camera_rows`; `None` when `signal` has not as many values.
+    pub fn new(
+        number: u64,
+        columns: usize,
+        camera_rows: usize,
+        lines: Lines,
+        signal: Vec<f32>,
+    ) -> Option<Self> {
+        (lines.rows(camera_rows).checked_mul(columns) == Some(signal.len()))
+            .then_some(Self { number, columns, camera_rows, lines, signal })
+    }
+
+    /// Number in its sequence.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Columns.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Which rows of the camera it holds.
+    pub fn lines(&self) -> Lines {
+        self.lines
+    }
+
+    /// The signal, row by row.
+    pub fn signal(&self) -> &[f32] {
+        &self.signal
+    }
+
+    /// Digital numbers of eight bits: 255 × (contrast × signal + brightness), clipped to 0 and 255 and rounded, halves
+    /// upwards.
+    pub fn digitise(&self, digitiser: &Digitiser) -> Field {
+        let full_scale = 255.0_f32;
+        let slope = full_scale * digitiser.contrast as f32;
+        let offset = full_scale * digitiser.brightness as f32;
+        let dn = self
+            .signal
+            .iter()
+            .map(|s| ((slope * s + offset).clamp(0.0, full_scale) + 0.5) as u16)
+            .collect();
+        Frame::new(self.number, self.columns, self.lines.rows(self.camera_rows), BIT_DEPTH, dn, None)
+            .and_then(|image| Field::new(image, self.lines, self.camera_rows))
+            .expect("the number of values was checked when the field was made")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn digits(signal: &[f32], contrast: f64, brightness: f64) -> Vec<u16> {
+        let video = VideoField::new(3, signal.len(), 1, Lines::All, signal.to_vec()).unwrap();
+        video.digitise(&Digitiser { contrast, brightness }).image().dn().to_vec()
+    }
+
+    #[test]
+    fn signals_are_stretched_rounded_and_clipped() {
+        let signal = [-0.5, 0.0, 0.4999 / 255.0, 0.5001 / 255.0, 0.5, 1.0, 1.5];
+        assert_eq!(digits(&signal, 1.0, 0.0), [0, 0, 0, 1, 128, 255, 255]);
+        assert_eq!(digits(&[0.1, 0.2, 0.6], 2.0, -0.2), [0, 51, 255]);
+        assert_eq!(digits(&[f32::NAN], 1.0, 0.0), [0]);
+    }
+
+    #[test]
+    fn a_field_keeps_its_number_and_rows() {
+        let video = VideoField::new(7, 4, 5, Lines::Odd, vec![0.0; 8]).unwrap();
+        let field = video.digitise(&Digitiser::default());
+        assert_eq!((field.number(), field.lines(), field.camera_rows()), (7, Lines::Odd, 5));
+        assert_eq!(VideoField::new(7, 4, 5, Lines::Even, vec![0.0; 8]), None);
+    }
+}

@@ -1,0 +1,297 @@
+//! The approach to a docking target: pose of the camera and its rates, as functions of time.
+
+mod oscillation;
+mod segment;
+
+use contract::docking::Pose;
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+pub use oscillation::OscillationConfig;
+pub use segment::SegmentConfig;
+use segment::{AxialMotion, D3_M, MAX_DURATION_S, check_d3};
+
+/// Most segments of an approach.
+const MAX_SEGMENTS: usize = 1000;
+
+/// How the camera moves with respect to the target. The frames are those of [`Pose`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum ApproachConfig {
+    /// d = d0 + v t, φ = φ0 + ω t, exactly.
+    ConstantVelocity(ConstantVelocityConfig),
+    /// Segments flown in sequence.
+    Segments(SegmentedConfig),
+}
+
+/// d = d0 + v t, φ = φ0 + ω t.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ConstantVelocityConfig {
+    /// d at the beginning, m; d3 from 0.05 to 20000, also at the end, d1 and d2 from −20000 to 20000.
+    pub position_m: [f64; 3],
+    /// Velocity, m/s, each from −100 to 100.
+    #[serde(default)]
+    pub velocity_m_s: [f64; 3],
+    /// φ at the beginning, degrees, each from −60 to 60, also at the end.
+    #[serde(default)]
+    pub phi_deg: [f64; 3],
+    /// dφ/dt, degrees per second, each from −60 to 60.
+    #[serde(default)]
+    pub phi_rate_deg_s: [f64; 3],
+    /// Duration, s, 0 to 1e5; 0 is a single field.
+    pub duration_s: f64,
+}
+
+/// Segments flown in sequence; velocity is continuous.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SegmentedConfig {
+    /// d3 at the beginning, m, 0.05 to 20000 and greater than the target's contact distance.
+    pub start_d3_m: f64,
+    /// d1 and d2 at the beginning, m, −1000 to 1000. They go with d3, linearly, to those at contact: guidance holds a line
+    /// of sight, so that what is aside shrinks with the distance.
+    #[serde(default)]
+    pub lateral_at_start_m: [f64; 2],
+    /// d1 and d2 at contact, m, −1000 to 1000.
+    #[serde(default)]
+    pub lateral_at_contact_m: [f64; 2],
+    /// Mean φ, degrees, each from −30 to 30.
+    #[serde(default)]
+    pub phi_deg: [f64; 3],
+    /// Duration of a change of speed from one segment to the next, s, 0.01 to 1000.
+    #[serde(default = "default_ramp_s")]
+    pub ramp_s: f64,
+    /// The limit cycle of the control system, over the whole approach.
+    #[serde(default)]
+    pub limit_cycle: OscillationConfig,
+    /// The segments, at least one; the first begins at its own speed.
+    pub segments: Vec<SegmentConfig>,
+}
+
+fn default_ramp_s() -> f64 {
+    3.0
+}
+
+const LIMIT_CYCLE_PATHS: [&str; 6] = [
+    "approach.limit_cycle.lateral_amplitude_m",
+    "approach.limit_cycle.lateral_period_s",
+    "approach.limit_cycle.lateral_phase_deg",
+    "approach.limit_cycle.angular_amplitude_deg",
+    "approach.limit_cycle.angular_period_s",
+    "approach.limit_cycle.angular_phase_deg",
+];
+
+impl ConstantVelocityConfig {
+    fn check(&self) -> Result<(), SimError> {
+        require("approach.duration_s", self.duration_s, "0 to 1e5", |t| (0.0..=MAX_DURATION_S).contains(&t))?;
+        check_d3("approach.position_m", self.position_m[2])?;
+        for d in self.position_m {
+            require("approach.position_m", d, "-20000 to 20000", |d| d.abs() <= *D3_M.end())?;
+        }
+        for v in self.velocity_m_s {
+            require("approach.velocity_m_s", v, "-100 to 100", |v| v.abs() <= 100.0)?;
+        }
+        for rate in self.phi_rate_deg_s {
+            require("approach.phi_rate_deg_s", rate, "-60 to 60", |rate| rate.abs() <= 60.0)?;
+        }
+        let end_m = self.position_m[2] + self.velocity_m_s[2] * self.duration_s;
+        check_d3("approach.velocity_m_s (d3 at the end)", end_m)?;
+        for (phi, rate) in self.phi_deg.into_iter().zip(self.phi_rate_deg_s) {
+            require("approach.phi_deg", phi, "-60 to 60", |phi| phi.abs() <= 60.0)?;
+            let end = phi + rate * self.duration_s;
+            require("approach.phi_rate_deg_s (phi at the end)", end, "-60 to 60", |phi| phi.abs() <= 60.0)?;
+        }
+        Ok(())
+    }
+}
+
+impl SegmentedConfig {
+    fn check(&self, contact_distance_m: f64) -> Result<(), SimError> {
+        check_d3("approach.start_d3_m", self.start_d3_m)?;
+        require(
+            "approach.start_d3_m",
+            self.start_d3_m,
+            "greater than the target's contact distance",
+            |d| d > contact_distance_m,
+        )?;
+        for m in self.lateral_at_start_m {
+            require("approach.lateral_at_start_m", m, "-1000 to 1000", |m| m.abs() <= 1000.0)?;
+        }
+        for m in self.lateral_at_contact_m {
+            require("approach.lateral_at_contact_m", m, "-1000 to 1000", |m| m.abs() <= 1000.0)?;
+        }
+        for phi in self.phi_deg {
+            require("approach.phi_deg", phi, "-30 to 30", |phi| phi.abs() <= 30.0)?;
+        }
+        require("approach.ramp_s", self.ramp_s, "0.01 to 1000", |t| (0.01..=1000.0).contains(&t))?;
+        self.limit_cycle.check(&LIMIT_CYCLE_PATHS)?;
+        if !(1..=MAX_SEGMENTS).contains(&self.segments.len()) {
+            return Err(SimError::Parameter {
+                field: "approach.segments",
+                value: format!("a list of {}", self.segments.len()),
+                expected: "1 to 1000 segments",
+            });
+        }
+        for (index, segment) in self.segments.iter().enumerate() {
+            segment.check().map_err(|error| error.in_entry(index))?;
+        }
+        Ok(())
+    }
+}
+
+/// Where the camera is and how it moves at a moment; the derivatives are exact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ApproachState {
+    /// d and φ.
+    pub pose: Pose,
+    /// dd/dt, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// dφ/dt, rad/s.
+    pub phi_rate_rad_s: Vector3<f64>,
+}
+
+impl ApproachState {
+    /// ρ = |d|, m (docking paper, 3.2).
+    pub fn range_m(&self) -> f64 {
+        self.pose.position_m.norm()
+    }
+
+    /// u = dρ/dt, m/s: negative when closing.
+    pub fn range_rate_m_s(&self) -> f64 {
+        self.pose.position_m.dot(&self.velocity_m_s) / self.range_m()
+    }
+
+    /// α = atan2(d2, √(d1² + d3²)), rad.
+    pub fn passive_pitch_rad(&self) -> f64 {
+        let d = self.pose.position_m;
+        libm::atan2(d.y, libm::hypot(d.x, d.z))
+    }
+
+    /// β = atan2(d1, d3), rad.
+    pub fn passive_yaw_rad(&self) -> f64 {
+        libm::atan2(self.pose.position_m.x, self.pose.position_m.z)
+    }
+}
+
+/// A = diag(1, −1, −1) exp([φ]×): y = d + A x takes a point of the camera frame into the target frame.
+pub fn target_from_camera(pose: &Pose) -> Matrix3<f64> {
+    let turned = Rotation3::from_scaled_axis(pose.phi_rad);
+    Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * turned.matrix()
+}
+
+/// An approach that was checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Approach {
+    course: Course,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Course {
+    Constant(ConstantVelocityConfig),
+    Segmented { config: SegmentedConfig, axial: AxialMotion, contact_distance_m: f64 },
+}
+
+impl Approach {
+    /// Checks an approach to a target whose contact is at d3 = `contact_distance_m`.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first value that is not allowed.
+    pub fn new(config: &ApproachConfig, contact_distance_m: f64) -> Result<Self, SimError> {
+        let course = match config {
+            ApproachConfig::ConstantVelocity(constant) => {
+                constant.check()?;
+                Course::Constant(*constant)
+            }
+            ApproachConfig::Segments(segmented) => {
+                segmented.check(contact_distance_m)?;
+                let axial = AxialMotion::new(
+                    &segmented.segments,
+                    segmented.start_d3_m,
+                    contact_distance_m,
+                    segmented.ramp_s,
+                )?;
+                Course::Segmented { config: segmented.clone(), axial, contact_distance_m }
+            }
+        };
+        Ok(Self { course })
+    }
+
+    /// Duration, s.
+    pub fn duration_s(&self) -> f64 {
+        match &self.course {
+            Course::Constant(config) => config.duration_s,
+            Course::Segmented { axial, .. } => axial.end_s(),
+        }
+    }
+
+    /// The state `time_s` after the beginning.
+    pub fn at(&self, time_s: f64) -> ApproachState {
+        match &self.course {
+            Course::Constant(config) => constant_velocity(config, time_s),
+            Course::Segmented { config, axial, contact_distance_m } => {
+                segmented(config, axial, *contact_distance_m, time_s)
+            }
+        }
+    }
+}
+
+fn constant_velocity(config: &ConstantVelocityConfig, time_s: f64) -> ApproachState {
+    let velocity_m_s = Vector3::from(config.velocity_m_s);
+    let phi_rate_rad_s = Vector3::from(config.phi_rate_deg_s.map(f64::to_radians));
+    ApproachState {
+        pose: Pose {
+            position_m: Vector3::from(config.position_m) + velocity_m_s * time_s,
+            phi_rad: Vector3::from(config.phi_deg.map(f64::to_radians)) + phi_rate_rad_s * time_s,
+        },
+        velocity_m_s,
+        phi_rate_rad_s,
+    }
+}
+
+fn segmented(
+    config: &SegmentedConfig,
+    axial: &AxialMotion,
+    contact_distance_m: f64,
+    time_s: f64,
+) -> ApproachState {
+    let (d3_m, rate_m_s) = axial.at(time_s);
+    let span_m = config.start_d3_m - contact_distance_m;
+    let lateral = |i: usize| {
+        let slope = (config.lateral_at_start_m[i] - config.lateral_at_contact_m[i]) / span_m;
+        (config.lateral_at_contact_m[i] + slope * (d3_m - contact_distance_m), slope * rate_m_s)
+    };
+    let [(d1_m, d1_rate), (d2_m, d2_rate)] = [lateral(0), lateral(1)];
+    let mut state = ApproachState {
+        pose: Pose {
+            position_m: Vector3::new(d1_m, d2_m, d3_m),
+            phi_rad: Vector3::from(config.phi_deg.map(f64::to_radians)),
+        },
+        velocity_m_s: Vector3::new(d1_rate, d2_rate, rate_m_s),
+        phi_rate_rad_s: Vector3::zeros(),
+    };
+    state.add(&config.limit_cycle.at(time_s));
+    let index = axial.begin_s().partition_point(|begin_s| *begin_s <= time_s).saturating_sub(1);
+    if let Some(SegmentConfig::Oscillation { duration_s, swing }) = config.segments.get(index) {
+        let since_s = time_s - axial.begin_s()[index];
+        let (value, rate) = oscillation::window(since_s, *duration_s, config.ramp_s);
+        state.add(&swing.at(since_s).windowed(value, rate));
+    }
+    state
+}
+
+impl ApproachState {
+    fn add(&mut self, displacement: &oscillation::Displacement) {
+        let (lateral, rate) = (displacement.lateral_m, displacement.lateral_rate_m_s);
+        self.pose.position_m += Vector3::new(lateral.x, lateral.y, 0.0);
+        self.velocity_m_s += Vector3::new(rate.x, rate.y, 0.0);
+        self.pose.phi_rad += displacement.phi_rad;
+        self.phi_rate_rad_s += displacement.phi_rate_rad_s;
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,126 @@
+//! Sinusoids about a course: the limit cycle of a control system, or a manoeuvre of its own.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Vector2, Vector3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+
+/// A sinusoid on each axis: amplitude × sin(2π t/period + phase). All zero unless set.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct OscillationConfig {
+    /// Amplitudes of d1 and d2, m, 0 to 100.
+    pub lateral_amplitude_m: [f64; 2],
+    /// Periods of d1 and d2, s, 0.1 to 1e5.
+    pub lateral_period_s: [f64; 2],
+    /// Phases of d1 and d2 at the beginning, degrees.
+    pub lateral_phase_deg: [f64; 2],
+    /// Amplitudes of φ1, φ2, φ3, degrees, 0 to 30.
+    pub angular_amplitude_deg: [f64; 3],
+    /// Periods of φ1, φ2, φ3, s, 0.1 to 1e5.
+    pub angular_period_s: [f64; 3],
+    /// Phases of φ1, φ2, φ3 at the beginning, degrees.
+    pub angular_phase_deg: [f64; 3],
+}
+
+impl Default for OscillationConfig {
+    fn default() -> Self {
+        Self {
+            lateral_amplitude_m: [0.0; 2],
+            lateral_period_s: [60.0; 2],
+            lateral_phase_deg: [0.0; 2],
+            angular_amplitude_deg: [0.0; 3],
+            angular_period_s: [60.0; 3],
+            angular_phase_deg: [0.0; 3],
+        }
+    }
+}
+
+impl OscillationConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first one outside its range; `paths` are those of the six lists in the scenario, in
+    /// the order of the fields.
+    pub(super) fn check(&self, paths: &[&'static str; 6]) -> Result<(), SimError> {
+        let all = |path, values: &[f64], expected, holds: fn(f64) -> bool| {
+            values.iter().try_for_each(|&value| require(path, value, expected, holds))
+        };
+        let period = |p: f64| (0.1..=1e5).contains(&p);
+        let phase = |p: f64| p.abs() <= 3600.0;
+        all(paths[0], &self.lateral_amplitude_m, "0 to 100", |a| (0.0..=100.0).contains(&a))?;
+        all(paths[1], &self.lateral_period_s, "0.1 to 1e5", period)?;
+        all(paths[2], &self.lateral_phase_deg, "-3600 to 3600", phase)?;
+        all(paths[3], &self.angular_amplitude_deg, "0 to 30", |a| (0.0..=30.0).contains(&a))?;
+        all(paths[4], &self.angular_period_s, "0.1 to 1e5", period)?;
+        all(paths[5], &self.angular_phase_deg, "-3600 to 3600", phase)
+    }
+
+    /// Displacement and its rate, `time_s` after the beginning.
+    pub(super) fn at(&self, time_s: f64) -> Displacement {
+        let lateral = [0, 1].map(|i| {
+            sinusoid(
+                self.lateral_amplitude_m[i],
+                self.lateral_period_s[i],
+                self.lateral_phase_deg[i],
+                time_s,
+            )
+        });
+        let angular = [0, 1, 2].map(|i| {
+            let amplitude_rad = self.angular_amplitude_deg[i].to_radians();
+            sinusoid(amplitude_rad, self.angular_period_s[i], self.angular_phase_deg[i], time_s)
+        });
+        Displacement {
+            lateral_m: Vector2::from(lateral.map(|(value, _)| value)),
+            lateral_rate_m_s: Vector2::from(lateral.map(|(_, rate)| rate)),
+            phi_rad: Vector3::from(angular.map(|(value, _)| value)),
+            phi_rate_rad_s: Vector3::from(angular.map(|(_, rate)| rate)),
+        }
+    }
+}
+
+fn sinusoid(amplitude: f64, period_s: f64, phase_deg: f64, time_s: f64) -> (f64, f64) {
+    let frequency = 2.0 * PI / period_s;
+    let (sin, cos) = libm::sincos(frequency * time_s + phase_deg.to_radians());
+    (amplitude * sin, amplitude * frequency * cos)
+}
+
+/// What an oscillation adds to the course.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Displacement {
+    pub(super) lateral_m: Vector2<f64>,
+    pub(super) lateral_rate_m_s: Vector2<f64>,
+    pub(super) phi_rad: Vector3<f64>,
+    pub(super) phi_rate_rad_s: Vector3<f64>,
+}
+
+impl Displacement {
+    /// Multiplied by a window that has the value `window` and changes by `rate` per second.
+    pub(super) fn windowed(&self, window: f64, rate: f64) -> Self {
+        Self {
+            lateral_m: self.lateral_m * window,
+            lateral_rate_m_s: self.lateral_rate_m_s * window + self.lateral_m * rate,
+            phi_rad: self.phi_rad * window,
+            phi_rate_rad_s: self.phi_rate_rad_s * window + self.phi_rad * rate,
+        }
+    }
+}
+
+/// Rises from 0 at the beginning to 1 and falls back to 0 at the end, with continuous rate: 3 s² − 2 s³ over `ramp_s` at
+/// each end. Value and rate.
+pub(super) fn window(time_s: f64, duration_s: f64, ramp_s: f64) -> (f64, f64) {
+    let ramp_s = ramp_s.min(0.5 * duration_s);
+    let (s, sign) =
+        if time_s <= 0.5 * duration_s { (time_s / ramp_s, 1.0) } else { ((duration_s - time_s) / ramp_s, -1.0) };
+    if s <= 0.0 {
+        (0.0, 0.0)
+    } else if s < 1.0 {
+        (s * s * (3.0 - 2.0 * s), sign * 6.0 * s * (1.0 - s) / ramp_s)
+    } else {
+        (1.0, 0.0)
+    }
+}

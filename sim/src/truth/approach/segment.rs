@@ -1,0 +1,237 @@
+//! Parts of an approach, and the motion along the docking axis that they make: constant accelerations end to end.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::oscillation::OscillationConfig;
+use crate::SimError;
+use crate::error::require;
+
+/// Nearest and farthest d3 of an approach, m.
+pub(super) const D3_M: std::ops::RangeInclusive<f64> = 0.05..=20_000.0;
+const D3_EXPECTED: &str = "0.05 to 20000";
+/// Longest segment and longest approach, s.
+pub(super) const MAX_DURATION_S: f64 = 1e5;
+
+/// One part of an approach. It begins where the one before ended; the speed changes to its own at constant acceleration
+/// over the approach's `ramp_s`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum SegmentConfig {
+    /// Towards the target.
+    Glide {
+        /// d3 where it ends, m, 0.05 to 20000; the target's contact distance where not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        to_d3_m: Option<f64>,
+        /// Closing speed at its beginning, m/s, 0 to 100.
+        speed_m_s: f64,
+        /// Closing speed at its end, m/s, 0 to 100, reached at constant acceleration; as at the beginning where not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        end_speed_m_s: Option<f64>,
+    },
+    /// Away from the target.
+    Retreat {
+        /// d3 where it ends, m, 0.05 to 20000.
+        to_d3_m: f64,
+        /// Speed at its beginning, m/s, 0 to 100.
+        speed_m_s: f64,
+        /// Speed at its end, m/s, 0 to 100, reached at constant acceleration; as at the beginning where not given.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        end_speed_m_s: Option<f64>,
+    },
+    /// At rest along the docking axis.
+    Hold {
+        /// Duration with the braking before it, s, 0.1 to 1e5 and not shorter than the ramp.
+        duration_s: f64,
+    },
+    /// At rest along the docking axis, and swinging.
+    Oscillation {
+        /// Duration with the braking before it, s, 0.1 to 1e5 and not shorter than the ramp.
+        duration_s: f64,
+        /// The swing, its phases counted from the segment's beginning; it swells and dies over the ramp.
+        swing: OscillationConfig,
+    },
+}
+
+const SWING_PATHS: [&str; 6] = [
+    "approach.segments[].swing.lateral_amplitude_m",
+    "approach.segments[].swing.lateral_period_s",
+    "approach.segments[].swing.lateral_phase_deg",
+    "approach.segments[].swing.angular_amplitude_deg",
+    "approach.segments[].swing.angular_period_s",
+    "approach.segments[].swing.angular_phase_deg",
+];
+
+impl SegmentConfig {
+    /// Checks this segment by itself.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first value outside its range.
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        let speed = |path, value| require(path, value, "0 to 100", |v| (0.0..=100.0).contains(&v));
+        match self {
+            Self::Glide { to_d3_m, speed_m_s, end_speed_m_s } => {
+                check_d3("approach.segments[].to_d3_m", to_d3_m.unwrap_or(1.0))?;
+                speed("approach.segments[].speed_m_s", *speed_m_s)?;
+                speed("approach.segments[].end_speed_m_s", end_speed_m_s.unwrap_or(*speed_m_s))
+            }
+            Self::Retreat { to_d3_m, speed_m_s, end_speed_m_s } => {
+                check_d3("approach.segments[].to_d3_m", *to_d3_m)?;
+                speed("approach.segments[].speed_m_s", *speed_m_s)?;
+                speed("approach.segments[].end_speed_m_s", end_speed_m_s.unwrap_or(*speed_m_s))
+            }
+            Self::Hold { duration_s } => check_duration(*duration_s),
+            Self::Oscillation { duration_s, swing } => {
+                check_duration(*duration_s)?;
+                swing.check(&SWING_PATHS)
+            }
+        }
+    }
+}
+
+pub(super) fn check_d3(path: &'static str, d3_m: f64) -> Result<(), SimError> {
+    require(path, d3_m, D3_EXPECTED, |d| D3_M.contains(&d))
+}
+
+fn check_duration(duration_s: f64) -> Result<(), SimError> {
+    require("approach.segments[].duration_s", duration_s, "0.1 to 1e5", |d| {
+        (0.1..=MAX_DURATION_S).contains(&d)
+    })
+}
+
+/// A stretch of constant acceleration along the docking axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Stretch {
+    begin_s: f64,
+    d3_m: f64,
+    /// d(d3)/dt at its beginning: negative when closing.
+    rate_m_s: f64,
+    acceleration_m_s2: f64,
+}
+
+/// d3 and its rate as functions of time.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct AxialMotion {
+    stretches: Vec<Stretch>,
+    begin_s: Vec<f64>,
+    end_s: f64,
+    end_d3_m: f64,
+    end_rate_m_s: f64,
+}
+
+impl AxialMotion {
+    /// From segments that were checked, beginning at `start_d3_m` with the first segment's own speed.
+    ///
+    /// # Errors
+    /// [`SimError::Entry`] for a segment that cannot be flown from where the one before ends.
+    pub(super) fn new(
+        segments: &[SegmentConfig],
+        start_d3_m: f64,
+        contact_distance_m: f64,
+        ramp_s: f64,
+    ) -> Result<Self, SimError> {
+        let mut motion = Self {
+            stretches: Vec::new(),
+            begin_s: Vec::new(),
+            end_s: 0.0,
+            end_d3_m: start_d3_m,
+            end_rate_m_s: 0.0,
+        };
+        for (index, segment) in segments.iter().enumerate() {
+            // The first segment begins at its own speed: only so is a constant velocity exactly constant.
+            let ramp_s = if index == 0 { 0.0 } else { ramp_s };
+            motion
+                .append(segment, contact_distance_m, ramp_s)
+                .and_then(|()| check_d3("approach.segments[].to_d3_m", motion.end_d3_m))
+                .map_err(|error| error.in_entry(index))?;
+        }
+        require("approach.segments (duration, s)", motion.end_s, "at most 1e5", |t| t <= MAX_DURATION_S)?;
+        Ok(motion)
+    }
+
+    fn append(&mut self, segment: &SegmentConfig, contact_m: f64, ramp_s: f64) -> Result<(), SimError> {
+        self.begin_s.push(self.end_s);
+        match *segment {
+            SegmentConfig::Glide { to_d3_m, speed_m_s, end_speed_m_s } => {
+                let end = end_speed_m_s.unwrap_or(speed_m_s);
+                self.travel(to_d3_m.unwrap_or(contact_m), [-speed_m_s, -end], ramp_s)
+            }
+            SegmentConfig::Retreat { to_d3_m, speed_m_s, end_speed_m_s } => {
+                self.travel(to_d3_m, [speed_m_s, end_speed_m_s.unwrap_or(speed_m_s)], ramp_s)
+            }
+            SegmentConfig::Hold { duration_s } | SegmentConfig::Oscillation { duration_s, .. } => {
+                let before_s = self.end_s;
+                self.ramp_to(0.0, ramp_s);
+                let rest_s = duration_s - (self.end_s - before_s);
+                require("approach.segments[].duration_s", duration_s, "at least approach.ramp_s", |_| {
+                    rest_s >= 0.0
+                })?;
+                self.end_rate_m_s = 0.0;
+                self.stretch(rest_s, 0.0);
+                Ok(())
+            }
+        }
+    }
+
+    /// To `to_d3_m`, at a rate that changes evenly from the first to the second of `rates_m_s` after the ramp.
+    fn travel(&mut self, to_d3_m: f64, rates_m_s: [f64; 2], ramp_s: f64) -> Result<(), SimError> {
+        self.ramp_to(rates_m_s[0], ramp_s);
+        let mean = 0.5 * (rates_m_s[0] + rates_m_s[1]);
+        let duration_s = (to_d3_m - self.end_d3_m) / mean;
+        require(
+            "approach.segments[].to_d3_m",
+            to_d3_m,
+            "a place ahead, beyond the change of speed, reached at a speed above 0 within 1e5 s",
+            |_| duration_s > 0.0 && duration_s <= MAX_DURATION_S,
+        )?;
+        self.end_rate_m_s = rates_m_s[0];
+        self.stretch(duration_s, (rates_m_s[1] - rates_m_s[0]) / duration_s);
+        // Free of the rounding of the products, so that the next segment begins where and as fast as was asked.
+        self.end_d3_m = to_d3_m;
+        self.end_rate_m_s = rates_m_s[1];
+        Ok(())
+    }
+
+    fn ramp_to(&mut self, rate_m_s: f64, ramp_s: f64) {
+        if ramp_s > 0.0 && rate_m_s != self.end_rate_m_s {
+            self.stretch(ramp_s, (rate_m_s - self.end_rate_m_s) / ramp_s);
+            self.end_rate_m_s = rate_m_s;
+        }
+    }
+
+    fn stretch(&mut self, duration_s: f64, acceleration_m_s2: f64) {
+        let stretch = Stretch {
+            begin_s: self.end_s,
+            d3_m: self.end_d3_m,
+            rate_m_s: self.end_rate_m_s,
+            acceleration_m_s2,
+        };
+        (self.end_d3_m, self.end_rate_m_s) = stretch.at(self.end_s + duration_s);
+        self.end_s += duration_s;
+        self.stretches.push(stretch);
+    }
+
+    /// d3 in m and its rate in m/s.
+    pub(super) fn at(&self, time_s: f64) -> (f64, f64) {
+        let index = self.stretches.partition_point(|stretch| stretch.begin_s <= time_s);
+        self.stretches.get(index.saturating_sub(1)).map_or((self.end_d3_m, 0.0), |stretch| stretch.at(time_s))
+    }
+
+    /// Where the last segment ends, s.
+    pub(super) fn end_s(&self) -> f64 {
+        self.end_s
+    }
+
+    /// Where each segment begins, s.
+    pub(super) fn begin_s(&self) -> &[f64] {
+        &self.begin_s
+    }
+}
+
+impl Stretch {
+    fn at(&self, time_s: f64) -> (f64, f64) {
+        let t = time_s - self.begin_s;
+        let d3_m = self.d3_m + (self.rate_m_s + 0.5 * self.acceleration_m_s2 * t) * t;
+        (d3_m, self.rate_m_s + self.acceleration_m_s2 * t)
+    }
+}

@@ -1,0 +1,225 @@
+//! Exact area coverage of polygons on pixels.
+//!
+//! An edge adds to every pixel that it crosses the signed area to its right, and to the next pixel what is left of its
+//! height; the sum along a row is then the area of each pixel inside the closed polygon, without sampling. It is the
+//! method of font rasterisers (R. Levien, "Inside the fastest font renderer in the world", 2016). The sums are linear: any
+//! number of polygons is laid into them, each with its weights, and a row is summed once.
+
+/// A rectangle of whole pixels: columns `left` to `right`, rows `top` to `bottom`, ends excluded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Window {
+    pub(super) left: usize,
+    pub(super) right: usize,
+    pub(super) top: usize,
+    pub(super) bottom: usize,
+}
+
+/// Neighbouring pixels of a row.
+#[derive(Clone, Copy)]
+pub(super) enum Run<'a> {
+    /// Each with its own sums.
+    Each(&'a [[f32; 2]]),
+    /// So many pixels, all with the same sums.
+    Same([f32; 2], usize),
+}
+
+/// Weighted coverage of every pixel of a window, two sums a pixel. Empty between [`Coverage::sweep`] and the next
+/// [`Coverage::open`].
+#[derive(Debug, Clone)]
+pub(super) struct Coverage {
+    columns: usize,
+    rows: usize,
+    /// What a pixel adds to the sums of the pixels before it in its row.
+    steps: Vec<[f32; 2]>,
+    /// A bit for each block of a row that has a step.
+    touched: Vec<u64>,
+    /// A block has 2^shift columns.
+    shift: u32,
+    window: Window,
+}
+
+impl Coverage {
+    /// Blocks of 16 pixels, more where a row would have more than 64 of them.
+    const LEAST_SHIFT: u32 = 4;
+    /// Runs whose first sum is below this are left out: it is what rounding leaves behind a closed polygon.
+    pub(super) const RESIDUE: f32 = 1e-5;
+
+    pub(super) fn new(columns: usize, rows: usize) -> Self {
+        let mut shift = Self::LEAST_SHIFT;
+        while (columns >> shift) >= 64 {
+            shift += 1;
+        }
+        Self {
+            columns,
+            rows,
+            steps: vec![[0.0; 2]; columns * rows],
+            touched: vec![0; rows],
+            shift,
+            window: Window { left: 0, right: columns, top: 0, bottom: rows },
+        }
+    }
+
+    /// The whole image.
+    pub(super) fn whole(&self) -> Window {
+        Window { left: 0, right: self.columns, top: 0, bottom: self.rows }
+    }
+
+    /// Confines what follows to a window inside the image.
+    pub(super) fn open(&mut self, window: Window) {
+        self.window = window;
+    }
+
+    /// Adds a closed polygon. Points are (x, y) with the corner of the first pixel at (0, 0), y down; what goes round
+    /// anticlockwise as one sees it covers positively. Holes are polygons that go round the other way.
+    pub(super) fn add(&mut self, polygon: &[[f64; 2]], weights: [f32; 2]) {
+        let Some(mut from) = polygon.last() else { return };
+        for to in polygon {
+            self.add_edge(*from, *to, weights);
+            from = to;
+        }
+    }
+
+    fn add_edge(&mut self, from: [f64; 2], to: [f64; 2], weights: [f32; 2]) {
+        let (upper, lower, sign) = if from[1] < to[1] { (from, to, 1.0) } else { (to, from, -1.0) };
+        let top = upper[1].max(self.window.top as f64);
+        let bottom = lower[1].min(self.window.bottom as f64);
+        // Written so that a coordinate that is no number adds nothing.
+        if !(top < bottom && (upper[0] + lower[0]).is_finite()) {
+            return;
+        }
+        let per_row = (lower[0] - upper[0]) / (lower[1] - upper[1]);
+        let x_at = |y: f64| if y == lower[1] { lower[0] } else { upper[0] + (y - upper[1]) * per_row };
+        let (x_top, x_bottom) = (x_at(top), x_at(bottom));
+        let weights = [sign * f64::from(weights[0]), sign * f64::from(weights[1])];
+        let (left, right) = (self.window.left as f64, self.window.right as f64);
+        if x_top >= left && x_bottom >= left && x_top <= right && x_bottom <= right {
+            self.add_inside([x_top, top], [x_bottom, bottom], weights);
+            return;
+        }
+        // Cut where it enters and leaves the window. What is to the left of the window covers its rows whole; what is to
+        // the right covers nothing of it.
+        let crossing = |x: f64| (top + (x - x_top) / per_row).clamp(top, bottom);
+        let (mut first, mut second) = (top, bottom);
+        if per_row != 0.0 {
+            (first, second) = (crossing(left), crossing(right));
+            if second < first {
+                (first, second) = (second, first);
+            }
+        }
+        let mut y = top;
+        let mut x = x_top;
+        for end in [first, second, bottom] {
+            let x_end = if end == bottom { x_bottom } else { x_at(end) };
+            let middle = 0.5 * (x + x_end);
+            if end > y && middle < right {
+                self.add_inside([x.clamp(left, right), y], [x_end.clamp(left, right), end], weights);
+            }
+            (y, x) = (end, x_end);
+        }
+    }
+
+    /// An edge that lies in the window, `from` above `to`.
+    fn add_inside(&mut self, from: [f64; 2], to: [f64; 2], weights: [f64; 2]) {
+        let per_row = (to[0] - from[0]) / (to[1] - from[1]);
+        let (low, high) = if from[0] < to[0] { (from[0], to[0]) } else { (to[0], from[0]) };
+        let mut row = (from[1] as usize).min(self.window.bottom - 1);
+        let [mut x, mut y] = from;
+        while row < self.window.bottom {
+            let floor = (row + 1) as f64;
+            let (next_x, next_y) = if floor < to[1] {
+                ((from[0] + (floor - from[1]) * per_row).clamp(low, high), floor)
+            } else {
+                (to[0], to[1])
+            };
+            self.add_in_row(row, x, next_x, next_y - y, weights);
+            if floor >= to[1] {
+                break;
+            }
+            (x, y) = (next_x, next_y);
+            row += 1;
+        }
+    }
+
+    /// A piece of an edge within one row, of this height, from x `a` to `b`.
+    fn add_in_row(&mut self, row: usize, a: f64, b: f64, height: f64, weights: [f64; 2]) {
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        let right = self.window.right;
+        let first = (low as usize).min(right - 1);
+        let base = row * self.columns;
+        if high <= (first + 1) as f64 {
+            let area = height * ((first + 1) as f64 - 0.5 * (low + high));
+            self.step(row, base, first, area, weights);
+            if first + 1 < right {
+                self.step(row, base, first + 1, height - area, weights);
+            }
+            return;
+        }
+        // Along the piece the height to the left grows in proportion; a pixel's area is its integral over the pixel.
+        let slope = height / (high - low);
+        let mut before = 0.0;
+        let mut column = first;
+        while column < right {
+            let (start, end) = ((column as f64).max(low), (column + 1) as f64);
+            let area = if end <= high {
+                0.5 * slope * ((end - low) * (end - low) - (start - low) * (start - low))
+            } else if start < high {
+                0.5 * slope * ((high - low) * (high - low) - (start - low) * (start - low))
+                    + height * (end - high)
+            } else {
+                height
+            };
+            self.step(row, base, column, area - before, weights);
+            if start >= high {
+                break;
+            }
+            before = area;
+            column += 1;
+        }
+    }
+
+    fn step(&mut self, row: usize, base: usize, column: usize, area: f64, weights: [f64; 2]) {
+        let step = &mut self.steps[base + column];
+        step[0] += (area * weights[0]) as f32;
+        step[1] += (area * weights[1]) as f32;
+        self.touched[row] |= 1 << (column >> self.shift);
+    }
+
+    /// Hands the sums of the window's pixels to `paint` (row, first column, run), row by row from the left, and
+    /// empties them. Left out are runs that nothing covers by the first sum.
+    pub(super) fn sweep(&mut self, mut paint: impl FnMut(usize, usize, Run<'_>)) {
+        let Window { left, right, top, bottom } = self.window;
+        for row in top..bottom {
+            let touched = std::mem::take(&mut self.touched[row]);
+            if touched == 0 {
+                continue;
+            }
+            let steps = &mut self.steps[row * self.columns..(row + 1) * self.columns];
+            let mut sums = [0.0_f32; 2];
+            let mut column = left;
+            while column < right {
+                let ahead = touched >> (column >> self.shift);
+                if ahead & 1 == 1 {
+                    let end = (((column >> self.shift) + 1) << self.shift).min(right);
+                    let run = &mut steps[column..end];
+                    for step in run.iter_mut() {
+                        sums = [sums[0] + step[0], sums[1] + step[1]];
+                        *step = sums;
+                    }
+                    paint(row, column, Run::Each(run));
+                    run.fill([0.0; 2]);
+                    column = end;
+                } else {
+                    let end = if ahead == 0 {
+                        right
+                    } else {
+                        (((column >> self.shift) + ahead.trailing_zeros() as usize) << self.shift).min(right)
+                    };
+                    if sums[0].abs() > Self::RESIDUE {
+                        paint(row, column, Run::Same(sums, end - column));
+                    }
+                    column = end;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! A scene made ready to be drawn: its facets by the planes in which they lie, each in a sphere.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use crate::scene::docking::{DockingScene, Facet, Part};
+
+/// A sphere about something.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sphere {
+    pub(super) centre: Vector3<f64>,
+    pub(super) radius: f64,
+}
+
+impl Sphere {
+    /// About the middle of the points' extent along the axes.
+    fn about<'a>(points: impl Iterator<Item = &'a Vector3<f64>> + Clone) -> Self {
+        let mut extent = points.clone();
+        let Some(first) = extent.next() else {
+            return Self { centre: Vector3::zeros(), radius: 0.0 };
+        };
+        let (low, high) = extent.fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
+        let centre = 0.5 * (low + high);
+        let radius = points.map(|point| (point - centre).norm()).fold(0.0, f64::max);
+        Self { centre, radius }
+    }
+}
+
+/// Facets of one part in one plane.
+#[derive(Debug, Clone)]
+pub(super) struct Plane {
+    pub(super) normal: Vector3<f64>,
+    /// normal · y of its points, m.
+    pub(super) offset: f64,
+    /// Places of its facets in the part.
+    pub(super) facets: Vec<usize>,
+    pub(super) sphere: Sphere,
+}
+
+impl Plane {
+    /// How far a point lies in front of it, m.
+    pub(super) fn height(&self, point: &Vector3<f64>) -> f64 {
+        self.normal.dot(point) - self.offset
+    }
+}
+
+/// What a caster of shadows needs to know of a facet.
+#[derive(Debug, Clone)]
+pub(super) struct Caster {
+    pub(super) sphere: Sphere,
+    /// Area, m².
+    pub(super) area: f64,
+}
+
+/// A part made ready.
+#[derive(Debug, Clone)]
+pub(super) struct PreparedPart {
+    /// Places of its planes in the scene.
+    pub(super) planes: Range<usize>,
+    pub(super) sphere: Sphere,
+    /// One a facet; empty when the part casts no shadow.
+    pub(super) casters: Vec<Caster>,
+}
+
+/// The scene and what was made of it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Prepared {
+    pub(super) scene: DockingScene,
+    pub(super) parts: Vec<PreparedPart>,
+    pub(super) planes: Vec<Plane>,
+}
+
+impl Prepared {
+    pub(super) fn new(scene: &DockingScene) -> Self {
+        let mut planes = Vec::new();
+        let parts = scene
+            .parts
+            .iter()
+            .map(|part| {
+                let start = planes.len();
+                if part.visible {
+                    planes.extend(planes_of(part));
+                }
+                PreparedPart {
+                    planes: start..planes.len(),
+                    sphere: Sphere::about(part.facets.iter().flat_map(|facet| &facet.outer)),
+                    casters: if part.casts_shadow {
+                        part.facets.iter().map(caster).collect()
+                    } else {
+                        Vec::new()
+                    },
+                }
+            })
+            .collect();
+        Self { scene: scene.clone(), parts, planes }
+    }
+}
+
+/// How far apart normals and, in metres, offsets of one plane may be.
+const SAME_PLANE: f64 = 1e-9;
+
+fn planes_of(part: &Part) -> Vec<Plane> {
+    let mut planes: Vec<Plane> = Vec::new();
+    for (index, facet) in part.facets.iter().enumerate() {
+        let Some(point) = facet.outer.first() else { continue };
+        let offset = facet.normal.dot(point);
+        let same = |plane: &&mut Plane| {
+            (plane.normal - facet.normal).norm() < SAME_PLANE && (plane.offset - offset).abs() < SAME_PLANE
+        };
+        match planes.iter_mut().find(same) {
+            Some(plane) => plane.facets.push(index),
+            None => planes.push(Plane {
+                normal: facet.normal,
+                offset,
+                facets: vec![index],
+                sphere: Sphere { centre: *point, radius: 0.0 },
+            }),
+        }
+    }
+    for plane in &mut planes {
+        let facets = plane.facets.iter().map(|index| &part.facets[*index]);
+        plane.sphere = Sphere::about(facets.flat_map(|facet| &facet.outer));
+    }
+    planes
+}
+
+fn caster(facet: &Facet) -> Caster {
+    let signed: f64 = std::iter::once(&facet.outer)
+        .chain(&facet.holes)
+        .map(|polygon| {
+            let Some(last) = polygon.last() else { return 0.0 };
+            let mut previous = last;
+            let mut sum = Vector3::zeros();
+            for point in polygon {
+                sum += (previous - last).cross(&(point - last));
+                previous = point;
+            }
+            0.5 * sum.dot(&facet.normal)
+        })
+        .sum();
+    Caster { sphere: Sphere::about(facet.outer.iter()), area: signed.abs() }
+}

@@ -1,0 +1,129 @@
+//! AVI: uncompressed frames and Motion-JPEG.
+//!
+//! The file is read from front to back; its index is not needed and not believed. Parts after the first (`RIFF AVIX`
+//! of files over 1 GB, OpenDML) are read on.
+
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::zune_core::bytestream::ZCursor;
+use zune_jpeg::zune_core::colorspace::ColorSpace;
+use zune_jpeg::zune_core::options::DecoderOptions;
+
+use super::super::FileError;
+use super::avi_header::{self, Coding, VideoStream};
+use super::input::Input;
+use super::riff::{Chunk, Item, Walker};
+use super::whole_frame::WholeFrame;
+
+/// The frames of an AVI file.
+pub(super) struct AviReader {
+    walker: Walker,
+    stream: VideoStream,
+    bytes: Vec<u8>,
+    next: u64,
+    in_frames: bool,
+}
+
+impl AviReader {
+    /// Reads the header; `size` is columns and rows of the camera.
+    pub(super) fn open(input: Input, size: (usize, usize)) -> Result<Self, FileError> {
+        let mut walker = Walker::new(input);
+        let stream = avi_header::read(&mut walker, size)?;
+        Ok(Self { walker, stream, bytes: Vec::new(), next: 0, in_frames: true })
+    }
+
+    /// Frames a second, if the file says.
+    pub(super) fn rate_hz(&self) -> Option<f64> {
+        self.stream.rate_hz
+    }
+
+    fn next_frame(&mut self) -> Result<Option<WholeFrame>, FileError> {
+        loop {
+            let chunk = match self.walker.step()? {
+                Item::End => return Ok(None),
+                Item::List(kind) => {
+                    // Frames lie in `movi`, maybe in a `rec ` in it; what lies in other lists is no frame.
+                    self.in_frames = matches!(&kind.0, b"movi" | b"rec ");
+                    continue;
+                }
+                Item::Chunk(chunk) => chunk,
+            };
+            if !self.in_frames || chunk.id.0[..2] != self.stream.prefix {
+                continue;
+            }
+            match &chunk.id.0[2..] {
+                b"db" | b"dc" => {}
+                b"pc" => {
+                    return Err(self.walker.error(&chunk, "a change of palette, which is not supported"));
+                }
+                _ => continue,
+            }
+            let index = self.next;
+            self.next += 1;
+            // An empty chunk stands for a frame that the recorder dropped: its number passes, and no field comes.
+            if chunk.size > 0 {
+                return self.decode(&chunk).map(|dn| Some(WholeFrame { index, dn }));
+            }
+        }
+    }
+
+    fn decode(&mut self, chunk: &Chunk) -> Result<Vec<u16>, FileError> {
+        let size = chunk.size as usize;
+        match &self.stream.coding {
+            Coding::Uncompressed(frame) => {
+                let lengths = frame.lengths();
+                if !lengths.contains(&size) {
+                    let expected =
+                        format!("{size} bytes, expected {}, or {} with padding", lengths[0], lengths[1]);
+                    return Err(self.walker.error(chunk, expected));
+                }
+                self.walker.read(chunk, &mut self.bytes)?;
+                let wrong = || self.walker.error(chunk, "not a frame of its layout");
+                frame.grey(&self.bytes).ok_or_else(wrong)
+            }
+            Coding::MotionJpeg => {
+                // No picture needs more bytes than its colours uncompressed, but for headers and noise.
+                let most = 6 * self.stream.columns * self.stream.rows + (1 << 16);
+                if size > most {
+                    let reason =
+                        format!("{size} bytes of JPEG, expected {most} at most for the size of the image");
+                    return Err(self.walker.error(chunk, reason));
+                }
+                self.walker.read(chunk, &mut self.bytes)?;
+                decode_jpeg(&self.bytes, self.stream.columns, self.stream.rows)
+                    .map_err(|reason| self.walker.error(chunk, reason))
+            }
+        }
+    }
+}
+
+impl Iterator for AviReader {
+    type Item = Result<WholeFrame, FileError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.next_frame().transpose()
+    }
+}
+
+/// The brightness of a JPEG image of a known size. Strict: a decoder that makes grey of what is missing would make
+/// pixels that no camera saw.
+fn decode_jpeg(bytes: &[u8], columns: usize, rows: usize) -> Result<Vec<u16>, String> {
+    let options = DecoderOptions::default()
+        .set_max_width(columns)
+        .set_max_height(rows)
+        .set_strict_mode(true)
+        .jpeg_set_max_scans(64)
+        .jpeg_set_out_colorspace(ColorSpace::Luma);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers().map_err(|error| format!("not a readable JPEG image: {error:?}"))?;
+    if decoder.dimensions() != Some((columns, rows)) {
+        let (c, r) = decoder.dimensions().unwrap_or_default();
+        return Err(format!(
+            "a JPEG image of {c} × {r} pixels, expected {columns} × {rows}, those of its header"
+        ));
+    }
+    let grey = decoder.decode().map_err(|error| format!("not a readable JPEG image: {error:?}"))?;
+    if grey.len() != columns * rows {
+        return Err(format!("{} values, expected one a pixel, {columns} × {rows}", grey.len()));
+    }
+    Ok(grey.into_iter().map(u16::from).collect())
+}

@@ -1,0 +1,67 @@
+//! Bytes that come in order, from a file or a pipe, and how far they have been read.
+
+use std::fs::File;
+use std::io::{self, BufReader, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+
+use super::super::FileError;
+
+/// A source of bytes that is read once, from front to back.
+pub(super) struct Input {
+    path: PathBuf,
+    bytes: Box<dyn Read + Send>,
+    position: u64,
+}
+
+impl Input {
+    pub(super) fn file(path: &Path) -> Result<Self, FileError> {
+        let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+        Ok(Self::new(path, BufReader::with_capacity(1 << 16, file)))
+    }
+
+    pub(super) fn standard_input() -> Self {
+        // Standard input is buffered, and gives what has arrived: a frame is there as soon as its last byte is.
+        Self::new(Path::new("standard input"), io::stdin())
+    }
+
+    pub(super) fn new(path: &Path, bytes: impl Read + Send + 'static) -> Self {
+        Self { path: path.to_owned(), bytes: Box::new(bytes), position: 0 }
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Bytes read so far.
+    pub(super) fn position(&self) -> u64 {
+        self.position
+    }
+
+    /// Fills the buffer, or as much of it as there are bytes left; the number of bytes.
+    pub(super) fn fill(&mut self, buffer: &mut [u8]) -> Result<usize, FileError> {
+        let mut filled = 0;
+        while filled < buffer.len() {
+            match self.bytes.read(&mut buffer[filled..]) {
+                Ok(0) => break,
+                Ok(n) => filled += n,
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(source) => return Err(FileError::io(&self.path, "read", source)),
+            }
+        }
+        self.position += filled as u64;
+        Ok(filled)
+    }
+
+    /// Passes over bytes; the number that there were.
+    pub(super) fn skip(&mut self, bytes: u64) -> Result<u64, FileError> {
+        let skipped = io::copy(&mut self.bytes.by_ref().take(bytes), &mut io::sink())
+            .map_err(|source| FileError::io(&self.path, "read", source))?;
+        self.position += skipped;
+        Ok(skipped)
+    }
+
+    /// The error of bytes that are not of the format.
+    pub(super) fn error(&self, format: &'static str, reason: impl ToString) -> FileError {
+        FileError::format(&self.path, format, reason)
+    }
+}

@@ -1,0 +1,216 @@
+//! Where fields come from.
+
+use std::iter;
+use std::path::Path;
+use std::str::FromStr;
+
+use contract::docking::{Digitiser, DockingSetup, Field, FieldTelemetry};
+
+use super::super::FileError;
+use super::super::error::Place;
+use super::avi::AviReader;
+use super::folder;
+use super::input::Input;
+use super::stream::StreamReader;
+use super::whole_frame::{Format, Scan, WholeFrame};
+
+/// Frames a second of a sequence that does not say: 625-line television.
+const DEFAULT_RATE_HZ: f64 = 25.0;
+/// Rates that a sequence may have, Hz.
+const RATES_HZ: std::ops::RangeInclusive<f64> = 0.001..=100_000.0;
+
+/// Columns and rows of raw frames, written `768x576`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FrameSize {
+    /// Columns.
+    pub columns: usize,
+    /// Rows.
+    pub rows: usize,
+}
+
+impl FromStr for FrameSize {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let sides = text.split_once('x').and_then(|(c, r)| Some((c.parse().ok()?, r.parse().ok()?)));
+        let (columns, rows) =
+            sides.ok_or_else(|| format!("`{text}` is not a size of frames; expected as 768x576"))?;
+        Ok(Self { columns, rows })
+    }
+}
+
+/// What a sequence does not say of itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SequenceOptions {
+    /// What the rows of whole frames are. A field order that a header may name is not consulted: too many are wrong.
+    pub scan: Scan,
+    /// Which of [`DockingSetup::cameras`] took it, 0-based.
+    pub camera: usize,
+    /// Whole frames a second; without it as the file says, or 25.
+    pub frame_rate_hz: Option<f64>,
+    /// The input is raw bytes of grey, frames of this size; without it, standard input is Y4M.
+    pub raw: Option<FrameSize>,
+    /// How the video was digitised.
+    pub digitiser: Digitiser,
+}
+
+/// The fields of a sequence, in the order of time.
+///
+/// A sequence ends at its end or at its first error, which is the last item. Numbers of fields ascend; those of frames
+/// that a recorder dropped are missing.
+pub struct FieldSource(Box<dyn Iterator<Item = Result<(Field, FieldTelemetry), FileError>> + Send>);
+
+impl FieldSource {
+    /// Opens a sequence:
+    ///
+    /// - a folder with a `telemetry.csv` ([`super::super::FieldRow`]): the fields that it lists; `options` do not apply;
+    /// - another folder: its images `*.png`, whole frames, in the order of their names;
+    /// - `-`: standard input, Y4M or, with `options.raw`, raw frames; live: a field is given as soon as the last byte
+    ///   of its frame has arrived, and a pipe that is closed between two frames is the end;
+    /// - a file `*.avi` or `*.y4m`, or with `options.raw` any file of raw frames.
+    ///
+    /// Field k of a sequence without telemetry is at k/(fields a second).
+    ///
+    /// # Errors
+    /// A [`FileError`] for what is not there or not of its format, for a size that is not the camera's, for a
+    /// sequence of 8 bits where the setup's digitiser has other, and for options outside their ranges.
+    pub fn open(path: &Path, setup: &DockingSetup, options: &SequenceOptions) -> Result<Self, FileError> {
+        let is = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+        if path.join("telemetry.csv").exists() {
+            let fields = folder::listed(path, setup)?;
+            let setup = setup.clone();
+            return Ok(Self::until_error(fields.into_iter().map(move |field| field.read(&setup))));
+        }
+        if path.is_dir() {
+            let format = format(path, setup, options, setup.bit_depth, None)?;
+            let images = folder::by_name(path)?;
+            let frames =
+                iter::zip(images, 0..).map(move |(path, index)| folder::read_whole(&path, index, &format));
+            return Ok(Self::of_frames(path, format, frames));
+        }
+        let standard_input = path == Path::new("-");
+        let open = || if standard_input { Ok(Input::standard_input()) } else { Input::file(path) };
+        if options.raw.is_some() {
+            Self::raw(open()?, setup, options)
+        } else if standard_input || is("y4m") {
+            Self::y4m(open()?, setup, options)
+        } else if is("avi") {
+            Self::avi(open()?, setup, options)
+        } else {
+            let reason = "the extension is none of avi, y4m; raw frames need their size (--raw 768x576)";
+            Err(open().err().unwrap_or_else(|| FileError::format(path, "video", reason)))
+        }
+    }
+
+    pub(super) fn avi(
+        input: Input,
+        setup: &DockingSetup,
+        options: &SequenceOptions,
+    ) -> Result<Self, FileError> {
+        let path = input.path().to_owned();
+        let reader = AviReader::open(input, size(&path, setup, options)?)?;
+        let format = format(&path, setup, options, 8, reader.rate_hz())?;
+        Ok(Self::of_frames(&path, format, reader))
+    }
+
+    pub(super) fn y4m(
+        input: Input,
+        setup: &DockingSetup,
+        options: &SequenceOptions,
+    ) -> Result<Self, FileError> {
+        let path = input.path().to_owned();
+        let reader = StreamReader::y4m(input, size(&path, setup, options)?)?;
+        let format = format(&path, setup, options, 8, reader.rate_hz())?;
+        Ok(Self::of_frames(&path, format, reader))
+    }
+
+    pub(super) fn raw(
+        input: Input,
+        setup: &DockingSetup,
+        options: &SequenceOptions,
+    ) -> Result<Self, FileError> {
+        let path = input.path().to_owned();
+        let format = format(&path, setup, options, 8, None)?;
+        let (columns, rows) = (format.columns, format.rows);
+        if let Some(given) = options.raw.filter(|given| (given.columns, given.rows) != (columns, rows)) {
+            let size = format!("{} × {}", given.columns, given.rows);
+            let expected = format!("{columns} × {rows}, those of the camera");
+            return Err(FileError::value(&path, Place::Header, "size of raw frames", size, expected));
+        }
+        Ok(Self::of_frames(&path, format, StreamReader::raw(input, (columns, rows))))
+    }
+
+    fn of_frames(
+        path: &Path,
+        format: Format,
+        frames: impl Iterator<Item = Result<WholeFrame, FileError>> + Send + 'static,
+    ) -> Self {
+        let path = path.to_owned();
+        let split = move |frame: Result<WholeFrame, FileError>| {
+            let fields = frame
+                .and_then(|frame| format.split(&frame).map_err(|source| FileError::contract(&path, source)));
+            match fields {
+                Ok(fields) => fields.into_iter().map(Ok).collect(),
+                Err(error) => vec![Err(error)],
+            }
+        };
+        Self::until_error(frames.flat_map(split))
+    }
+
+    fn until_error(
+        fields: impl Iterator<Item = Result<(Field, FieldTelemetry), FileError>> + Send + 'static,
+    ) -> Self {
+        let end_after_error = |failed: &mut bool, field: Result<_, _>| {
+            let go_on = !*failed;
+            *failed = field.is_err();
+            go_on.then_some(field)
+        };
+        Self(Box::new(fields.fuse().scan(false, end_after_error).fuse()))
+    }
+}
+
+impl Iterator for FieldSource {
+    type Item = Result<(Field, FieldTelemetry), FileError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.0.next()
+    }
+}
+
+/// Columns and rows of the camera that took the sequence.
+fn size(path: &Path, setup: &DockingSetup, options: &SequenceOptions) -> Result<(usize, usize), FileError> {
+    let camera = setup.cameras.get(options.camera).ok_or_else(|| {
+        let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
+        FileError::value(path, Place::Header, "camera", options.camera, expected)
+    })?;
+    camera.check().map_err(|source| FileError::contract(path, source))?;
+    Ok((camera.columns, camera.rows))
+}
+
+/// What the frames of a sequence have in common; `bit_depth` is what the file holds, `rate_hz` what it says.
+fn format(
+    path: &Path,
+    setup: &DockingSetup,
+    options: &SequenceOptions,
+    bit_depth: u8,
+    rate_hz: Option<f64>,
+) -> Result<Format, FileError> {
+    let (columns, rows) = size(path, setup, options)?;
+    let wrong = |field: &str, value: String, expected: &str| {
+        Err(FileError::value(path, Place::Header, field, value, expected))
+    };
+    if bit_depth != setup.bit_depth {
+        return wrong(
+            "bits of a sample",
+            bit_depth.to_string(),
+            &format!("{}, those of the digitiser", setup.bit_depth),
+        );
+    }
+    let rate_hz = options.frame_rate_hz.or(rate_hz).unwrap_or(DEFAULT_RATE_HZ);
+    if !RATES_HZ.contains(&rate_hz) {
+        return wrong("frames a second", rate_hz.to_string(), "0.001 to 100000");
+    }
+    options.digitiser.check().map_err(|source| FileError::contract(path, source))?;
+    let (scan, camera, digitiser) = (options.scan, options.camera, options.digitiser);
+    Ok(Format { columns, rows, bit_depth, rate_hz, scan, camera, digitiser })
+}

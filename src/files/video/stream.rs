@@ -1,0 +1,164 @@
+//! Frames without a container: YUV4MPEG2 (Y4M) and raw bytes. Both can be live: a frame is given as soon as its last
+//! byte has arrived, and nothing beyond it is waited for.
+
+use super::super::FileError;
+use super::input::Input;
+use super::whole_frame::WholeFrame;
+
+/// The frames of a Y4M stream (8 bits, mono, 4:2:0, 4:2:2 or 4:4:4) or of raw grey bytes. Of Y4M the plane Y is
+/// taken as it is.
+pub(super) struct StreamReader {
+    input: Input,
+    framing: Framing,
+    grey: Vec<u8>,
+    /// Bytes of colour after the grey ones.
+    colour_bytes: u64,
+    rate_hz: Option<f64>,
+    next: u64,
+}
+
+/// What stands before each frame.
+#[derive(Clone, Copy, PartialEq)]
+enum Framing {
+    Nothing,
+    FrameLine,
+}
+
+const Y4M: &str = "Y4M";
+/// Longest line of a header, as in mjpegtools.
+const LONGEST_LINE: usize = 1024;
+
+impl StreamReader {
+    /// Raw frames: one byte a pixel, row by row, one frame after the other.
+    pub(super) fn raw(input: Input, (columns, rows): (usize, usize)) -> Self {
+        let grey = vec![0; columns * rows];
+        Self { input, framing: Framing::Nothing, grey, colour_bytes: 0, rate_hz: None, next: 0 }
+    }
+
+    /// Reads the header of a Y4M stream; `size` is columns and rows of the camera.
+    pub(super) fn y4m(mut input: Input, size: (usize, usize)) -> Result<Self, FileError> {
+        let Some(line) = read_line(&mut input, "the header")? else {
+            return Err(input.error(Y4M, "it is empty"));
+        };
+        let Some(parameters) = line.strip_prefix("YUV4MPEG2") else {
+            return Err(input.error(Y4M, "it does not begin with YUV4MPEG2"));
+        };
+        let mut claimed = (None, None);
+        let mut rate_hz = None;
+        let mut colour = "420";
+        for parameter in parameters.split(' ').filter(|text| !text.is_empty()) {
+            let (name, value) = (parameter.chars().next(), parameter.get(1..).unwrap_or(""));
+            match name {
+                Some('W') => claimed.0 = value.parse().ok(),
+                Some('H') => claimed.1 = value.parse().ok(),
+                Some('F') => rate_hz = rate(&input, value)?,
+                Some('C') => colour = value,
+                _ => {}
+            }
+        }
+        let (columns, rows) = size;
+        if claimed != (Some(columns as u64), Some(rows as u64)) {
+            let text = |side: Option<u64>| side.map_or_else(|| "?".to_owned(), |n| n.to_string());
+            let (c, r) = (text(claimed.0), text(claimed.1));
+            let reason = format!(
+                "header: frames of {c} × {r} pixels, expected {columns} × {rows}, those of the camera"
+            );
+            return Err(input.error(Y4M, reason));
+        }
+        let colour_bytes = match colour {
+            "mono" => 0,
+            "420" | "420jpeg" | "420paldv" | "420mpeg2" => 2 * columns.div_ceil(2) * rows.div_ceil(2),
+            "422" => 2 * columns.div_ceil(2) * rows,
+            "444" => 2 * columns * rows,
+            _ => {
+                let reason =
+                    format!("header: colour space `{colour}`, expected mono, 420, 422 or 444 of 8 bits");
+                return Err(input.error(Y4M, reason));
+            }
+        };
+        let grey = vec![0; columns * rows];
+        Ok(Self {
+            input,
+            framing: Framing::FrameLine,
+            grey,
+            colour_bytes: colour_bytes as u64,
+            rate_hz,
+            next: 0,
+        })
+    }
+
+    /// Frames a second, if the stream says.
+    pub(super) fn rate_hz(&self) -> Option<f64> {
+        self.rate_hz
+    }
+
+    fn next_frame(&mut self) -> Result<Option<WholeFrame>, FileError> {
+        let index = self.next;
+        let begin = self.input.position();
+        if self.framing == Framing::FrameLine {
+            match read_line(&mut self.input, "a frame's header")? {
+                None => return Ok(None),
+                Some(line) if line == "FRAME" || line.starts_with("FRAME ") => {}
+                Some(_) => {
+                    let reason = format!("frame {index} at byte {begin}: it does not begin with FRAME");
+                    return Err(self.input.error(Y4M, reason));
+                }
+            }
+        }
+        let got = self.input.fill(&mut self.grey)?;
+        if got == 0 && self.framing == Framing::Nothing {
+            return Ok(None);
+        }
+        let got = got as u64 + if got == self.grey.len() { self.input.skip(self.colour_bytes)? } else { 0 };
+        let expected = self.grey.len() as u64 + self.colour_bytes;
+        if got < expected {
+            let format = if self.framing == Framing::Nothing { "raw video" } else { Y4M };
+            let reason =
+                format!("frame {index} at byte {begin}: the input ends after {got} of its {expected} bytes");
+            return Err(self.input.error(format, reason));
+        }
+        self.next += 1;
+        Ok(Some(WholeFrame { index, dn: self.grey.iter().map(|&y| u16::from(y)).collect() }))
+    }
+}
+
+impl Iterator for StreamReader {
+    type Item = Result<WholeFrame, FileError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.next_frame().transpose()
+    }
+}
+
+/// A line without its end; `None` when the input ends before it.
+fn read_line(input: &mut Input, what: &str) -> Result<Option<String>, FileError> {
+    let begin = input.position();
+    let mut line = Vec::new();
+    loop {
+        let mut byte = [0];
+        match (input.fill(&mut byte)?, byte[0]) {
+            (0, _) if line.is_empty() => return Ok(None),
+            (0, _) => return Err(input.error(Y4M, format!("byte {begin}: the input ends within {what}"))),
+            (_, b'\n') => break,
+            (_, byte) => line.push(byte),
+        }
+        if line.len() > LONGEST_LINE {
+            let reason = format!("byte {begin}: {what} is longer than {LONGEST_LINE} bytes");
+            return Err(input.error(Y4M, reason));
+        }
+    }
+    String::from_utf8(line)
+        .map(Some)
+        .map_err(|_| input.error(Y4M, format!("byte {begin}: {what} is not text")))
+}
+
+/// Frames a second, as `25:1`; `0:0` means unknown.
+fn rate(input: &Input, text: &str) -> Result<Option<f64>, FileError> {
+    let ratio =
+        text.split_once(':').and_then(|(n, d)| Some((n.parse::<u32>().ok()?, d.parse::<u32>().ok()?)));
+    match ratio {
+        Some((0, 0)) => Ok(None),
+        Some((n, d)) if n > 0 && d > 0 => Ok(Some(f64::from(n) / f64::from(d))),
+        _ => Err(input.error(Y4M, format!("header: frame rate `{text}`, expected as 25:1"))),
+    }
+}
