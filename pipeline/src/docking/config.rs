@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::edges::EdgeConfig;
 use super::histogram::AutoContrastConfig;
+use super::portions::{ExactPortionConfig, PaperPortionConfig};
 use super::region::RegionConfig;
 use crate::PipelineError;
 use crate::error::require;
@@ -23,6 +24,12 @@ pub struct DockingConfig {
     pub min_contrast: f64,
     /// Most candidates for the cross that are examined in a field, 1 to 200.
     pub max_candidates: u32,
+    /// Fields of a portion, measured or not, 3 to 1000; ten in the paper.
+    pub portion_fields: u32,
+    /// Motion by portions of the best estimator.
+    pub portions: ExactPortionConfig,
+    /// Motion by portions of the paper's formulas.
+    pub paper_portions: PaperPortionConfig,
 }
 
 impl Default for DockingConfig {
@@ -33,6 +40,9 @@ impl Default for DockingConfig {
             edges: EdgeConfig::default(),
             min_contrast: 10.0,
             max_candidates: 24,
+            portion_fields: 10,
+            portions: ExactPortionConfig::default(),
+            paper_portions: PaperPortionConfig::default(),
         }
     }
 }
@@ -47,7 +57,14 @@ impl DockingConfig {
         self.auto_contrast.check()?;
         self.edges.check()?;
         require("min_contrast", self.min_contrast, "2 to 200", |v| (2.0..=200.0).contains(&v))?;
-        require("max_candidates", f64::from(self.max_candidates), "1 to 200", |v| (1.0..=200.0).contains(&v))
+        require("max_candidates", f64::from(self.max_candidates), "1 to 200", |v| {
+            (1.0..=200.0).contains(&v)
+        })?;
+        require("portion_fields", f64::from(self.portion_fields), "3 to 1000", |v| {
+            (3.0..=1000.0).contains(&v)
+        })?;
+        self.portions.check()?;
+        self.paper_portions.check()
     }
 }
 

@@ -6,6 +6,7 @@ use imageproc::image::{GrayImage, Luma};
 use nalgebra::Vector2;
 
 use super::circle::{self, CircleFit};
+use super::paper_pose::range_from_outline;
 use super::view::{Lens, Overview};
 use super::{binarise, components};
 
@@ -128,10 +129,9 @@ fn arc_share(points: &[Vector2<f64>], fit: &CircleFit) -> f64 {
 
 /// d3 and its standard deviation, m: Rs = f r_s/(d3 + h_s). `None` unless it is positive.
 pub(crate) fn range(outline: &Outline, focal_px: f64, radius_px: f64, sigma_px: f64) -> Option<(f64, f64)> {
-    let depth_m = focal_px * outline.radius_m / radius_px;
-    let range_m = depth_m - outline.depth_m;
-    (range_m > 0.0 && range_m.is_finite() && sigma_px.is_finite())
-        .then(|| (range_m, depth_m * sigma_px / radius_px))
+    let range_m = range_from_outline(focal_px, outline.radius_m, outline.depth_m, radius_px)?;
+    let sigma_m = (range_m + outline.depth_m) * sigma_px / radius_px;
+    sigma_m.is_finite().then_some((range_m, sigma_m))
 }
 
 #[cfg(test)]

@@ -1,5 +1,34 @@
 //! The monitoring of a docking approach (Boguslavsky, Sazonov, Sokolov, Smirnov, Saigiraev, ICINCO 2004).
+//!
+//! A field of television is searched for the target's cross and marks (a region predicted from the fields before,
+//! regions of the binary image, edges, and a scan by structure, one backing up the other), the cross's bars and the
+//! circle of the marks are measured by least squares, and pose and motion follow. One step of the paper is one file here.
 
+mod binarise;
+mod candidates;
+mod circle;
+mod components;
+mod config;
+mod contour;
+mod cross;
+mod docking_unit;
+mod edges;
 pub mod geometry;
+mod histogram;
+mod marks;
 pub mod paper_pose;
+mod pipeline;
 pub mod portions;
+mod profile;
+mod recognise;
+mod region;
+mod self_check;
+#[cfg(test)]
+mod synthetic;
+mod view;
+
+pub use config::DockingConfig;
+pub use edges::EdgeConfig;
+pub use histogram::{AutoContrastConfig, AutoContrastMode};
+pub use pipeline::{Docking, DockingFactory};
+pub use region::{Rectangle, RegionConfig};

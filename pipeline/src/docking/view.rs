@@ -3,7 +3,7 @@
 use contract::docking::Field;
 use contract::{Camera, ContractError, PixelPoint};
 use imageproc::image::{GrayImage, Luma};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector2;
 
 use crate::CameraModel;
 
@@ -133,11 +133,14 @@ impl Overview {
 pub(crate) struct Lens {
     model: CameraModel,
     focal_px: f64,
+    /// Columns a row's height is: 1 where pixels are square.
+    row_px: f64,
 }
 
 impl Lens {
     pub(crate) fn new(camera: &Camera) -> Result<Self, ContractError> {
-        Ok(Self { model: CameraModel::new(camera)?, focal_px: camera.focal_length_px().0 })
+        let (focal_px, focal_y_px) = camera.focal_length_px();
+        Ok(Self { model: CameraModel::new(camera)?, focal_px, row_px: focal_px / focal_y_px })
     }
 
     /// f, px.
@@ -147,13 +150,12 @@ impl Lens {
 
     /// Without distortion; `None` where the lens model has no inverse.
     pub(crate) fn to_ideal(&self, point: PixelPoint) -> Option<Vector2<f64>> {
-        let ray = self.model.back_project(point)?;
-        let ray = ray.vector();
-        Some(Vector2::new(self.focal_px * ray.x / ray.z, self.focal_px * ray.y / ray.z))
+        let (u, v) = self.model.to_ideal(point)?;
+        Some(Vector2::new(u, v * self.row_px))
     }
 
     /// As the camera sees it; `None` beyond the fold of the distortion.
     pub(crate) fn to_camera(&self, ideal: Vector2<f64>) -> Option<PixelPoint> {
-        self.model.project_vector(&Vector3::new(ideal.x / self.focal_px, ideal.y / self.focal_px, 1.0))
+        self.model.from_ideal(ideal.x, ideal.y / self.row_px)
     }
 }
