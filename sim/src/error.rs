@@ -41,6 +41,14 @@ pub enum SimError {
         /// What is wrong.
         problem: String,
     },
+    /// A docking target that cannot be used.
+    #[error("target {target:?}: {problem}")]
+    TargetFile {
+        /// Its name, or the path of its file.
+        target: String,
+        /// What is wrong.
+        problem: String,
+    },
 }
 
 impl SimError {
@@ -49,6 +57,9 @@ impl SimError {
         match self {
             Self::Parameter { field, value, expected } => {
                 Self::Entry { path: field.replacen("[]", &format!("[{index}]"), 1), value, expected }
+            }
+            Self::Entry { path, value, expected } => {
+                Self::Entry { path: path.replacen("[]", &format!("[{index}]"), 1), value, expected }
             }
             other => other,
         }

@@ -5,6 +5,7 @@
 
 pub mod catalog;
 mod constants;
+pub mod docking;
 pub mod draw;
 mod error;
 mod expose;

@@ -40,16 +40,18 @@ pub enum Effect {
     Telegraph = 27,
     /// Hits of cosmic rays.
     CosmicRays = 28,
+    /// Layout of the blankets on a docking target's station (addressed with the target's seed).
+    Blankets = 40,
     /// Noise of a video signal, pixel by pixel.
-    VideoNoise = 40,
+    VideoNoise = 41,
     /// Phases of the slow drift of a video signal's contrast and brightness.
-    VideoDrift = 41,
+    VideoDrift = 42,
     /// Shift of each line of a field.
-    LineJitter = 42,
+    LineJitter = 43,
     /// Which lines of a field are lost, and what stands in their place.
-    LostLines = 43,
+    LostLines = 44,
     /// Level of each line of a field.
-    LineLevel = 44,
+    LineLevel = 45,
 }
 
 /// The generator behind every draw.

@@ -90,8 +90,9 @@ impl TargetGeometry {
             .map(|[y1, y2]| Vector3::new(y1, y2, height))
             .collect();
         let radius = model.plate_radius_m;
-        // Rings of equal area; 96 places.
-        let rings = [0.25, 0.5, 0.75, 0.95].map(|share| circle(share * radius, (share * 39.2) as u32));
+        // Rings with points as their circumferences, so that each stands for the same area; 96 in all.
+        let rings =
+            [(0.25, 10), (0.5, 20), (0.75, 30), (0.95, 36)].map(|(share, n)| circle(share * radius, n));
         Self {
             mark_circle_radius_m: model.mark_circle_radius_m,
             cross_centre: Vector3::new(0.0, 0.0, height),

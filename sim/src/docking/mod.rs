@@ -1,0 +1,17 @@
+//! The simulator of a docking approach: trajectory → scene → lens → television, one field in one function.
+//!
+//! [`DockingSimulator::expose`] makes one field with its truth: the same bits whatever was made before, on any thread.
+
+mod config;
+mod geometry;
+mod lighting;
+mod occlusion;
+mod simulator;
+mod truth;
+
+pub use config::{CameraConfig, DockingSimulation, LensConfig};
+pub use lighting::{FloodlightConfig, LightingConfig, ShadeConfig, SunConfig};
+pub use simulator::{DockingSimulator, DockingWorkspace, FieldExposure, FieldMoment};
+pub use truth::FieldTruth;
+
+pub use crate::television::VideoField;

@@ -1,0 +1,319 @@
+//! A docking simulation, checked and prepared, and how it makes a field.
+
+use std::path::Path;
+
+use contract::docking::{Digitiser, DockingSetup, FieldTelemetry, Lines, TargetModel};
+use hifitime::{Epoch, Unit};
+
+use super::DockingSimulation;
+use super::config::CameraConfig;
+use super::geometry::{Eye, TargetGeometry};
+use super::lighting::LightingConfig;
+use super::truth::FieldTruth;
+use crate::SimError;
+use crate::error::require;
+use crate::optics::ImageBlur;
+use crate::randomness::Seed;
+use crate::regular_file;
+use crate::scene::docking::{DockingScene, Lighting, TargetFile};
+use crate::television::{BIT_DEPTH, Caption, FieldLabel, Television, TelevisionConfig, VideoField};
+use crate::truth::approach::{Approach, ApproachState};
+use crate::truth::clock::{format_utc, parse_utc_of};
+use crate::vector::{Drawer, RadianceImage};
+
+/// Largest target file, bytes.
+const MAX_TARGET_BYTES: u64 = 4 << 20;
+/// Most marks of a target: bits of a truth table's mask.
+const MAX_MARKS: usize = 64;
+
+/// A docking simulation that was checked and prepared; shared by all threads.
+#[derive(Debug, Clone)]
+pub struct DockingSimulator {
+    seed: Seed,
+    start: Epoch,
+    approach: Approach,
+    cameras: Vec<CameraConfig>,
+    eyes: Vec<Eye>,
+    blur_sigma_px: f64,
+    lighting: LightingConfig,
+    television: TelevisionConfig,
+    model: TargetModel,
+    scene: DockingScene,
+    geometry: TargetGeometry,
+    field_count: u64,
+}
+
+/// The moment of a field: what there is to be drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldMoment {
+    /// Number of the field.
+    pub field: u64,
+    /// Its moment, s since the beginning.
+    pub time_s: f64,
+    /// Its moment.
+    pub time: Epoch,
+    /// The rows that it holds.
+    pub lines: Lines,
+    /// Which camera takes it, 0-based.
+    pub camera: usize,
+    /// Pose and rates.
+    pub state: ApproachState,
+    /// The light.
+    pub lighting: Lighting,
+}
+
+/// One field with all that belongs to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldExposure {
+    /// The video signal.
+    pub video: VideoField,
+    /// The truth about it.
+    pub truth: FieldTruth,
+}
+
+impl FieldExposure {
+    /// What a pipeline may know of the field besides its pixels, when it is digitised like this.
+    pub fn telemetry(&self, digitiser: Digitiser) -> FieldTelemetry {
+        FieldTelemetry { time_s: self.truth.time_s, camera: self.truth.camera, digitiser }
+    }
+}
+
+/// The buffers that fields reuse. One a thread.
+#[derive(Debug, Clone)]
+pub struct DockingWorkspace {
+    drawers: Vec<Drawer>,
+    radiance: RadianceImage,
+    blur: ImageBlur,
+    television: Television,
+}
+
+impl DockingWorkspace {
+    /// The light of the last field that was drawn: every row of the camera, before the lens's blur.
+    pub fn radiance(&self) -> &RadianceImage {
+        &self.radiance
+    }
+}
+
+impl DockingSimulator {
+    /// Checks and prepares a simulation; the target's path starts from `folder`.
+    ///
+    /// # Errors
+    /// [`SimError`] for the first value that is not allowed, or a target file that cannot be used.
+    pub fn new(simulation: &DockingSimulation, folder: &Path) -> Result<Self, SimError> {
+        simulation.check()?;
+        let target = target_file(&simulation.target, folder)?;
+        target.check().map_err(|error| SimError::TargetFile {
+            target: simulation.target.clone(),
+            problem: error.to_string(),
+        })?;
+        let (model, mut scene) = (target.model(), target.scene());
+        if model.marks.len() > MAX_MARKS {
+            return Err(SimError::TargetFile {
+                target: simulation.target.clone(),
+                problem: format!("it has {} marks, expected at most {MAX_MARKS}", model.marks.len()),
+            });
+        }
+        // In front of everything: they are nearer to the Sun than what they shade, and no camera sees them.
+        scene.parts.extend(simulation.lighting.shade_parts()?);
+        let approach = Approach::new(&simulation.approach, target.contact.camera_to_disk_m)?;
+        let fields = (approach.duration_s() * simulation.television.field_rate_hz() + 1e-6).floor();
+        require("television.frame_rate_hz (fields)", fields, "at most 1e8", |n| n <= 1e8)?;
+        let eyes = simulation
+            .cameras
+            .iter()
+            .map(|camera| Eye::new(&camera.camera))
+            .collect::<Result<Vec<_>, SimError>>()?;
+        Ok(Self {
+            seed: Seed { seed: simulation.seed, case: 0 },
+            start: parse_utc_of("start_utc", &simulation.start_utc)?,
+            approach,
+            cameras: simulation.cameras.clone(),
+            eyes,
+            blur_sigma_px: simulation.lens.blur_sigma_px,
+            lighting: simulation.lighting.clone(),
+            television: simulation.television.clone(),
+            geometry: TargetGeometry::new(&model, &scene),
+            model,
+            scene,
+            field_count: fields as u64 + 1,
+        })
+    }
+
+    /// Fields from the beginning to the end of the approach.
+    pub fn field_count(&self) -> u64 {
+        self.field_count
+    }
+
+    /// Fields a second, Hz.
+    pub fn field_rate_hz(&self) -> f64 {
+        self.television.field_rate_hz()
+    }
+
+    /// What is drawn, shades included.
+    pub fn scene(&self) -> &DockingScene {
+        &self.scene
+    }
+
+    /// What a pipeline knows before the first field.
+    pub fn setup(&self) -> DockingSetup {
+        DockingSetup {
+            cameras: self.cameras.iter().map(|camera| camera.camera.clone()).collect(),
+            bit_depth: BIT_DEPTH,
+            target: self.model.clone(),
+        }
+    }
+
+    /// Buffers for a thread.
+    ///
+    /// # Errors
+    /// None after [`DockingSimulator::new`], which made the same checks.
+    pub fn workspace(&self) -> Result<DockingWorkspace, SimError> {
+        let drawers =
+            self.cameras.iter().map(|camera| Drawer::new(&camera.camera)).collect::<Result<Vec<_>, _>>()?;
+        let (columns, rows) =
+            self.cameras.first().map_or((0, 0), |camera| (camera.camera.columns, camera.camera.rows));
+        Ok(DockingWorkspace {
+            drawers,
+            radiance: RadianceImage { columns, rows, radiance: vec![0.0; columns * rows] },
+            blur: ImageBlur::new(self.blur_sigma_px),
+            television: Television::new(&self.television, self.seed, columns, rows),
+        })
+    }
+
+    /// What there is to be drawn in a field.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] when there is no such field.
+    pub fn moment(&self, field: u64) -> Result<FieldMoment, SimError> {
+        if field >= self.field_count {
+            return Err(SimError::Parameter {
+                field: "field",
+                value: field.to_string(),
+                expected: "a field of the approach",
+            });
+        }
+        let time_s = field as f64 / self.television.field_rate_hz();
+        let state = self.approach.at(time_s);
+        let range_m = state.range_m();
+        // The last one is in use down to 0.
+        let camera = self.cameras.iter().position(|camera| range_m >= camera.until_range_m).unwrap_or(0);
+        Ok(FieldMoment {
+            field,
+            time_s,
+            time: self.start + time_s * Unit::Second,
+            lines: self.television.interlace.lines(field),
+            camera,
+            lighting: self.lighting.at(time_s, &state.pose),
+            state,
+        })
+    }
+
+    /// Draws a field and makes its video signal: the same bits whatever was made before.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] when there is no such field.
+    pub fn expose(&self, workspace: &mut DockingWorkspace, field: u64) -> Result<FieldExposure, SimError> {
+        let moment = self.moment(field)?;
+        workspace.drawers[moment.camera].draw(
+            &self.scene,
+            &moment.lighting,
+            &moment.state.pose,
+            &mut workspace.radiance,
+        );
+        Ok(self.transmit(workspace, &moment))
+    }
+
+    /// Makes the video signal of a field from an image that somebody else drew, as of [`DockingSimulator::moment`].
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] when there is no such field; [`SimError::Contract`] when the image has not the camera's size.
+    pub fn expose_image(
+        &self,
+        workspace: &mut DockingWorkspace,
+        field: u64,
+        image: &RadianceImage,
+    ) -> Result<FieldExposure, SimError> {
+        let moment = self.moment(field)?;
+        let (columns, rows) = (workspace.radiance.columns, workspace.radiance.rows);
+        if (image.columns, image.rows, image.radiance.len()) != (columns, rows, columns * rows) {
+            let got = image.radiance.len();
+            return Err(contract::ContractError::ImageSize { columns, rows, got }.into());
+        }
+        workspace.radiance.radiance.copy_from_slice(&image.radiance);
+        Ok(self.transmit(workspace, &moment))
+    }
+
+    /// From the light in the workspace to the field and its truth.
+    fn transmit(&self, workspace: &mut DockingWorkspace, moment: &FieldMoment) -> FieldExposure {
+        let (eye, pose) = (&self.eyes[moment.camera], &moment.state.pose);
+        let sun = moment.lighting.sun.map(|sun| sun.towards);
+        let sun_image = sun.and_then(|sun| self.geometry.sun_image(eye, pose, &sun));
+        let utc = format_utc(moment.time);
+        let (range_m, range_rate_m_s) = (moment.state.range_m(), moment.state.range_rate_m_s());
+        let label = FieldLabel {
+            number: moment.field,
+            time_s: moment.time_s,
+            lines: moment.lines,
+            sun: sun_image,
+            caption: Caption {
+                clock: utc.get(11..19).unwrap_or(""),
+                camera: &self.cameras[moment.camera].name,
+                range_m,
+                range_rate_m_s,
+            },
+        };
+        let RadianceImage { columns, rows, radiance } = &workspace.radiance;
+        let mut signal = Vec::new();
+        workspace.blur.blur(radiance, *columns, moment.lines, &mut signal);
+        let video_truth = workspace.television.transmit(&label, &mut signal);
+        let (cross_centre, disk_centre, circle_radius_px) = self.geometry.centres(eye, pose);
+        let truth = FieldTruth {
+            field: moment.field,
+            time_s: moment.time_s,
+            time: moment.time,
+            lines: moment.lines,
+            camera: moment.camera,
+            pose: *pose,
+            velocity_m_s: moment.state.velocity_m_s,
+            phi_rate_rad_s: moment.state.phi_rate_rad_s,
+            range_m,
+            range_rate_m_s,
+            passive_pitch_rad: moment.state.passive_pitch_rad(),
+            passive_yaw_rad: moment.state.passive_yaw_rad(),
+            sun,
+            floodlight: moment.lighting.floodlight.is_some(),
+            cross_centre,
+            disk_centre,
+            circle_radius_px,
+            marks_in_field: self.geometry.marks_in_field(eye, pose),
+            marks_shadowed: sun.map_or(0, |sun| self.geometry.marks_shadowed(&sun)),
+            plate_lit: sun.map_or(0.0, |sun| self.geometry.plate_lit(&sun)),
+            cross_in_field: self.geometry.cross_in_field(eye, pose),
+            target_in_field: self.geometry.target_in_field(eye, pose),
+            sun_image: sun_image.map(|sun| sun.centre),
+            sun_visible: sun_image.map_or(0.0, |sun| sun.visible),
+            video: video_truth,
+        };
+        FieldExposure {
+            video: VideoField::new(moment.field, *columns, *rows, moment.lines, signal)
+                .expect("the blur keeps the rows of the field"),
+            truth,
+        }
+    }
+}
+
+/// A built-in target by its name, or the file at a path.
+fn target_file(target: &str, folder: &Path) -> Result<TargetFile, SimError> {
+    if let Some(built_in) = TargetFile::built_in(target) {
+        return Ok(built_in);
+    }
+    let refused = |problem: String| SimError::TargetFile { target: target.to_owned(), problem };
+    let text = regular_file::read_text(&folder.join(target), MAX_TARGET_BYTES).map_err(|error| {
+        let names: Vec<_> = TargetFile::built_in_names().collect();
+        refused(format!("{error}; built-in targets are {}", names.join(", ")))
+    })?;
+    toml::from_str(&text).map_err(|error| refused(error.to_string()))
+}
+
+#[cfg(test)]
+mod tests;

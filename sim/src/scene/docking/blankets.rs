@@ -1,0 +1,163 @@
+//! Thermal blankets on the station's end: irregular tiles in rings, with dark gaps between them.
+
+use std::f64::consts::PI;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Facet;
+use super::checks::check_source;
+use super::docking_unit::DockingUnitTable;
+use super::shapes::flat;
+use super::station::StationTable;
+use crate::SimError;
+use crate::error::require;
+use crate::randomness::{Effect, Seed, Stream, uniform};
+
+/// Tiles, at most: each is drawn in every image.
+const MAX_TILES: f64 = 1000.0;
+/// How far the seam between two tiles of a ring may turn out of its place, as a share of a tile's width.
+const SEAM_SHIFT: f64 = 0.12;
+
+/// `[station.blankets]`: tiles in rings about the face's centre, from the rim inwards. Where the docking unit stands
+/// there are none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BlanketsTable {
+    /// Where the figures are from, or `assumed: why`.
+    pub source: String,
+    /// Seed of the layout: places of seams, width of gaps, reflectances.
+    pub seed: u64,
+    /// Rings of tiles, 1 to 20.
+    pub rings: usize,
+    /// Width of a ring, m, positive; all of them fit inside the rim.
+    pub ring_width_m: f64,
+    /// Width of a tile along its ring, m, about which they vary; positive.
+    pub tile_width_m: f64,
+    /// Mean gap about a tile, m, 0 or more, less than a quarter of a tile.
+    pub gap_m: f64,
+    /// Share of tiles that are missing, 0 to 1.
+    pub missing_fraction: f64,
+    /// How far the tiles lie in front of the face, m, positive, less than the docking unit stands out.
+    pub thickness_m: f64,
+    /// Least and greatest Lambertian reflectance, 0 to 1.
+    pub reflectance: [f64; 2],
+}
+
+impl BlanketsTable {
+    pub(super) fn check(&self, station: &StationTable, unit: &DockingUnitTable) -> Result<(), SimError> {
+        check_source("station.blankets.source", &self.source)?;
+        require("station.blankets.rings", self.rings as f64, "1 to 20", |n| (1.0..=20.0).contains(&n))?;
+        let inside_m = station.radius_m - station.rim_m;
+        require(
+            "station.blankets.ring_width_m",
+            self.ring_width_m,
+            "greater than 0, all rings inside the rim",
+            |w| w > 0.0 && w * self.rings as f64 <= inside_m,
+        )?;
+        require(
+            "station.blankets.tile_width_m",
+            self.tile_width_m,
+            "greater than 0, so large that there are at most 1000 tiles",
+            |w| w > 0.0 && 2.0 * PI * inside_m / w * self.rings as f64 <= MAX_TILES,
+        )?;
+        let least_m = self.ring_width_m.min(self.tile_width_m);
+        require("station.blankets.gap_m", self.gap_m, "0 or more, less than a quarter of a tile", |gap| {
+            (0.0..least_m / 4.0).contains(&gap)
+        })?;
+        require("station.blankets.missing_fraction", self.missing_fraction, "0 to 1", |p| {
+            (0.0..=1.0).contains(&p)
+        })?;
+        require(
+            "station.blankets.thickness_m",
+            self.thickness_m,
+            "greater than 0, less than the docking unit stands out from the face",
+            |t| t > 0.0 && t < station.depth_m - unit.depth_m,
+        )?;
+        let [least, greatest] = self.reflectance;
+        require("station.blankets.reflectance", least, "0 to 1, the least first", |rho| {
+            (0.0..=1.0).contains(&rho) && rho <= greatest
+        })?;
+        require("station.blankets.reflectance", greatest, "0 to 1", |rho| (0.0..=1.0).contains(&rho))
+    }
+
+    pub(super) fn facets(&self, station: &StationTable, unit: &DockingUnitTable) -> Vec<Facet> {
+        let y3_m = self.thickness_m - station.depth_m;
+        let mut facets = Vec::new();
+        for ring in 0..self.rings {
+            let outer_m = station.radius_m - station.rim_m - self.ring_width_m * ring as f64;
+            let inner_m = outer_m - self.ring_width_m;
+            // Three at least, so that a tile spans less than half a turn.
+            let count = (PI * (inner_m + outer_m) / self.tile_width_m).round().max(3.0) as usize;
+            for i in 0..count {
+                let Some((tile, reflectance)) = self.tile([inner_m, outer_m], ring, i, count) else {
+                    continue;
+                };
+                let tile = tile.map(|[y1, y2]| [station.centre_m[0] + y1, station.centre_m[1] + y2]);
+                if distance(&tile, unit.axis_m) > unit.outer_radius_m {
+                    facets.push(flat(&tile, &[], y3_m, reflectance));
+                }
+            }
+        }
+        facets
+    }
+
+    /// A tile about the face's centre, counter-clockwise, and its reflectance; nothing where it is missing. All of it
+    /// lies between the radii, and between its seams.
+    fn tile(
+        &self,
+        [inner_m, outer_m]: [f64; 2],
+        ring: usize,
+        i: usize,
+        count: usize,
+    ) -> Option<([[f64; 2]; 6], f64)> {
+        let streams = Seed { seed: self.seed, case: 0 }.streams(0, Effect::Blankets);
+        let place = |i: usize| (ring as u64) << 32 | i as u64;
+        // A stream is of a tile and of the seam at its begin.
+        let seam = |stream: &mut Stream, i: usize| {
+            let mut shift = || SEAM_SHIFT * (2.0 * uniform(stream) - 1.0);
+            let pitch = 2.0 * PI / count as f64;
+            let turn = PI * ring as f64 / 7.0;
+            [shift(), shift()].map(|shift| turn + pitch * (i as f64 + shift))
+        };
+        let mut stream = streams.at(place(i));
+        let begin = seam(&mut stream, i);
+        let mut end = seam(&mut streams.at(place((i + 1) % count)), (i + 1) % count);
+        if i + 1 == count {
+            end = end.map(|angle| angle + 2.0 * PI);
+        }
+        let present = uniform(&mut stream) >= self.missing_fraction;
+        let [least, greatest] = self.reflectance;
+        let reflectance = least + (greatest - least) * uniform(&mut stream);
+        // Each side gives way by a quarter to three quarters of a gap: two sides together by one gap on average.
+        let mut side_m = || self.gap_m * (0.25 + 0.5 * uniform(&mut stream));
+        let (inner_m, outer_m) = (inner_m + side_m(), outer_m - side_m());
+        let (first_m, last_m) = (side_m(), side_m());
+        let half_span = |radius: usize| (end[radius] - begin[radius]) / 4.0;
+        // The inner side is two chords that touch the inner circle, the outer one two whose ends are on the outer circle.
+        let inner_m = inner_m / libm::cos(half_span(0));
+        let corner = |radius_m: f64, angle: f64| {
+            let (sin, cos) = libm::sincos(angle);
+            [radius_m * cos, radius_m * sin]
+        };
+        let arc = |radius_m: f64, radius: usize| {
+            let (first, last) = (begin[radius] + first_m / radius_m, end[radius] - last_m / radius_m);
+            [first, 0.5 * (first + last), last].map(|angle| corner(radius_m, angle))
+        };
+        let [a, b, c] = arc(outer_m, 1);
+        let [d, e, f] = arc(inner_m, 0);
+        (present && inner_m < outer_m).then_some(([a, b, c, f, e, d], reflectance))
+    }
+}
+
+/// Distance of a point from a polygon that does not contain it, m.
+fn distance(polygon: &[[f64; 2]], point: [f64; 2]) -> f64 {
+    let edges = polygon.iter().zip(polygon.iter().cycle().skip(1));
+    let distances = edges.map(|(a, b)| {
+        let (along, to) = ([b[0] - a[0], b[1] - a[1]], [point[0] - a[0], point[1] - a[1]]);
+        let length2 = along[0] * along[0] + along[1] * along[1];
+        let share = ((along[0] * to[0] + along[1] * to[1]) / length2).clamp(0.0, 1.0);
+        libm::hypot(to[0] - share * along[0], to[1] - share * along[1])
+    });
+    distances.fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,212 @@
+//! Bodies of simple shape: rails and antennas on the station's end, modules, trusses and solar panels behind it.
+
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::checks::{check_point, check_source, entry, require_at, vector};
+use super::shapes::{block, cylinder, facet};
+use super::{Facet, Part};
+use crate::SimError;
+
+/// Bodies of one list, at most.
+const MAX_BODIES: usize = 100;
+/// Cells of one panel, at most.
+const MAX_CELLS: usize = 64;
+
+/// Bodies with one source: `[fittings]` on the station's end, `[structure]` behind it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Bodies {
+    /// Where the figures are from, or `assumed: why`.
+    pub source: String,
+    /// The bodies, in any order, 100 at most. Those whose extents along y3 overlap stand apart across it, so that
+    /// none hides another from where a camera may be.
+    pub body: Vec<Body>,
+}
+
+/// An opaque body; coordinates in the target frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Body {
+    /// A cylinder in any direction: a rail, a mast, a dish, a module.
+    Cylinder {
+        /// Centre of one end, m.
+        from_m: [f64; 3],
+        /// Centre of the other end, m, elsewhere.
+        to_m: [f64; 3],
+        /// Radius, m, positive.
+        radius_m: f64,
+        /// Sides of the prism that stands for it, 3 to 128.
+        sides: usize,
+        /// Lambertian reflectance, 0 to 1.
+        reflectance: f64,
+    },
+    /// A box, its third side along y3.
+    Box {
+        /// Centre, m.
+        centre_m: [f64; 3],
+        /// Sides, m, positive.
+        size_m: [f64; 3],
+        /// Turn about y3, degrees from +y1 towards +y2, −180 to 180.
+        #[serde(default)]
+        turn_deg: f64,
+        /// Lambertian reflectance, 0 to 1.
+        reflectance: f64,
+    },
+    /// A thin panel of cells with gaps between them that one looks through.
+    Panel {
+        /// Centre, m.
+        centre_m: [f64; 3],
+        /// Width and height, m, positive.
+        size_m: [f64; 2],
+        /// Turn of the width about y3, degrees from +y1 towards +y2, −180 to 180.
+        #[serde(default)]
+        turn_deg: f64,
+        /// Tilt about the width, degrees, −80 to 80; positive brings the upper edge forwards.
+        #[serde(default)]
+        tilt_deg: f64,
+        /// Cells along width and height, 64 in all at most.
+        cells: [usize; 2],
+        /// Gap between cells, m, 0 or more, less than a cell.
+        gap_m: f64,
+        /// Lambertian reflectance, 0 to 1.
+        reflectance: f64,
+    },
+}
+
+impl Bodies {
+    /// Checks every body; all of each lies between the heights `back_m` and `front_m` over the disk's plane, as `where_`
+    /// says.
+    pub(super) fn check(
+        &self,
+        table: &str,
+        [back_m, front_m]: [f64; 2],
+        where_: &'static str,
+    ) -> Result<(), SimError> {
+        check_source(&format!("{table}.source"), &self.source)?;
+        if self.body.len() > MAX_BODIES {
+            let count = self.body.len().to_string();
+            return Err(entry(format!("number of {table}.body"), count, "at most 100"));
+        }
+        for (i, body) in self.body.iter().enumerate() {
+            let path = format!("{table}.body[{i}]");
+            body.check(&path)?;
+            let [low_m, high_m] = extent(&body.facets());
+            if low_m < back_m || high_m > front_m {
+                return Err(entry(path, format!("at y3 of {low_m} to {high_m} m"), where_));
+            }
+        }
+        Ok(())
+    }
+
+    /// A part each, back to front by the middle of their extents along y3; of equals in their order in the file.
+    pub(super) fn parts(&self, name: &str, casts_shadow: bool) -> Vec<Part> {
+        let mut parts: Vec<(f64, Part)> = self
+            .body
+            .iter()
+            .enumerate()
+            .map(|(i, body)| {
+                let facets = body.facets();
+                let [low_m, high_m] = extent(&facets);
+                let name = format!("{name} {i}");
+                (low_m + high_m, Part { name, facets, casts_shadow, visible: true })
+            })
+            .collect();
+        parts.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        parts.into_iter().map(|(_, part)| part).collect()
+    }
+}
+
+impl Body {
+    fn check(&self, path: &str) -> Result<(), SimError> {
+        let positive = |name: &str, value| {
+            require_at(format!("{path}.{name}"), value, "greater than 0, at most 1000", |x| {
+                x > 0.0 && x <= 1000.0
+            })
+        };
+        let angle = |name: &str, value, bound: f64, expected| {
+            require_at(format!("{path}.{name}"), value, expected, |a| a.abs() <= bound)
+        };
+        let reflectance = match *self {
+            Self::Cylinder { from_m, to_m, radius_m, sides, reflectance } => {
+                check_point(format!("{path}.from_m"), from_m)?;
+                check_point(format!("{path}.to_m"), to_m)?;
+                let length_m = (vector(to_m) - vector(from_m)).norm();
+                require_at(format!("{path}.to_m"), length_m, "1 mm from from_m at least", |l| l >= 1e-3)?;
+                positive("radius_m", radius_m)?;
+                require_at(format!("{path}.sides"), sides as f64, "3 to 128", |n| {
+                    (3.0..=128.0).contains(&n)
+                })?;
+                reflectance
+            }
+            Self::Box { centre_m, size_m, turn_deg, reflectance } => {
+                check_point(format!("{path}.centre_m"), centre_m)?;
+                size_m.into_iter().try_for_each(|side_m| positive("size_m", side_m))?;
+                angle("turn_deg", turn_deg, 180.0, "-180 to 180")?;
+                reflectance
+            }
+            Self::Panel { centre_m, size_m, turn_deg, tilt_deg, cells, gap_m, reflectance } => {
+                check_point(format!("{path}.centre_m"), centre_m)?;
+                size_m.into_iter().try_for_each(|side_m| positive("size_m", side_m))?;
+                angle("turn_deg", turn_deg, 180.0, "-180 to 180")?;
+                angle("tilt_deg", tilt_deg, 80.0, "-80 to 80")?;
+                let [across, along] = cells;
+                let count = across.saturating_mul(along);
+                require_at(format!("{path}.cells"), count as f64, "1 to 64 in all", |n| {
+                    (1.0..=MAX_CELLS as f64).contains(&n)
+                })?;
+                let cell_m = (size_m[0] / across as f64).min(size_m[1] / along as f64);
+                require_at(format!("{path}.gap_m"), gap_m, "0 or more, less than a cell", |gap| {
+                    (0.0..cell_m).contains(&gap)
+                })?;
+                reflectance
+            }
+        };
+        require_at(format!("{path}.reflectance"), reflectance, "0 to 1", |rho| (0.0..=1.0).contains(&rho))
+    }
+
+    fn facets(&self) -> Vec<Facet> {
+        match *self {
+            Self::Cylinder { from_m, to_m, radius_m, sides, reflectance } => {
+                let mut facets = cylinder(vector(from_m), vector(to_m), radius_m, sides, reflectance);
+                // What faces the station is never seen, and its shadow is that of the rest.
+                facets.retain(|facet| facet.normal.z > -1.0);
+                facets
+            }
+            Self::Box { centre_m, size_m, turn_deg, reflectance } => {
+                block(centre_m, size_m, turn_deg.to_radians(), reflectance)
+            }
+            Self::Panel { centre_m, size_m, turn_deg, tilt_deg, cells, gap_m, reflectance } => {
+                let (sin_turn, cos_turn) = libm::sincos(turn_deg.to_radians());
+                let (sin_tilt, cos_tilt) = libm::sincos(tilt_deg.to_radians());
+                let width = Vector3::new(cos_turn, sin_turn, 0.0);
+                let height = Vector3::new(-sin_turn * cos_tilt, cos_turn * cos_tilt, sin_tilt);
+                let at = |x: f64, y: f64| vector(centre_m) + width * x + height * y;
+                let spans = |size_m: f64, count: usize| {
+                    (0..count).map(move |i| {
+                        let cell_m = size_m / count as f64;
+                        let low_m = -size_m / 2.0 + cell_m * i as f64;
+                        [low_m + gap_m / 2.0, low_m + cell_m - gap_m / 2.0]
+                    })
+                };
+                spans(size_m[1], cells[1])
+                    .flat_map(|[bottom, top]| {
+                        spans(size_m[0], cells[0]).map(move |[left, right]| [left, right, bottom, top])
+                    })
+                    .map(|[left, right, bottom, top]| {
+                        let corners =
+                            vec![at(left, bottom), at(right, bottom), at(right, top), at(left, top)];
+                        facet(corners, reflectance)
+                    })
+                    .collect()
+            }
+        }
+    }
+}
+
+/// Lowest and highest y3 of facets, m.
+fn extent(facets: &[Facet]) -> [f64; 2] {
+    let heights = facets.iter().flat_map(|facet| facet.outer.iter().map(|corner| corner.z));
+    heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y3| [low.min(y3), high.max(y3)])
+}

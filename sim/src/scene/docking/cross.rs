@@ -1,0 +1,108 @@
+//! The cross that stands off in front of the disk, on its post.
+
+use contract::docking::StandOffCross;
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Part;
+use super::checks::{check_reflectance, check_source};
+use super::shapes::{cylinder, flat, wall};
+use crate::SimError;
+use crate::error::require;
+
+/// Sides of the post.
+const POST_SIDES: usize = 16;
+
+/// `[cross]`: two perpendicular bars of one size along y1 and y2, on a post that stands on the disk's centre.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CrossTable {
+    /// Where the figures are from, or `assumed: why`.
+    pub source: String,
+    /// b: height of the front face over the disk's plane, m, more than the thickness, at most 10.
+    pub height_m: f64,
+    /// From the centre to the end of a bar, m, more than half the width, at most 10.
+    pub half_length_m: f64,
+    /// Width of a bar, m, positive.
+    pub width_m: f64,
+    /// Thickness of a bar along y3, m, positive.
+    pub thickness_m: f64,
+    /// Lambertian reflectance of the bars, 0 to 1.
+    pub reflectance: f64,
+    /// Radius of the post, m, positive, at most half the width of a bar.
+    pub post_radius_m: f64,
+    /// Lambertian reflectance of the post, 0 to 1.
+    pub post_reflectance: f64,
+}
+
+impl CrossTable {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        check_source("cross.source", &self.source)?;
+        let positive = |field, value| require(field, value, "greater than 0", |x| x > 0.0);
+        positive("cross.width_m", self.width_m)?;
+        positive("cross.thickness_m", self.thickness_m)?;
+        require("cross.height_m", self.height_m, "more than thickness_m, at most 10", |b| {
+            b > self.thickness_m && b <= 10.0
+        })?;
+        require("cross.half_length_m", self.half_length_m, "more than half of width_m, at most 10", |l| {
+            l > self.width_m / 2.0 && l <= 10.0
+        })?;
+        require("cross.post_radius_m", self.post_radius_m, "greater than 0, at most half of width_m", |r| {
+            r > 0.0 && r <= self.width_m / 2.0
+        })?;
+        check_reflectance("cross.reflectance", self.reflectance)?;
+        check_reflectance("cross.post_reflectance", self.post_reflectance)
+    }
+
+    /// Post, edges of the bars, their common front face: back to front. The edges are a part of their own because the
+    /// face hides the edge of one bar behind the other from the side.
+    pub(super) fn parts(&self) -> [Part; 3] {
+        let back_m = self.height_m - self.thickness_m;
+        let outline = self.outline();
+        let post = cylinder(
+            Vector3::zeros(),
+            Vector3::new(0.0, 0.0, back_m),
+            self.post_radius_m,
+            POST_SIDES,
+            self.post_reflectance,
+        );
+        // Its ends are on the plate and on the bars.
+        let post = post.into_iter().take(POST_SIDES).collect();
+        let part =
+            |name: &str, facets| Part { name: name.to_owned(), facets, casts_shadow: true, visible: true };
+        [
+            part("post", post),
+            part("cross edges", wall(&outline, back_m, self.height_m, self.reflectance)),
+            part("cross", vec![flat(&outline, &[], self.height_m, self.reflectance)]),
+        ]
+    }
+
+    pub(super) fn model(&self) -> StandOffCross {
+        StandOffCross {
+            height_m: self.height_m,
+            half_length_m: self.half_length_m,
+            width_m: self.width_m,
+            thickness_m: self.thickness_m,
+        }
+    }
+
+    /// The twelve corners of both bars together, counter-clockwise from the end of the bar along +y1.
+    fn outline(&self) -> [[f64; 2]; 12] {
+        let (l, w) = (self.half_length_m, self.width_m / 2.0);
+        [
+            [l, -w],
+            [l, w],
+            [w, w],
+            [w, l],
+            [-w, l],
+            [-w, w],
+            [-l, w],
+            [-l, -w],
+            [-w, -w],
+            [-w, -l],
+            [w, -l],
+            [w, -w],
+        ]
+    }
+}

@@ -1,0 +1,197 @@
+//! The target's disk: a dark plate with bright marks in its plane.
+
+use std::f64::consts::PI;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Part;
+use super::checks::{check_reflectance, check_source, entry};
+use super::shapes::{COARSE_SAGITTA_M, Circle, FINE_SAGITTA_M, flat};
+use crate::SimError;
+use crate::error::require;
+
+/// Marks on a plate, at most: each is a hole in it and is held against each.
+const MAX_MARKS: usize = 96;
+
+/// `[plate]`: the dark disk, centred on the target frame's origin, in the plane y3 = 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlateTable {
+    /// Where the figures are from, or `assumed: why`.
+    pub source: String,
+    /// Radius, m, 0.01 to 10.
+    pub radius_m: f64,
+    /// Lambertian reflectance, 0 to 1.
+    pub reflectance: f64,
+}
+
+/// `[marks]`: bright marks in the plane of the plate, a ring of equal ones, single ones, or both. They are numbered from
+/// 0, first those of the ring, then the single ones.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MarksTable {
+    /// Where the figures are from, or `assumed: why`.
+    pub source: String,
+    /// Lambertian reflectance, 0 to 1.
+    pub reflectance: f64,
+    /// Equal marks along a circle about the plate's centre.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ring: Option<MarkRing>,
+    /// Single marks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub quad: Vec<MarkQuad>,
+}
+
+/// `[marks.ring]`: rectangles along a circle, their length along its radius.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MarkRing {
+    /// Radius of the circle through the marks' centres, m, positive.
+    pub circle_radius_m: f64,
+    /// How many, 1 to 96.
+    pub count: usize,
+    /// Length of a mark along the radius, m, positive.
+    pub length_m: f64,
+    /// Width of a mark across the radius, m, positive.
+    pub width_m: f64,
+    /// Angle of the first mark, degrees from +y1 towards +y2, −360 to 360; the others follow in that sense.
+    pub first_angle_deg: f64,
+}
+
+/// `[[marks.quad]]`: one mark of any convex shape of four corners.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MarkQuad {
+    /// Corners (y1, y2), m, counter-clockwise seen from the front.
+    pub corners_m: [[f64; 2]; 4],
+}
+
+impl PlateTable {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        check_source("plate.source", &self.source)?;
+        require("plate.radius_m", self.radius_m, "0.01 to 10", |r| (0.01..=10.0).contains(&r))?;
+        check_reflectance("plate.reflectance", self.reflectance)
+    }
+
+    /// The plate, with the marks as holes and as facets of their own.
+    pub(super) fn part(&self, marks: Option<&MarksTable>) -> Part {
+        let outline = Circle { centre_m: [0.0, 0.0], radius_m: self.radius_m }.polygon_within(FINE_SAGITTA_M);
+        let quads = marks.map(MarksTable::quads).unwrap_or_default();
+        let holes: Vec<&[[f64; 2]]> = quads.iter().map(|quad| quad.as_slice()).collect();
+        let mut facets = vec![flat(&outline, &holes, 0.0, self.reflectance)];
+        let bright = marks.map_or(0.0, |marks| marks.reflectance);
+        facets.extend(quads.iter().map(|quad| flat(quad, &[], 0.0, bright)));
+        Part { name: "plate".to_owned(), facets, casts_shadow: true, visible: true }
+    }
+}
+
+impl MarksTable {
+    pub(super) fn check(&self, plate: &PlateTable) -> Result<(), SimError> {
+        check_source("marks.source", &self.source)?;
+        check_reflectance("marks.reflectance", self.reflectance)?;
+        if let Some(ring) = &self.ring {
+            ring.check(plate)?;
+        }
+        let count = self.ring.map_or(0, |ring| ring.count) + self.quad.len();
+        require("number of marks", count as f64, "1 to 96, of marks.ring and marks.quad together", |n| {
+            (1.0..=MAX_MARKS as f64).contains(&n)
+        })?;
+        let quads = self.quads();
+        let first = quads.len() - self.quad.len();
+        for (i, quad) in quads.iter().enumerate().skip(first) {
+            let refuse = |expected| {
+                Err(entry(format!("marks.quad[{}].corners_m", i - first), format!("{quad:?}"), expected))
+            };
+            if !quad.iter().all(|corner| inside_plate(*corner, plate)) {
+                return refuse("four corners 0.1 mm inside the plate's edge at least");
+            }
+            if !is_convex_counter_clockwise(quad) {
+                return refuse("a convex quadrangle, its corners counter-clockwise seen from the front");
+            }
+            if quads[..i].iter().any(|other| overlap(other, quad)) {
+                return refuse("a mark apart from those before it");
+            }
+        }
+        Ok(())
+    }
+
+    /// The corners of all marks, counter-clockwise.
+    pub(super) fn quads(&self) -> Vec<[[f64; 2]; 4]> {
+        let ring = self.ring.iter().flat_map(MarkRing::quads);
+        ring.chain(self.quad.iter().map(|quad| quad.corners_m)).collect()
+    }
+
+    /// Radius of the circle through the centres of the marks: of the ring, or the mean of the single ones.
+    pub(super) fn circle_radius_m(&self) -> f64 {
+        if let Some(ring) = &self.ring {
+            return ring.circle_radius_m;
+        }
+        let radii = self.quad.iter().map(|quad| {
+            let sum = |axis: usize| quad.corners_m.iter().map(|corner| corner[axis]).sum::<f64>();
+            libm::hypot(sum(0), sum(1)) / 4.0
+        });
+        radii.sum::<f64>() / self.quad.len() as f64
+    }
+}
+
+impl MarkRing {
+    fn check(&self, plate: &PlateTable) -> Result<(), SimError> {
+        let positive = |field, value| require(field, value, "greater than 0", |x| x > 0.0);
+        positive("marks.ring.circle_radius_m", self.circle_radius_m)?;
+        positive("marks.ring.length_m", self.length_m)?;
+        positive("marks.ring.width_m", self.width_m)?;
+        require("marks.ring.first_angle_deg", self.first_angle_deg, "-360 to 360", |a| a.abs() <= 360.0)?;
+        let inner_m = self.circle_radius_m - self.length_m / 2.0;
+        let outer_m = self.circle_radius_m + self.length_m / 2.0;
+        require("marks.ring.length_m", self.length_m, "less than twice circle_radius_m", |_| inner_m > 0.0)?;
+        require(
+            "marks.ring.circle_radius_m",
+            self.circle_radius_m,
+            "a radius that leaves the marks 0.1 mm inside the plate's edge at least",
+            |_| inside_plate([outer_m, self.width_m / 2.0], plate),
+        )?;
+        // Neighbours come nearest at their inner corners.
+        let angle = 2.0 * libm::atan2(self.width_m / 2.0, inner_m);
+        require(
+            "marks.ring.count",
+            self.count as f64,
+            "1 to 96, as many as have room side by side on the circle",
+            |n| (1.0..=MAX_MARKS as f64).contains(&n) && n * angle < 2.0 * PI,
+        )
+    }
+
+    fn quads(&self) -> impl Iterator<Item = [[f64; 2]; 4]> + '_ {
+        let (inner_m, outer_m) =
+            (self.circle_radius_m - self.length_m / 2.0, self.circle_radius_m + self.length_m / 2.0);
+        let half_m = self.width_m / 2.0;
+        (0..self.count).map(move |i| {
+            let turn = 2.0 * PI * i as f64 / self.count as f64;
+            let (sin, cos) = libm::sincos(self.first_angle_deg.to_radians() + turn);
+            [[inner_m, -half_m], [outer_m, -half_m], [outer_m, half_m], [inner_m, half_m]]
+                .map(|[along, across]| [cos * along - sin * across, sin * along + cos * across])
+        })
+    }
+}
+
+/// Whether a point of a mark lies inside the polygon that stands for the plate's edge.
+fn inside_plate(point: [f64; 2], plate: &PlateTable) -> bool {
+    libm::hypot(point[0], point[1]) <= plate.radius_m - COARSE_SAGITTA_M
+}
+
+/// Twice the signed area of the triangle a, b, c: positive when they are counter-clockwise.
+fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+fn is_convex_counter_clockwise(quad: &[[f64; 2]; 4]) -> bool {
+    (0..4).all(|i| turn(quad[i], quad[(i + 1) % 4], quad[(i + 2) % 4]) > 0.0)
+}
+
+/// Whether two convex quadrangles share area or touch: no side of either separates them.
+fn overlap(a: &[[f64; 2]; 4], b: &[[f64; 2]; 4]) -> bool {
+    let separates = |quad: &[[f64; 2]; 4], other: &[[f64; 2]; 4]| {
+        (0..4).any(|i| other.iter().all(|p| turn(quad[i], quad[(i + 1) % 4], *p) < 0.0))
+    };
+    !separates(a, b) && !separates(b, a)
+}

@@ -1,0 +1,100 @@
+//! The station's end: a disk with a rim, covered with blankets, and the wall of the module behind it.
+
+use contract::docking::Outline;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Part;
+use super::blankets::BlanketsTable;
+use super::checks::{FARTHEST_M, check_reflectance, check_source};
+use super::docking_unit::DockingUnitTable;
+use super::shapes::{COARSE_SAGITTA_M, Circle, flat, wall};
+use crate::SimError;
+use crate::error::require;
+
+/// Sides of the wall.
+const WALL_SIDES: usize = 48;
+
+/// `[station]`: the end face on which docking unit and target stand, a disk parallel to the target's.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StationTable {
+    /// Where the figures are from, or `assumed: why`.
+    pub source: String,
+    /// Centre (y1, y2), m.
+    pub centre_m: [f64; 2],
+    /// Radius of the outline, m, at most 100; the docking unit is inside.
+    pub radius_m: f64,
+    /// How far the face lies behind the disk's plane, m, more than the docking unit's front does.
+    pub depth_m: f64,
+    /// How far the module's wall goes on behind the face, m, positive.
+    pub length_m: f64,
+    /// Width of the bare rim of the face, m, positive.
+    pub rim_m: f64,
+    /// Lambertian reflectance of rim and wall, 0 to 1.
+    pub rim_reflectance: f64,
+    /// Lambertian reflectance of the face inside the rim, seen where no blanket is, 0 to 1.
+    pub face_reflectance: f64,
+    /// Blankets on the face; bare where they are not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blankets: Option<BlanketsTable>,
+}
+
+impl StationTable {
+    pub(super) fn check(&self, unit: &DockingUnitTable) -> Result<(), SimError> {
+        check_source("station.source", &self.source)?;
+        for y_m in self.centre_m {
+            require("station.centre_m", y_m, "-1000 to 1000", |y| y.abs() <= FARTHEST_M)?;
+        }
+        require("station.rim_m", self.rim_m, "greater than 0", |w| w > 0.0)?;
+        let [dy1_m, dy2_m] = [0, 1].map(|axis| unit.axis_m[axis] - self.centre_m[axis]);
+        let reach_m = libm::hypot(dy1_m, dy2_m) + unit.outer_radius_m;
+        require("station.radius_m", self.radius_m, "rim and docking unit inside, at most 100", |r| {
+            r - self.rim_m > reach_m && r <= 100.0
+        })?;
+        require("station.depth_m", self.depth_m, "more than docking_unit.depth_m, at most 100", |h| {
+            h > unit.depth_m && h <= 100.0
+        })?;
+        require("station.length_m", self.length_m, "greater than 0, at most 1000", |l| {
+            l > 0.0 && l <= 1000.0
+        })?;
+        check_reflectance("station.rim_reflectance", self.rim_reflectance)?;
+        check_reflectance("station.face_reflectance", self.face_reflectance)?;
+        self.blankets.as_ref().map_or(Ok(()), |blankets| blankets.check(self, unit))
+    }
+
+    /// Wall, face and blankets, back to front. The face is open where the docking unit stands on it.
+    pub(super) fn parts(&self, unit: &DockingUnitTable) -> Vec<Part> {
+        let outline = Circle { centre_m: self.centre_m, radius_m: self.radius_m };
+        let inside = Circle { radius_m: self.radius_m - self.rim_m, ..outline };
+        // Smaller than the docking unit's wall, which covers the edge.
+        let opening = Circle { centre_m: unit.axis_m, radius_m: unit.inner_radius_m };
+        let inside = inside.polygon_within(COARSE_SAGITTA_M);
+        let face = vec![
+            flat(&inside, &[&opening.polygon_within(COARSE_SAGITTA_M)], -self.depth_m, self.face_reflectance),
+            flat(&outline.polygon_within(COARSE_SAGITTA_M), &[&inside], -self.depth_m, self.rim_reflectance),
+        ];
+        let wall = wall(&outline.polygon(WALL_SIDES), -self.back_m(), -self.depth_m, self.rim_reflectance);
+        let part = |name: &str, facets, casts_shadow| Part {
+            name: name.to_owned(),
+            facets,
+            casts_shadow,
+            visible: true,
+        };
+        // Nothing that a shadow of face or blankets could fall on comes before them but what the wall shades too.
+        let mut parts = vec![part("station wall", wall, true), part("station face", face, false)];
+        if let Some(blankets) = &self.blankets {
+            parts.push(part("blankets", blankets.facets(self, unit), false));
+        }
+        parts
+    }
+
+    /// How far the end of the module's wall lies behind the disk's plane, m.
+    pub(super) fn back_m(&self) -> f64 {
+        self.depth_m + self.length_m
+    }
+
+    pub(super) fn model(&self) -> Outline {
+        Outline { centre_m: self.centre_m, radius_m: self.radius_m, depth_m: self.depth_m }
+    }
+}

@@ -1,0 +1,122 @@
+//! A docking target as data: the tables of a target file, what they mean as a scene and to a pipeline.
+
+use contract::docking::TargetModel;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::DockingScene;
+use super::body::Bodies;
+use super::checks::{check_source, entry};
+use super::cross::CrossTable;
+use super::docking_unit::DockingUnitTable;
+use super::plate::{MarksTable, PlateTable};
+use super::station::StationTable;
+use crate::SimError;
+use crate::error::require;
+
+/// A target file: dimensions in metres in the target frame (origin at the disk's centre, y3 along its normal away from
+/// the station, y2 up). Every group of them says where it is from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TargetFile {
+    /// Name of the target, not empty.
+    pub name: String,
+    /// The moment of contact.
+    pub contact: ContactTable,
+    /// The dark disk.
+    pub plate: PlateTable,
+    /// Bright marks on the disk; none where they are not given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub marks: Option<MarksTable>,
+    /// The cross that stands off.
+    pub cross: CrossTable,
+    /// The docking unit.
+    pub docking_unit: DockingUnitTable,
+    /// The station's end.
+    pub station: StationTable,
+    /// Rails, antennas and boxes on the station's end, between its face and the disk's plane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fittings: Option<Bodies>,
+    /// Modules, trusses and panels behind the wall of the station's end; they cast no shadows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub structure: Option<Bodies>,
+}
+
+/// `[contact]`: where the camera is when the docking units touch.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ContactTable {
+    /// Where the figure is from, or `assumed: why`.
+    pub source: String,
+    /// Distance of the camera from the disk's plane at contact, m, more than the cross is high, at most 100.
+    pub camera_to_disk_m: f64,
+}
+
+impl TargetFile {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first one outside its range, with its path.
+    pub fn check(&self) -> Result<(), SimError> {
+        if self.name.trim().is_empty() {
+            return Err(entry("name", "empty", "a name"));
+        }
+        self.plate.check()?;
+        if let Some(marks) = &self.marks {
+            marks.check(&self.plate)?;
+        }
+        self.cross.check()?;
+        check_source("contact.source", &self.contact.source)?;
+        require(
+            "contact.camera_to_disk_m",
+            self.contact.camera_to_disk_m,
+            "more than cross.height_m, at most 100",
+            |d| d > self.cross.height_m && d <= 100.0,
+        )?;
+        self.docking_unit.check()?;
+        self.station.check(&self.docking_unit)?;
+        if let Some(fittings) = &self.fittings {
+            let between = [-self.station.depth_m, 0.0];
+            fittings.check("fittings", between, "between the station's face and the disk's plane")?;
+        }
+        if let Some(structure) = &self.structure {
+            let behind = [f64::NEG_INFINITY, -self.station.back_m()];
+            structure.check("structure", behind, "behind the station's wall (station.depth_m + length_m)")?;
+        }
+        Ok(())
+    }
+
+    /// The scene of a file that has been checked. From any camera in front of the target and within 60° of its normal, as
+    /// seen from the parts it looks at, a part never hides one that comes after it.
+    pub fn scene(&self) -> DockingScene {
+        let mut parts = Vec::new();
+        if let Some(structure) = &self.structure {
+            parts.extend(structure.parts("structure", false));
+        }
+        parts.extend(self.station.parts(&self.docking_unit));
+        if let Some(fittings) = &self.fittings {
+            parts.extend(fittings.parts("fitting", true));
+        }
+        parts.extend(self.docking_unit.parts(self.station.depth_m));
+        parts.push(self.plate.part(self.marks.as_ref()));
+        parts.extend(self.cross.parts());
+        DockingScene { parts }
+    }
+
+    /// What a pipeline is told of the target.
+    pub fn model(&self) -> TargetModel {
+        TargetModel {
+            name: self.name.clone(),
+            plate_radius_m: self.plate.radius_m,
+            // Without marks the one circle on the disk is its edge.
+            mark_circle_radius_m: self
+                .marks
+                .as_ref()
+                .map_or(self.plate.radius_m, MarksTable::circle_radius_m),
+            marks: self.marks.as_ref().map(MarksTable::quads).unwrap_or_default(),
+            cross: self.cross.model(),
+            docking_unit: self.docking_unit.model(),
+            station: self.station.model(),
+        }
+    }
+}
