@@ -96,11 +96,7 @@ impl TargetGeometry {
         Self {
             mark_circle_radius_m: model.mark_circle_radius_m,
             cross_centre: Vector3::new(0.0, 0.0, height),
-            marks: model
-                .marks
-                .iter()
-                .map(|mark| mark.map(|[y1, y2]| Vector3::new(y1, y2, 0.0)))
-                .collect(),
+            marks: model.marks.iter().map(|mark| mark.map(|[y1, y2]| Vector3::new(y1, y2, 0.0))).collect(),
             cross_ends,
             plate_rim: circle(radius, RIM_POINTS),
             plate_places: rings.into_iter().flatten().collect(),

@@ -154,12 +154,9 @@ impl LightingConfig {
             require("lighting.floodlight.intensity", lamp.intensity, "0 to 1e9", |i| {
                 (0.0..=1e9).contains(&i)
             })?;
-            require(
-                "lighting.floodlight.inner_half_angle_deg",
-                lamp.inner_half_angle_deg,
-                "0 to 89",
-                |a| (0.0..=89.0).contains(&a),
-            )?;
+            require("lighting.floodlight.inner_half_angle_deg", lamp.inner_half_angle_deg, "0 to 89", |a| {
+                (0.0..=89.0).contains(&a)
+            })?;
             require(
                 "lighting.floodlight.outer_half_angle_deg",
                 lamp.outer_half_angle_deg,
@@ -276,7 +273,10 @@ mod tests {
         let lamp = FloodlightConfig { outer_half_angle_deg: 5.0, ..FloodlightConfig::default() };
         let night = LightingConfig { floodlight: Some(lamp), ..LightingConfig::default() };
         refused(night, "lighting.floodlight.outer_half_angle_deg");
-        refused(LightingConfig { fill_radiance: -1.0, ..LightingConfig::default() }, "lighting.fill_radiance");
+        refused(
+            LightingConfig { fill_radiance: -1.0, ..LightingConfig::default() },
+            "lighting.fill_radiance",
+        );
         let shade = |corners: &[[f64; 3]]| {
             let good = ShadeConfig { corners_m: vec![[0.0, 0.0, 9.0], [1.0, 0.0, 9.0], [0.0, 1.0, 9.0]] };
             let shades = vec![good, ShadeConfig { corners_m: corners.to_vec() }];

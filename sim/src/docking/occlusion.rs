@@ -26,10 +26,7 @@ struct Plate {
 
 impl Occluders {
     /// The facets of `parts` of which `keep` says so.
-    pub(super) fn new<'a>(
-        parts: impl IntoIterator<Item = &'a Part>,
-        keep: impl Fn(&Facet) -> bool,
-    ) -> Self {
+    pub(super) fn new<'a>(parts: impl IntoIterator<Item = &'a Part>, keep: impl Fn(&Facet) -> bool) -> Self {
         let facets = parts.into_iter().flat_map(|part| &part.facets).filter(|facet| keep(facet));
         Self { plates: facets.filter_map(Plate::new).collect() }
     }

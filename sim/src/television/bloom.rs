@@ -66,7 +66,8 @@ impl Bloom {
         for (y, row) in signal.chunks_exact_mut(columns).enumerate() {
             let (above, below, v) = between(y, rows_a_cell, down);
             self.along.clear();
-            let (top, bottom) = (&self.cells[above * across..][..across], &self.cells[below * across..][..across]);
+            let (top, bottom) =
+                (&self.cells[above * across..][..across], &self.cells[below * across..][..across]);
             self.along.extend(top.iter().zip(bottom).map(|(a, b)| a + v * (b - a)));
             for (x, pixel) in row.iter_mut().enumerate() {
                 let (left, right, u) = between(x, CELL_PX, across);

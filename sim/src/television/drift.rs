@@ -36,12 +36,9 @@ impl DriftConfig {
         let share = |v: f64| (0.0..=0.3).contains(&v);
         require("television.drift.contrast_rms", self.contrast_rms, "0 to 0.3", share)?;
         require("television.drift.brightness_rms", self.brightness_rms, "0 to 0.3", share)?;
-        require(
-            "television.drift.periods_s (how many)",
-            self.periods_s.len() as f64,
-            "1 to 16",
-            |n| (1.0..=MAX_PERIODS as f64).contains(&n),
-        )?;
+        require("television.drift.periods_s (how many)", self.periods_s.len() as f64, "1 to 16", |n| {
+            (1.0..=MAX_PERIODS as f64).contains(&n)
+        })?;
         self.periods_s.iter().try_for_each(|&period| {
             require("television.drift.periods_s", period, "0.1 to 1e5", |p| (0.1..=1e5).contains(&p))
         })
@@ -74,7 +71,8 @@ mod tests {
         let n = 2000;
         let mut squares = [0.0; 2];
         for i in 0..n {
-            let (contrast, brightness) = config.at(&Seed { seed: 1, case: 0 }, 20.0 * f64::from(i) / f64::from(n));
+            let (contrast, brightness) =
+                config.at(&Seed { seed: 1, case: 0 }, 20.0 * f64::from(i) / f64::from(n));
             squares[0] += (contrast - 1.0) * (contrast - 1.0) / f64::from(n);
             squares[1] += brightness * brightness / f64::from(n);
         }

@@ -177,7 +177,10 @@ mod tests {
             for stroke in strokes.split_whitespace() {
                 assert!(stroke.len() % 2 == 0 && stroke.len() >= 4, "{character}");
                 for pair in stroke.as_bytes().chunks(2) {
-                    assert!((b'0'..=b'4').contains(&pair[0]) && (b'0'..=b'6').contains(&pair[1]), "{character}");
+                    assert!(
+                        (b'0'..=b'4').contains(&pair[0]) && (b'0'..=b'6').contains(&pair[1]),
+                        "{character}"
+                    );
                 }
             }
         }

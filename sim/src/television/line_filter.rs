@@ -138,8 +138,11 @@ mod tests {
         line[30] = 1.5;
         LineFilter::new(Some(&config), None).unwrap().apply(&mut line, 60);
         assert!((line[0] - 0.5).abs() < 1e-6 && (line[59] - 0.5).abs() < 1e-6);
-        let variance: f64 =
-            line.iter().enumerate().map(|(x, v)| (x as f64 - 30.0) * (x as f64 - 30.0) * (f64::from(*v) - 0.5)).sum();
+        let variance: f64 = line
+            .iter()
+            .enumerate()
+            .map(|(x, v)| (x as f64 - 30.0) * (x as f64 - 30.0) * (f64::from(*v) - 0.5))
+            .sum();
         // A sampled Gaussian of σ = 1, cut at 4 σ: 0.999.
         assert!((variance - 1.0).abs() < 2e-3, "{variance}");
     }

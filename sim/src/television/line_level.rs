@@ -71,8 +71,12 @@ mod tests {
 
     #[test]
     fn levels_are_a_band_and_a_normal_number() {
-        let config =
-            LineLevelConfig { hum_amplitude: 0.1, hum_period_rows: 100.0, hum_beat_hz: 2.0, line_sigma: 0.01 };
+        let config = LineLevelConfig {
+            hum_amplitude: 0.1,
+            hum_period_rows: 100.0,
+            hum_beat_hz: 2.0,
+            line_sigma: 0.01,
+        };
         let seed = Seed { seed: 3, case: 0 };
         let n = 20_000_u64;
         let (mut band, mut square) = (0.0, 0.0);

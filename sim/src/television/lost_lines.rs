@@ -24,9 +24,7 @@ impl Default for LostLinesConfig {
 
 impl LostLinesConfig {
     pub(super) fn check(&self) -> Result<(), SimError> {
-        require("television.lost_lines.probability", self.probability, "0 to 1", |p| {
-            (0.0..=1.0).contains(&p)
-        })
+        require("television.lost_lines.probability", self.probability, "0 to 1", |p| (0.0..=1.0).contains(&p))
     }
 
     /// Replaces the lost lines of a field; how many there were.
@@ -75,11 +73,8 @@ mod tests {
             // Each line its own level, so that the line before can be told.
             let mut signal: Vec<f32> = (0..rows * columns).map(|i| (i / columns + 2) as f32).collect();
             let said = config.apply(&SEED, field, Lines::Even, &mut signal, columns);
-            let changed = signal
-                .chunks_exact(columns)
-                .enumerate()
-                .filter(|(k, row)| row[0] != (k + 2) as f32)
-                .count();
+            let changed =
+                signal.chunks_exact(columns).enumerate().filter(|(k, row)| row[0] != (k + 2) as f32).count();
             assert_eq!(changed as u32, said);
             lost += said;
             snow += signal.chunks_exact(columns).filter(|row| row[0] < 1.0).count() as u32;

@@ -35,9 +35,9 @@ pub use line_jitter::LineJitterConfig;
 pub use line_level::LineLevelConfig;
 pub use lost_lines::LostLinesConfig;
 pub use noise::VideoNoiseConfig;
-pub use overlay::OverlayConfig;
 pub(crate) use overlay::Caption;
 use overlay::Overlay;
+pub use overlay::OverlayConfig;
 pub use sun_glare::{SunGlareConfig, SunImage};
 pub use video::{BIT_DEPTH, VideoField};
 
@@ -265,11 +265,8 @@ impl Television {
         }
         let (contrast, brightness) = config.drift.as_ref().map_or((1.0, 0.0), |drift| drift.at(seed, time_s));
         let gain = config.auto_gain.map_or(1.0, |auto| auto.gain(metered_mean(signal, columns)));
-        let truth = VideoTruth {
-            contrast: gain * contrast,
-            brightness: config.pedestal + brightness,
-            lost_lines: 0,
-        };
+        let truth =
+            VideoTruth { contrast: gain * contrast, brightness: config.pedestal + brightness, lost_lines: 0 };
         let (slope, offset) = (truth.contrast as f32, truth.brightness as f32);
         let clip = config.clip_level as f32;
         signal.iter_mut().for_each(|s| *s = (slope * *s + offset).min(clip));
@@ -280,8 +277,7 @@ impl Television {
         if let Some(jitter) = &config.line_jitter {
             jitter.apply(seed, number, lines, signal, columns, &mut self.padded);
         }
-        let lost_lines =
-            config.lost_lines.map_or(0, |lost| lost.apply(seed, number, lines, signal, columns));
+        let lost_lines = config.lost_lines.map_or(0, |lost| lost.apply(seed, number, lines, signal, columns));
         if let Some(level) = &config.line_level {
             level.apply(seed, number, time_s, lines, signal, columns);
         }

@@ -70,7 +70,8 @@ mod tests {
         let n = signal.len() as f64;
         let moment = |f: &dyn Fn(f64) -> f64| signal.iter().map(|s| f(f64::from(*s) * 85.0)).sum::<f64>() / n;
         let lagged = |lag: usize| {
-            signal.windows(lag + 1).map(|w| f64::from(w[0]) * f64::from(w[lag]) * 85.0 * 85.0).sum::<f64>() / n
+            signal.windows(lag + 1).map(|w| f64::from(w[0]) * f64::from(w[lag]) * 85.0 * 85.0).sum::<f64>()
+                / n
         };
         // Standard errors 1/√n, √(2/n), √(96/n), 1/√n with n = 221 184; four of them.
         assert!(moment(&|s| s).abs() < 0.0086);

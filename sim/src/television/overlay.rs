@@ -157,7 +157,8 @@ mod tests {
 
     #[test]
     fn text_says_what_it_is_told_and_only_that_changes() {
-        let (a, b) = (drawn(Lines::Even, &CAPTION), drawn(Lines::Even, &Caption { range_m: 19.9, ..CAPTION }));
+        let (a, b) =
+            (drawn(Lines::Even, &CAPTION), drawn(Lines::Even, &Caption { range_m: 19.9, ..CAPTION }));
         let changed: Vec<usize> = (0..a.len()).filter(|i| a[*i] != b[*i]).collect();
         assert!(!changed.is_empty());
         for i in changed {

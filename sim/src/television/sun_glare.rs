@@ -44,12 +44,9 @@ impl SunGlareConfig {
             (0.0..=1e4).contains(&v)
         })?;
         require("television.sun_glare.veil_level", self.veil_level, "0 to 10", level)?;
-        require(
-            "television.sun_glare.veil_half_angle_deg",
-            self.veil_half_angle_deg,
-            "0.1 to 90",
-            |v| (0.1..=90.0).contains(&v),
-        )?;
+        require("television.sun_glare.veil_half_angle_deg", self.veil_half_angle_deg, "0.1 to 90", |v| {
+            (0.1..=90.0).contains(&v)
+        })?;
         require("television.sun_glare.streak_level", self.streak_level, "0 to 10", level)?;
         require("television.sun_glare.ghost_level", self.ghost_level, "0 to 10", level)
     }
@@ -71,13 +68,7 @@ pub struct SunImage {
 }
 
 /// Adds the Sun to the rows of a field.
-pub(super) fn add(
-    config: &SunGlareConfig,
-    sun: &SunImage,
-    signal: &mut [f32],
-    columns: usize,
-    lines: Lines,
-) {
+pub(super) fn add(config: &SunGlareConfig, sun: &SunImage, signal: &mut [f32], columns: usize, lines: Lines) {
     if sun.visible <= 0.0 {
         return;
     }

@@ -24,8 +24,7 @@ fn transmitted(config: &TelevisionConfig, number: u64) -> (Vec<f32>, VideoTruth)
         focal_px: 1000.0,
         visible: 1.0,
     };
-    let caption =
-        Caption { clock: "14:07:32", camera: "TV-1", range_m: 5.0, range_rate_m_s: -0.1 };
+    let caption = Caption { clock: "14:07:32", camera: "TV-1", range_m: 5.0, range_rate_m_s: -0.1 };
     let label =
         FieldLabel { number, time_s: number as f64 / config.field_rate_hz(), lines, sun: Some(sun), caption };
     let truth = Television::new(config, SEED, COLUMNS, ROWS).transmit(&label, &mut signal);
@@ -159,7 +158,9 @@ fn bad_values_are_refused_with_their_path() {
     refused("television.pedestal", |c| c.pedestal = 2.0);
     refused("television.clip_level", |c| c.clip_level = 0.5);
     refused("television.noise.sigma_dn8", |c| c.noise.sigma_dn8 = -1.0);
-    refused("television.drift.periods_s", |c| c.drift = Some(DriftConfig { periods_s: vec![], ..DriftConfig::default() }));
+    refused("television.drift.periods_s", |c| {
+        c.drift = Some(DriftConfig { periods_s: vec![], ..DriftConfig::default() })
+    });
     refused("television.auto_gain.least", |c| {
         c.auto_gain = Some(AutoGainConfig { least: 0.0, ..AutoGainConfig::default() });
     });
@@ -172,7 +173,9 @@ fn bad_values_are_refused_with_their_path() {
         c.ringing = Some(RingingConfig { period_px: 0.0, ..RingingConfig::default() });
     });
     refused("television.line_jitter.sigma_px", |c| c.line_jitter = Some(LineJitterConfig { sigma_px: 2.0 }));
-    refused("television.lost_lines.probability", |c| c.lost_lines = Some(LostLinesConfig { probability: 1.5 }));
+    refused("television.lost_lines.probability", |c| {
+        c.lost_lines = Some(LostLinesConfig { probability: 1.5 })
+    });
     refused("television.line_level.hum_period_rows", |c| {
         c.line_level = Some(LineLevelConfig { hum_period_rows: 0.0, ..LineLevelConfig::default() });
     });

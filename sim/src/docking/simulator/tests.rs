@@ -34,7 +34,8 @@ fn sun(azimuth_deg: f64, elevation_deg: f64) -> Option<SunConfig> {
 }
 
 fn simulation() -> DockingSimulation {
-    let use_of = |name: &str, until_range_m| CameraConfig { name: name.into(), until_range_m, camera: camera() };
+    let use_of =
+        |name: &str, until_range_m| CameraConfig { name: name.into(), until_range_m, camera: camera() };
     DockingSimulation {
         seed: 7,
         start_utc: "2004-01-31T13:00:00Z".into(),
@@ -102,7 +103,8 @@ fn each_field_holds_its_rows_at_its_own_moment() {
         }
     }
     // 20 ms at (0.05, 0.1, −0.5) m/s.
-    let moved = exposed(&interlaced, 21).truth.pose.position_m - exposed(&interlaced, 20).truth.pose.position_m;
+    let moved =
+        exposed(&interlaced, 21).truth.pose.position_m - exposed(&interlaced, 20).truth.pose.position_m;
     assert!((moved - Vector3::new(0.001, 0.002, -0.01)).norm() < 1e-12);
 }
 
@@ -172,7 +174,8 @@ fn marks_in_the_shadow_of_the_cross_are_told() {
     let truth = exposed(&simulation, 0).truth;
     let marks = simulator(&simulation).setup().target.marks;
     for (i, mark) in marks.iter().enumerate() {
-        let centre = mark.iter().fold([0.0, 0.0], |sum, corner| [sum[0] + corner[0] / 4.0, sum[1] + corner[1] / 4.0]);
+        let centre =
+            mark.iter().fold([0.0, 0.0], |sum, corner| [sum[0] + corner[0] / 4.0, sum[1] + corner[1] / 4.0]);
         let angle = libm::atan2(centre[1], centre[0]).to_degrees();
         assert_eq!(truth.marks_shadowed >> i & 1 == 1, angle.abs() < 31.0, "mark at {angle}°");
     }
@@ -195,7 +198,8 @@ fn a_shade_puts_half_of_the_target_into_shadow() {
     let lit = exposure.truth.plate_lit;
     assert!(lit > 0.3 && lit < 0.5, "half of the plate less the cross's shadow: {lit}");
     let right = exposure.truth.cross_centre.unwrap();
-    let at = |dx: f64| exposure.video.signal()[right.y.round() as usize * 384 + (right.x + dx).round() as usize];
+    let at =
+        |dx: f64| exposure.video.signal()[right.y.round() as usize * 384 + (right.x + dx).round() as usize];
     assert!(at(-30.0) > 0.8 && at(30.0) < 0.06, "{} {}", at(-30.0), at(30.0));
 }
 
@@ -233,7 +237,8 @@ fn the_sun_in_the_field_is_told_and_the_station_hides_it() {
     let shift = FOCAL_PX * libm::tan(7.0_f64.to_radians());
     assert!((image.x - 191.5 - shift).abs() < 1e-6, "{image:?}");
     assert_eq!(free.truth.sun_visible, 1.0);
-    let at = |exposure: &FieldExposure| exposure.video.signal()[(image.y / 2.0) as usize * 384 + image.x as usize];
+    let at =
+        |exposure: &FieldExposure| exposure.video.signal()[(image.y / 2.0) as usize * 384 + image.x as usize];
     assert!(at(&free) > 1.2, "saturated: {}", at(&free));
     let hidden = with(180.0, 0.0, 8.0);
     assert_eq!((hidden.truth.sun_image, hidden.truth.sun_visible), (None, 0.0));
@@ -258,7 +263,8 @@ fn the_digitiser_acts_on_a_field_that_is_drawn_already() {
     let plain = exposure.video.digitise(&Digitiser::default());
     let stretched = exposure.video.digitise(&Digitiser { contrast: 2.0, brightness: -0.1 });
     assert_eq!(plain.image().full_scale_dn(), 255);
-    for ((signal, a), b) in exposure.video.signal().iter().zip(plain.image().dn()).zip(stretched.image().dn()) {
+    for ((signal, a), b) in exposure.video.signal().iter().zip(plain.image().dn()).zip(stretched.image().dn())
+    {
         let dn = |v: f32| (255.0 * v).clamp(0.0, 255.0);
         assert!((f32::from(*a) - dn(*signal)).abs() < 0.501);
         assert!((f32::from(*b) - dn(2.0 * signal - 0.1)).abs() < 0.501);
@@ -289,8 +295,7 @@ fn bad_values_are_refused_with_their_path() {
 
 /// The scenario that is built in, but for what the oracle reads of it.
 fn built_in() -> DockingSimulation {
-    let mut table: toml::Table =
-        toml::from_str(include_str!("../../../../scenarios/docking.toml")).unwrap();
+    let mut table: toml::Table = toml::from_str(include_str!("../../../../scenarios/docking.toml")).unwrap();
     for key in ["world", "title", "docking"] {
         table.remove(key);
     }

@@ -112,12 +112,9 @@ impl ConstantVelocityConfig {
 impl SegmentedConfig {
     fn check(&self, contact_distance_m: f64) -> Result<(), SimError> {
         check_d3("approach.start_d3_m", self.start_d3_m)?;
-        require(
-            "approach.start_d3_m",
-            self.start_d3_m,
-            "greater than the target's contact distance",
-            |d| d > contact_distance_m,
-        )?;
+        require("approach.start_d3_m", self.start_d3_m, "greater than the target's contact distance", |d| {
+            d > contact_distance_m
+        })?;
         for m in self.lateral_at_start_m {
             require("approach.lateral_at_start_m", m, "-1000 to 1000", |m| m.abs() <= 1000.0)?;
         }

@@ -63,12 +63,7 @@ impl OscillationConfig {
     /// Displacement and its rate, `time_s` after the beginning.
     pub(super) fn at(&self, time_s: f64) -> Displacement {
         let lateral = [0, 1].map(|i| {
-            sinusoid(
-                self.lateral_amplitude_m[i],
-                self.lateral_period_s[i],
-                self.lateral_phase_deg[i],
-                time_s,
-            )
+            sinusoid(self.lateral_amplitude_m[i], self.lateral_period_s[i], self.lateral_phase_deg[i], time_s)
         });
         let angular = [0, 1, 2].map(|i| {
             let amplitude_rad = self.angular_amplitude_deg[i].to_radians();
@@ -114,8 +109,11 @@ impl Displacement {
 /// each end. Value and rate.
 pub(super) fn window(time_s: f64, duration_s: f64, ramp_s: f64) -> (f64, f64) {
     let ramp_s = ramp_s.min(0.5 * duration_s);
-    let (s, sign) =
-        if time_s <= 0.5 * duration_s { (time_s / ramp_s, 1.0) } else { ((duration_s - time_s) / ramp_s, -1.0) };
+    let (s, sign) = if time_s <= 0.5 * duration_s {
+        (time_s / ramp_s, 1.0)
+    } else {
+        ((duration_s - time_s) / ramp_s, -1.0)
+    };
     if s <= 0.0 {
         (0.0, 0.0)
     } else if s < 1.0 {

@@ -122,8 +122,7 @@ fn the_camera_of_an_ideal_docking_looks_at_the_target_upright() {
     // To first order, the matrix of the paper.
     let phi = Vector3::new(1e-4, -2e-4, 3e-4);
     let a = target_from_camera(&Pose { phi_rad: phi, ..pose });
-    let paper =
-        Matrix3::new(1.0, -phi.z, phi.y, -phi.z, -1.0, phi.x, phi.y, -phi.x, -1.0);
+    let paper = Matrix3::new(1.0, -phi.z, phi.y, -phi.z, -1.0, phi.x, phi.y, -phi.x, -1.0);
     // Second order: 3e-4² / 2 and products.
     assert!((a - paper).norm() < 2e-7, "{a}");
 }
@@ -137,8 +136,7 @@ fn passive_angles_are_those_of_the_line_to_the_camera() {
         phi_rate_deg_s: [0.0; 3],
         duration_s: 0.0,
     };
-    let state =
-        Approach::new(&ApproachConfig::ConstantVelocity(config), CONTACT_M).unwrap().at(0.0);
+    let state = Approach::new(&ApproachConfig::ConstantVelocity(config), CONTACT_M).unwrap().at(0.0);
     assert_eq!(state.range_m(), 13.0);
     assert_eq!(state.range_rate_m_s(), -12.0);
     assert!((state.passive_yaw_rad() - libm::atan2(3.0, 12.0)).abs() < 1e-15);
@@ -150,8 +148,7 @@ fn bad_values_are_refused_with_their_path() {
     let refused = |change: &dyn Fn(&mut SegmentedConfig), path: &str| {
         let mut config = segments();
         change(&mut config);
-        let message =
-            Approach::new(&ApproachConfig::Segments(config), CONTACT_M).unwrap_err().to_string();
+        let message = Approach::new(&ApproachConfig::Segments(config), CONTACT_M).unwrap_err().to_string();
         assert!(message.starts_with(path), "{message}");
     };
     refused(&|c| c.start_d3_m = f64::NAN, "approach.start_d3_m");
