@@ -18,7 +18,7 @@ use crate::flight::fly;
 use crate::inject::{InjectedPipeline, Stage};
 use crate::run_file::RunFile;
 use crate::scenario::{FarRangeScenario, ScenarioSource};
-use crate::score::{Score, ScoreContext, Scored, Scorer};
+use crate::score::{ScoreContext, Scored, Scorer};
 use crate::star_list::star_list;
 
 /// Which frames are made, on how many threads, and whether their images are kept.
@@ -352,7 +352,7 @@ fn context<'a>(run_file: &RunFile, unproject: crate::score::Unproject<'a>) -> Sc
     }
 }
 
-fn write_score(path: &Path, score: &Score) -> Result<(), Failure> {
+pub(crate) fn write_score(path: &Path, score: &impl serde::Serialize) -> Result<(), Failure> {
     let json = serde_json::to_string_pretty(score)
         .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?
         + "\n";

@@ -22,6 +22,17 @@ pub(super) fn to_cells(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> [Stri
     cells
 }
 
+/// The covariance as it comes back from its cells.
+pub(super) fn as_filed(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> Matrix6<f64> {
+    let mut filed = Matrix6::zeros();
+    for (i, j) in places() {
+        let entry = covariance[(i, j)] * scale[i] * scale[j] / (scale[i] * scale[j]);
+        filed[(i, j)] = entry;
+        filed[(j, i)] = entry;
+    }
+    filed
+}
+
 /// The covariance that the cells say; `None` when all of them are empty.
 pub(super) fn read(
     row: &CsvRow<'_>,

@@ -143,6 +143,23 @@ fn from_files([d1, d2, d3, phi1, phi2, phi3]: [f64; 6]) -> Pose {
     }
 }
 
+/// The answer as it comes back from the file, without features and motion: angles have changed their unit twice, which may
+/// move their last bit. A score of the run is made of these, so that one of the files is the same to the bit.
+pub fn outcome_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
+    let as_filed = |pose: &Pose| from_files(in_files(pose));
+    let solution = match &outcome.solution {
+        DockingSolution::Measured(measurement) => DockingSolution::Measured(Box::new(FieldMeasurement {
+            best: PoseEstimate {
+                pose: as_filed(&measurement.best.pose),
+                covariance: covariance::as_filed(&measurement.best.covariance, &scale()),
+            },
+            paper: measurement.paper.as_ref().map(as_filed),
+        })),
+        other => other.clone(),
+    };
+    DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None }
+}
+
 /// Reads the table: the answer to each field, fields ascending, gaps allowed, without features and motion.
 ///
 /// # Errors
@@ -251,9 +268,8 @@ mod tests {
         writer.finish().unwrap();
     }
 
-    /// Angles change their unit, so that what comes back may differ by a rounding; a second time it does not.
     #[test]
-    fn every_status_comes_back_and_a_table_read_and_written_again_is_the_same() {
+    fn every_status_comes_back_as_filed() {
         let answers: Vec<(u64, DockingOutcome)> = [
             measured(),
             outcome(DockingSolution::RangeOnly { range_m: 312.5, sigma_m: 2.0 }),
@@ -265,18 +281,19 @@ mod tests {
         .map(|(i, outcome)| (2 * i as u64, outcome))
         .collect();
         let directory = tempdir().unwrap();
-        let (first, second) = (directory.path().join("a.csv"), directory.path().join("b.csv"));
-        write(&first, &answers);
-        let read = read_field_measurements(&first).unwrap();
+        let path = directory.path().join("a.csv");
+        write(&path, &answers);
+        let read = read_field_measurements(&path).unwrap();
         assert_eq!(read[1..], answers[1..]);
+        for ((_, read), (_, written)) in read.iter().zip(&answers) {
+            assert_eq!(*read, outcome_as_filed(written));
+        }
         let (met, meant) = (read[0].1.measurement().unwrap(), measured());
         let meant = meant.measurement().unwrap();
         assert_eq!(met.best.pose.position_m, meant.best.pose.position_m);
         assert!((met.best.pose.phi_rad - meant.best.pose.phi_rad).norm() < 1e-16);
         assert!((met.best.covariance - meant.best.covariance).norm() < 1e-18);
         assert_eq!(met.paper.unwrap().position_m, meant.paper.unwrap().position_m);
-        write(&second, &read);
-        assert_eq!(read_field_measurements(&second).unwrap().len(), 4);
     }
 
     const HEADER: &str = "field,status,d1_m,d2_m,d3_m,phi1_deg,phi2_deg,phi3_deg";

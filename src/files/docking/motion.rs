@@ -190,6 +190,20 @@ impl MotionWriter {
     }
 }
 
+/// The report as it comes back from the file, as [`super::outcome_as_filed`].
+pub fn report_as_filed(report: &MotionReport) -> MotionReport {
+    let as_filed = |angle: f64| angle.to_degrees().to_radians();
+    let motion = |motion: &Motion| Motion {
+        pose: Pose { phi_rad: motion.pose.phi_rad.map(as_filed), ..motion.pose },
+        phi_rate_rad_s: motion.phi_rate_rad_s.map(as_filed),
+        position_covariance: covariance::as_filed(&motion.position_covariance, &Vector6::repeat(1.0)),
+        attitude_covariance: covariance::as_filed(&motion.attitude_covariance, &degrees()),
+        cross_covariance: motion.cross_covariance.map(as_filed),
+        ..*motion
+    };
+    MotionReport { best: motion(&report.best), paper: report.paper.as_ref().map(motion) }
+}
+
 /// Reads the table: the report at each field that has one, fields ascending.
 ///
 /// Of a row without the columns of the state, the position follows from ρ, α and β, and the velocity is taken along the
@@ -335,6 +349,9 @@ mod tests {
         let read = read_motion(&path).unwrap();
         assert_eq!(read.iter().map(|(field, _)| *field).collect::<Vec<_>>(), [9, 19]);
         assert!(read[1].1.paper.is_none());
+        for ((_, read), (_, written)) in read.iter().zip(&reports) {
+            assert_eq!(*read, report_as_filed(written));
+        }
         let (met, meant) = (read[0].1.paper.as_ref().unwrap(), motion(5.1));
         assert_eq!((met.time_s, met.fields, met.velocity_m_s), (12.34, 9, meant.velocity_m_s));
         assert_eq!(met.pose.position_m, meant.pose.position_m);
