@@ -10,7 +10,7 @@ pub use builtin::{BUILT_IN, BuiltIn, DOCKING, STARTING_POINT, is_argon};
 pub use cameras::CAMERAS;
 pub use docking::{DockingScenario, DockingWorld};
 pub use far_range::{FarRangeScenario, FarRangeWorld, StarListConfig};
-pub use source::ScenarioSource;
+pub use source::{ScenarioSource, world};
 
 use std::fmt;
 use std::str::FromStr;
