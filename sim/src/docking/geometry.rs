@@ -6,10 +6,11 @@ use contract::docking::{Pose, TargetModel};
 use contract::{Camera, Direction, PixelPoint};
 use nalgebra::Vector3;
 
+use super::glint::{GlintConfig, GlintImage};
 use super::occlusion::Occluders;
 use crate::SimError;
 use crate::optics::Projection;
-use crate::scene::docking::DockingScene;
+use crate::scene::docking::{DockingScene, Sun};
 use crate::television::SunImage;
 use crate::truth::approach::target_from_camera;
 
@@ -52,6 +53,17 @@ impl Eye {
     /// Image of a point of the target frame.
     pub(super) fn image_of(&self, pose: &Pose, point_m: &Vector3<f64>) -> Option<PixelPoint> {
         self.image_of_direction(pose, &(point_m - pose.position_m))
+    }
+
+    /// Images of the glints whose centres are in the picture and that shine.
+    pub(super) fn glints(&self, glints: &[GlintConfig], sun: &Sun, pose: &Pose) -> Vec<GlintImage> {
+        let of = |(index, glint): (usize, &GlintConfig)| {
+            let centre = self.image_of(pose, &Vector3::from(glint.position_m));
+            let light = glint.light(sun, &pose.position_m) * self.focal_px * self.focal_px;
+            let centre = centre.filter(|_| light > 0.0 && self.holds(centre, 0.0))?;
+            Some(GlintImage { index, centre, light })
+        };
+        glints.iter().enumerate().filter_map(of).collect()
     }
 
     fn holds(&self, point: Option<PixelPoint>, margin_px: f64) -> bool {

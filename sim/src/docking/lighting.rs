@@ -5,6 +5,7 @@ use nalgebra::{Rotation3, Unit, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::glint::GlintConfig;
 use crate::SimError;
 use crate::error::require;
 use crate::scene::docking::{Facet, Floodlight, Lighting, Part, Sun};
@@ -33,6 +34,9 @@ pub struct LightingConfig {
     /// What stands outside the picture between the Sun and the target; at most 64.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub shades: Vec<ShadeConfig>,
+    /// Small shiny fittings that mirror the Sun; at most 64.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub glints: Vec<GlintConfig>,
 }
 
 /// The Sun in the target frame: s = (cos e sin a, sin e, cos e cos a) of its azimuth a and elevation e, turning about an axis.
@@ -167,12 +171,13 @@ impl LightingConfig {
         let radiance = |r: f64| (0.0..=1e6).contains(&r);
         require("lighting.fill_radiance", self.fill_radiance, "0 to 1e6", radiance)?;
         require("lighting.sky_radiance", self.sky_radiance, "0 to 1e6", radiance)?;
-        if self.shades.len() > MOST {
-            return Err(SimError::Parameter {
-                field: "lighting.shades",
-                value: format!("a list of {}", self.shades.len()),
-                expected: "at most 64 shades",
-            });
+        for (field, length) in
+            [("lighting.shades", self.shades.len()), ("lighting.glints", self.glints.len())]
+        {
+            require(field, length as f64, "a list of at most 64", |n| n <= MOST as f64)?;
+        }
+        for (index, glint) in self.glints.iter().enumerate() {
+            glint.check().map_err(|error| error.in_entry(index))?;
         }
         self.shade_parts().map(|_| ())
     }

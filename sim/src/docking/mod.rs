@@ -4,12 +4,14 @@
 
 mod config;
 mod geometry;
+mod glint;
 mod lighting;
 mod occlusion;
 mod simulator;
 mod truth;
 
 pub use config::{CameraConfig, DockingSimulation, LensConfig};
+pub use glint::{GlintConfig, GlintImage};
 pub use lighting::{FloodlightConfig, LightingConfig, ShadeConfig, SunConfig};
 pub use simulator::{DockingSimulator, DockingWorkspace, FieldExposure, FieldMoment};
 pub use truth::FieldTruth;

@@ -8,6 +8,7 @@ use hifitime::{Epoch, Unit};
 use super::DockingSimulation;
 use super::config::CameraConfig;
 use super::geometry::{Eye, TargetGeometry};
+use super::glint;
 use super::lighting::LightingConfig;
 use super::truth::FieldTruth;
 use crate::SimError;
@@ -88,7 +89,7 @@ pub struct DockingWorkspace {
 }
 
 impl DockingWorkspace {
-    /// The light of the last field that was drawn: every row of the camera, before the lens's blur.
+    /// The light of the last field that was drawn: every row of the camera, before the lens's blur and without glints.
     pub fn radiance(&self) -> &RadianceImage {
         &self.radiance
     }
@@ -265,6 +266,11 @@ impl DockingSimulator {
         let RadianceImage { columns, rows, radiance } = &workspace.radiance;
         let mut signal = Vec::new();
         workspace.blur.blur(radiance, *columns, moment.lines, &mut signal);
+        let glints =
+            moment.lighting.sun.map_or_else(Vec::new, |sun| eye.glints(&self.lighting.glints, &sun, pose));
+        for image in &glints {
+            glint::add(image, self.blur_sigma_px, &mut signal, *columns, moment.lines);
+        }
         let video_truth = workspace.television.transmit(&label, &mut signal);
         let (cross_centre, disk_centre, circle_radius_px) = self.geometry.centres(eye, pose);
         let truth = FieldTruth {
@@ -292,6 +298,7 @@ impl DockingSimulator {
             target_in_field: self.geometry.target_in_field(eye, pose),
             sun_image: sun_image.map(|sun| sun.centre),
             sun_visible: sun_image.map_or(0.0, |sun| sun.visible),
+            glint: glints.into_iter().max_by(|a, b| a.light.total_cmp(&b.light)),
             video: video_truth,
         };
         FieldExposure {

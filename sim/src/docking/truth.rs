@@ -5,6 +5,7 @@ use contract::docking::{Lines, Pose};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
+use super::GlintImage;
 use crate::television::VideoTruth;
 
 /// The truth about one field, at its own moment; one row of a truth table. Coordinates are the camera's pixels, also for a
@@ -61,6 +62,8 @@ pub struct FieldTruth {
     pub sun_image: Option<PixelPoint>,
     /// Share of the Sun's disk that nothing hides; 0 where it is not in the picture.
     pub sun_visible: f64,
+    /// The brightest glint in the picture, if any.
+    pub glint: Option<GlintImage>,
     /// What the television chain did.
     pub video: VideoTruth,
 }

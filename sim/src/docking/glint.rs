@@ -1,0 +1,125 @@
+//! Glints: small shiny fittings that mirror the Sun into the camera.
+
+use std::f64::consts::PI;
+
+use contract::PixelPoint;
+use contract::docking::Lines;
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+use crate::scene::docking::Sun;
+
+/// A shiny fitting too small to be resolved. Seen from the distance D it gives the light of (irradiance) × `strength_m2` ×
+/// exp(−δ²/2w²)/D², δ the angle from its normal to the bisector of the directions to Sun and camera, w its `lobe_deg`. Nothing
+/// hides or shades it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GlintConfig {
+    /// Where it is, target frame, m, each −100 to 100.
+    pub position_m: [f64; 3],
+    /// Its normal, target frame, of any length but 0.
+    pub normal: [f64; 3],
+    /// Mirroring area × concentration, m², 0 to 1: a flat mirror of area A and reflectance ρ whose waviness fills the lobe
+    /// has ρ A/(8π w²), w in radians.
+    pub strength_m2: f64,
+    /// w: standard deviation of its normals, degrees, 0.05 to 45.
+    pub lobe_deg: f64,
+}
+
+/// A glint as a camera sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GlintImage {
+    /// Its place in `lighting.glints`, 0-based.
+    pub index: usize,
+    /// Where it is, px.
+    pub centre: PixelPoint,
+    /// Its light: radiance × px².
+    pub light: f64,
+}
+
+impl GlintConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        for m in self.position_m {
+            require("lighting.glints[].position_m", m, "-100 to 100", |m| m.abs() <= 100.0)?;
+        }
+        let length = Vector3::from(self.normal).norm();
+        require("lighting.glints[].normal (length)", length, "1e-6 to 1e6", |n| (1e-6..=1e6).contains(&n))?;
+        require("lighting.glints[].strength_m2", self.strength_m2, "0 to 1", |s| (0.0..=1.0).contains(&s))?;
+        require("lighting.glints[].lobe_deg", self.lobe_deg, "0.05 to 45", |w| (0.05..=45.0).contains(&w))
+    }
+
+    /// Light that reaches a camera at `camera_m`, per solid angle of a pixel seen at the distance 1: irradiance × m²/m².
+    pub(super) fn light(&self, sun: &Sun, camera_m: &Vector3<f64>) -> f64 {
+        let to_camera = camera_m - Vector3::from(self.position_m);
+        let distance2 = to_camera.norm_squared();
+        let normal = Vector3::from(self.normal).normalize();
+        let bisector = sun.towards + to_camera / distance2.sqrt();
+        // Sun or camera behind it: the bisector alone would not tell.
+        if !(sun.towards.dot(&normal) > 0.0 && to_camera.dot(&normal) > 0.0) {
+            return 0.0;
+        }
+        let off_rad = libm::atan2(bisector.cross(&normal).norm(), bisector.dot(&normal));
+        let ratio = off_rad / self.lobe_deg.to_radians();
+        sun.irradiance * self.strength_m2 * libm::exp(-0.5 * ratio * ratio) / distance2
+    }
+}
+
+/// Adds a glint to the rows of a field, behind a lens of the blur `sigma_px`: a Gaussian that has the variance of lens and pixel,
+/// 1/12 px² for the latter.
+pub(super) fn add(glint: &GlintImage, sigma_px: f64, signal: &mut [f32], columns: usize, lines: Lines) {
+    let variance = sigma_px * sigma_px + 1.0 / 12.0;
+    let peak = glint.light / (2.0 * PI * variance);
+    let reach = 6.0 * variance.sqrt();
+    for (k, row) in signal.chunks_exact_mut(columns.max(1)).enumerate() {
+        let dy = lines.camera_row(k) as f64 - glint.centre.y;
+        if dy.abs() > reach {
+            continue;
+        }
+        let first = (glint.centre.x - reach).max(0.0) as usize;
+        let last = (glint.centre.x + reach + 1.0).max(0.0) as usize;
+        for (x, value) in row.iter_mut().enumerate().take(last).skip(first) {
+            let dx = x as f64 - glint.centre.x;
+            *value += (peak * libm::exp(-0.5 * (dx * dx + dy * dy) / variance)) as f32;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_glint_shines_in_the_mirror_direction_and_fades_with_the_square_of_the_distance() {
+        let glint =
+            GlintConfig { position_m: [0.0; 3], normal: [0.0, 0.0, 2.0], strength_m2: 1e-3, lobe_deg: 2.0 };
+        let sun = Sun { towards: Vector3::new(0.6, 0.0, 0.8), irradiance: 3.0 };
+        let mirror = Vector3::new(-0.6, 0.0, 0.8);
+        assert!((glint.light(&sun, &(mirror * 5.0)) - 3e-3 / 25.0).abs() < 1e-15);
+        assert!((glint.light(&sun, &(mirror * 10.0)) - 3e-3 / 100.0).abs() < 1e-15);
+        // A camera 4° off the mirror direction: the bisector is 2° off, one standard deviation.
+        let (sin, cos) = libm::sincos(4.0_f64.to_radians());
+        let aside = Vector3::new(-0.6 * cos - 0.8 * sin, 0.0, 0.8 * cos - 0.6 * sin);
+        assert!((glint.light(&sun, &aside) / 3e-3 - libm::exp(-0.5)).abs() < 1e-12);
+        assert_eq!(glint.light(&sun, &-mirror), 0.0);
+        assert_eq!(glint.light(&Sun { towards: -sun.towards, ..sun }, &mirror), 0.0);
+    }
+
+    #[test]
+    fn its_image_has_its_light_at_its_place() {
+        let glint = GlintImage { index: 0, centre: PixelPoint::new(20.3, 14.6), light: 50.0 };
+        let mut signal = vec![0.0_f32; 40 * 30];
+        add(&glint, 0.7, &mut signal, 40, Lines::All);
+        let mut sums = [0.0; 3];
+        for (i, value) in signal.iter().enumerate() {
+            for (sum, weight) in sums.iter_mut().zip([1.0, (i % 40) as f64, (i / 40) as f64]) {
+                *sum += weight * f64::from(*value);
+            }
+        }
+        // A sampled Gaussian of σ = 0.76 px: 1e-5 by Poisson's summation; f32.
+        assert!((sums[0] / 50.0 - 1.0).abs() < 1e-4, "{}", sums[0]);
+        assert!((sums[1] / sums[0] - 20.3).abs() < 1e-3 && (sums[2] / sums[0] - 14.6).abs() < 1e-3);
+    }
+}
