@@ -26,7 +26,7 @@ pub struct AutoGainConfig {
 
 impl Default for AutoGainConfig {
     fn default() -> Self {
-        Self { mean: 0.3, strength: 0.6, least: 0.2, greatest: 3.0 }
+        Self { mean: 0.2, strength: 0.6, least: 0.2, greatest: 3.0 }
     }
 }
 

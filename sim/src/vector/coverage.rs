@@ -145,43 +145,40 @@ impl Coverage {
         let (low, high) = if a < b { (a, b) } else { (b, a) };
         let right = self.window.right;
         let first = (low as usize).min(right - 1);
-        let base = row * self.columns;
-        if high <= (first + 1) as f64 {
-            let area = height * ((first + 1) as f64 - 0.5 * (low + high));
-            self.step(row, base, first, area, weights);
-            if first + 1 < right {
-                self.step(row, base, first + 1, height - area, weights);
+        let steps = &mut self.steps[row * self.columns..][..right];
+        let mut step = |column: usize, area: f64| {
+            // Beyond the window there is nothing to sum.
+            if let Some(step) = steps.get_mut(column) {
+                step[0] += (area * weights[0]) as f32;
+                step[1] += (area * weights[1]) as f32;
             }
-            return;
-        }
-        // Along the piece the height to the left grows in proportion; a pixel's area is its integral over the pixel.
-        let slope = height / (high - low);
-        let mut before = 0.0;
-        let mut column = first;
-        while column < right {
-            let (start, end) = ((column as f64).max(low), (column + 1) as f64);
-            let area = if end <= high {
-                0.5 * slope * ((end - low) * (end - low) - (start - low) * (start - low))
-            } else if start < high {
-                0.5 * slope * ((high - low) * (high - low) - (start - low) * (start - low))
-                    + height * (end - high)
-            } else {
-                height
-            };
-            self.step(row, base, column, area - before, weights);
-            if start >= high {
-                break;
+        };
+        let end = (first + 1) as f64;
+        let mut last = first;
+        if high <= end {
+            let area = height * (end - 0.5 * (low + high));
+            step(first, area);
+            step(first + 1, height - area);
+        } else {
+            // Along the piece the height to the left of x grows in proportion; a pixel's area is its integral over the
+            // pixel, a triangle in the first and all but a triangle in the last.
+            last = (high as usize).min(right - 1);
+            let slope = height / (high - low);
+            let triangle = |side: f64| 0.5 * slope * side * side;
+            let mut area = triangle(end - low);
+            step(first, area);
+            for column in first + 1..last {
+                let next = slope * (column as f64 + 0.5 - low);
+                step(column, next - area);
+                area = next;
             }
-            before = area;
-            column += 1;
+            let next = height - triangle(high - last as f64);
+            step(last, next - area);
+            step(last + 1, height - next);
         }
-    }
-
-    fn step(&mut self, row: usize, base: usize, column: usize, area: f64, weights: [f64; 2]) {
-        let step = &mut self.steps[base + column];
-        step[0] += (area * weights[0]) as f32;
-        step[1] += (area * weights[1]) as f32;
-        self.touched[row] |= 1 << (column >> self.shift);
+        let (from, to) = (first >> self.shift, (last + 1).min(right - 1) >> self.shift);
+        // Blocks `from` to `to`.
+        self.touched[row] |= (u64::MAX >> (63 - (to - from))) << from;
     }
 
     /// Hands the sums of the window's pixels to `paint` (row, first column, run), row by row from the left, and

@@ -6,7 +6,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::coverage::{Coverage, Run, Window};
-use super::lamp::LampOnPlane;
+use super::lamp::{LampGrid, LampOnPlane};
 use super::planes::{Plane, PreparedPart};
 use super::shadow::Shadows;
 use super::view::{Bounds, Outlines, View};
@@ -47,12 +47,10 @@ pub(super) struct Painting {
     facets: Vec<SeenFacet>,
     planes: Vec<SeenPlane>,
     shadow: Outlines,
+    lamp_grid: LampGrid,
 }
 
 impl Painting {
-    /// Pixels between the points at which a lamp's light is computed; it is linear between them.
-    const LAMP_STEP: usize = 16;
-
     /// Projects the facets of a part that show their front and reach into the image.
     pub(super) fn outline(&mut self, part: &Part, ready: &PreparedPart, canvas: &Canvas<'_>) {
         self.outlines.clear();
@@ -185,31 +183,29 @@ impl Painting {
             for polygon in 0..self.shadow.len() {
                 canvas.coverage.add(self.shadow.polygon(polygon), [0.0, 1.0]);
             }
-            let light = LampOnPlane::new(lamp, &canvas.view, plane);
+            let grid = &mut self.lamp_grid;
+            grid.fill(&LampOnPlane::new(lamp, &canvas.view, plane), window);
+            let mut open_row = None;
             let (columns, image) = (canvas.columns, &mut *canvas.radiance);
             canvas.coverage.sweep(|row, column, run| {
-                let length = match run {
-                    Run::Each(sums) => sums.len(),
-                    Run::Same(_, length) => length,
-                };
-                let pixels = &mut image[row * columns + column..][..length];
-                let mut first = column;
-                let end = column + length;
-                while first < end {
-                    // Nodes are the same wherever a run begins, so that neighbours fit.
-                    let node = first - first % Self::LAMP_STEP;
-                    let next = (node + Self::LAMP_STEP).min(end);
-                    let steps =
-                        light.along(row, node.max(window.left), (node + Self::LAMP_STEP).min(window.right));
-                    for column_now in first..next {
-                        let place = column_now - column;
-                        let [reflected, shaded] = match run {
-                            Run::Each(sums) => sums[place],
-                            Run::Same(sums, _) => sums,
-                        };
-                        pixels[place] += reflected * (1.0 - shaded.clamp(0.0, 1.0)) * steps.at(column_now);
+                if open_row != Some(row) {
+                    grid.open_row(window, row);
+                    open_row = Some(row);
+                }
+                let start = row * columns + column;
+                match run {
+                    Run::Each(sums) => {
+                        for (place, [reflected, shaded]) in sums.iter().enumerate() {
+                            let light = grid.light(window, column + place);
+                            image[start + place] += reflected * (1.0 - shaded.clamp(0.0, 1.0)) * light;
+                        }
                     }
-                    first = next;
+                    Run::Same([reflected, shaded], length) => {
+                        let share = reflected * (1.0 - shaded.clamp(0.0, 1.0));
+                        for place in 0..length {
+                            image[start + place] += share * grid.light(window, column + place);
+                        }
+                    }
                 }
             });
         }

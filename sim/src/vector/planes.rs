@@ -6,6 +6,30 @@ use nalgebra::Vector3;
 
 use crate::scene::docking::{DockingScene, Facet, Part};
 
+/// The smallest box along the target's axes about some points.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extent {
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+}
+
+impl Extent {
+    pub(super) fn of<'a>(points: impl IntoIterator<Item = &'a Vector3<f64>>) -> Self {
+        let nothing = Self { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) };
+        points
+            .into_iter()
+            .fold(nothing, |extent, point| Self { low: extent.low.inf(point), high: extent.high.sup(point) })
+    }
+
+    /// Whether two boxes have something in common, up to rounding.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|axis| {
+            self.low[axis] <= other.high[axis] + SAME_PLACE_M
+                && other.low[axis] <= self.high[axis] + SAME_PLACE_M
+        })
+    }
+}
+
 /// A sphere about something.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sphere {
@@ -14,14 +38,10 @@ pub(super) struct Sphere {
 }
 
 impl Sphere {
-    /// About the middle of the points' extent along the axes.
+    /// About the middle of the points' extent along the axes; about the origin where there are no points.
     fn about<'a>(points: impl Iterator<Item = &'a Vector3<f64>> + Clone) -> Self {
-        let mut extent = points.clone();
-        let Some(first) = extent.next() else {
-            return Self { centre: Vector3::zeros(), radius: 0.0 };
-        };
-        let (low, high) = extent.fold((*first, *first), |(low, high), p| (low.inf(p), high.sup(p)));
-        let centre = 0.5 * (low + high);
+        let Extent { low, high } = Extent::of(points.clone());
+        let centre = if low.x <= high.x { 0.5 * (low + high) } else { Vector3::zeros() };
         let radius = points.map(|point| (point - centre).norm()).fold(0.0, f64::max);
         Self { centre, radius }
     }
@@ -36,6 +56,7 @@ pub(super) struct Plane {
     /// Places of its facets in the part.
     pub(super) facets: Vec<usize>,
     pub(super) sphere: Sphere,
+    pub(super) extent: Extent,
 }
 
 impl Plane {
@@ -99,6 +120,8 @@ impl Prepared {
 
 /// How far apart normals and, in metres, offsets of one plane may be.
 const SAME_PLANE: f64 = 1e-9;
+/// Boxes nearer than this touch, m: a plane along the axes has a flat one.
+const SAME_PLACE_M: f64 = 1e-6;
 
 fn planes_of(part: &Part) -> Vec<Plane> {
     let mut planes: Vec<Plane> = Vec::new();
@@ -115,12 +138,15 @@ fn planes_of(part: &Part) -> Vec<Plane> {
                 offset,
                 facets: vec![index],
                 sphere: Sphere { centre: *point, radius: 0.0 },
+                extent: Extent { low: *point, high: *point },
             }),
         }
     }
     for plane in &mut planes {
         let facets = plane.facets.iter().map(|index| &part.facets[*index]);
-        plane.sphere = Sphere::about(facets.flat_map(|facet| &facet.outer));
+        let points = facets.flat_map(|facet| &facet.outer);
+        plane.sphere = Sphere::about(points.clone());
+        plane.extent = Extent::of(points);
     }
     planes
 }

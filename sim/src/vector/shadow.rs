@@ -9,7 +9,7 @@ use std::ops::Range;
 use nalgebra::Vector3;
 
 use super::clip::keep_above;
-use super::planes::{Plane, Prepared, Sphere};
+use super::planes::{Extent, Plane, Prepared, Sphere};
 use crate::scene::docking::Facet;
 
 /// Where light comes from.
@@ -167,12 +167,14 @@ impl Shadows {
                     self.points.extend(self.cut.iter().map(shadow));
                 }
             }
+            if !plane.extent.meets(&Extent::of(&self.points[start..])) {
+                self.points.truncate(start);
+                continue;
+            }
             if dark_side {
                 self.points[start..].reverse();
             }
-            if self.points.len() > start {
-                self.ends.push(self.points.len());
-            }
+            self.ends.push(self.points.len());
         }
     }
 }

@@ -119,7 +119,8 @@ impl DockingUnitTable {
             visible: true,
         };
         let mut parts = vec![
-            part("docking cone", cone, false),
+            // It stops the light that comes in through the flange, which would else go on to the station behind.
+            part("docking cone", cone, true),
             // The flange shades the cone, and the ring both.
             part("docking flange", flange, true),
             part("docking wall", wall(&outer.polygon(SIDES), -base_m, front_m, self.ring_reflectance), true),

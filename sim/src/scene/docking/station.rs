@@ -81,8 +81,8 @@ impl StationTable {
             casts_shadow,
             visible: true,
         };
-        // Nothing that a shadow of face or blankets could fall on comes before them but what the wall shades too.
-        let mut parts = vec![part("station wall", wall, true), part("station face", face, false)];
+        // Wall and face are one closed body to the Sun, and cast its shadow together; the blankets lie on the face.
+        let mut parts = vec![part("station wall", wall, true), part("station face", face, true)];
         if let Some(blankets) = &self.blankets {
             parts.push(part("blankets", blankets.facets(self, unit), false));
         }
