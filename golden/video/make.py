@@ -1,4 +1,4 @@
-"""Makes small video files with OpenCV and with FFmpeg's writers (PyAV): 4 frames of 48 x 35 or 48 x 36, grey values known.
+"""Makes small video files with FFmpeg's writers (PyAV): 4 frames of 48 x 35 or 48 x 36, grey values known.
 
 Grey of the pixel (x, y) of frame k: 20 + 2 x + 2 y + 15 k.
 """
@@ -7,7 +7,6 @@ import pathlib
 import sys
 
 import av
-import cv2
 import numpy as np
 
 FOLDER = pathlib.Path(__file__).resolve().parent
@@ -25,6 +24,8 @@ def with_ffmpeg(name, container, codec, pixels, rows, **options):
     with av.open(str(FOLDER / name), "w", format=container, options={"fflags": "+bitexact", **options}) as file:
         stream = file.add_stream(codec, rate=25)
         stream.width, stream.height, stream.pix_fmt = 48, rows, pixels
+        if codec == "mjpeg":
+            stream.codec_context.options = {"qmin": "1", "qmax": "1"}
         stream.codec_context.flags |= av.codec.context.Flags.bitexact
         for k in range(4):
             image = grey(rows, k)
@@ -34,12 +35,12 @@ def with_ffmpeg(name, container, codec, pixels, rows, **options):
                 frame = av.VideoFrame.from_ndarray(np.dstack([image] * 3), format="bgr24")
             else:
                 frame = av.VideoFrame(48, rows, pixels)
-                for plane, (width, height) in zip(frame.planes, planes(pixels, rows)):
+                for i, (plane, height) in enumerate(zip(frame.planes, plane_rows(pixels, rows))):
                     data = np.full((height, plane.line_size), 128, np.uint8)
                     if pixels in ("yuyv422", "uyvy422"):
                         first = 0 if pixels == "yuyv422" else 1
                         data[:, first : 2 * 48 : 2] = image
-                    elif width == 48 and plane is frame.planes[0]:
+                    elif i == 0:
                         data[:, :48] = image
                     plane.update(data.tobytes())
             frame.pts = k
@@ -49,24 +50,14 @@ def with_ffmpeg(name, container, codec, pixels, rows, **options):
             file.mux(packet)
 
 
-def planes(pixels, rows):
-    if pixels in ("yuyv422", "uyvy422"):
-        return [(96, rows)]
-    chroma = {"yuv420p": (24, (rows + 1) // 2), "yuv422p": (24, rows)}[pixels]
-    return [(48, rows), chroma, chroma]
-
-
-def with_opencv(name):
-    writer = cv2.VideoWriter(str(FOLDER / name), cv2.CAP_OPENCV_MJPEG, cv2.VideoWriter_fourcc(*"MJPG"), 25, (48, 36), False)
-    writer.set(cv2.VIDEOWRITER_PROP_QUALITY, 95)
-    for k in range(4):
-        writer.write(grey(36, k))
-    writer.release()
+def plane_rows(pixels, rows):
+    chroma = {"yuv420p": (rows + 1) // 2, "yuvj420p": (rows + 1) // 2, "yuv422p": rows}.get(pixels)
+    return [rows, chroma, chroma] if chroma else [rows]
 
 
 def main():
     arguments = manifest.begin()
-    with_opencv("mjpeg.avi")
+    with_ffmpeg("mjpeg.avi", "avi", "mjpeg", "yuvj420p", 36)
     with_ffmpeg("grey.avi", "avi", "rawvideo", "gray", 35)
     with_ffmpeg("bgr24.avi", "avi", "rawvideo", "bgr24", 35)
     with_ffmpeg("yuy2.avi", "avi", "rawvideo", "yuyv422", 35)

@@ -107,8 +107,7 @@ fn scan(
         let (dx, dy) = (half * (along * cos - down * sin), half * (along * sin + down * cos));
         dy.round() as isize * width as isize + dx.round() as isize
     };
-    let between =
-        [(0.36, 0.36), (-0.36, -0.36), (0.36, -0.36), (-0.36, 0.36)].map(|(a, d)| offset(a, d));
+    let between = [(0.36, 0.36), (-0.36, -0.36), (0.36, -0.36), (-0.36, 0.36)].map(|(a, d)| offset(a, d));
     let inner = [(0.5, 0.0), (-0.5, 0.0), (0.0, 0.5), (0.0, -0.5)].map(|(a, d)| offset(a, d));
     let outer = [(0.82, 0.0), (-0.82, 0.0), (0.0, 0.82), (0.0, -0.82)].map(|(a, d)| offset(a, d));
     let beyond = [(1.3, 0.0), (-1.3, 0.0), (0.0, 1.3), (0.0, -1.3)].map(|(a, d)| offset(a, d));

@@ -26,18 +26,12 @@ pub(crate) struct Component {
 impl Component {
     /// Columns and rows that it spans.
     pub(crate) fn extent(&self) -> (f64, f64) {
-        (
-            f64::from(self.columns.1 - self.columns.0) + 1.0,
-            f64::from(self.rows.1 - self.rows.0) + 1.0,
-        )
+        (f64::from(self.columns.1 - self.columns.0) + 1.0, f64::from(self.rows.1 - self.rows.0) + 1.0)
     }
 
     /// The middle of the rectangle that it spans.
     pub(crate) fn middle(&self) -> (f64, f64) {
-        (
-            f64::from(self.columns.0 + self.columns.1) / 2.0,
-            f64::from(self.rows.0 + self.rows.1) / 2.0,
-        )
+        (f64::from(self.columns.0 + self.columns.1) / 2.0, f64::from(self.rows.0 + self.rows.1) / 2.0)
     }
 }
 

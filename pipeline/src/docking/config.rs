@@ -85,7 +85,9 @@ mod tests {
         };
         assert_eq!(refusal(r#"{"min_contrast": 1.0}"#), "min_contrast is 1, expected 2 to 200");
         assert!(refusal(r#"{"edges": {"low": 200.0, "high": 100.0}}"#).contains("edges.high"));
-        assert!(refusal(r#"{"auto_contrast": {"bright_level": 2.0}}"#).contains("auto_contrast.bright_level"));
+        assert!(
+            refusal(r#"{"auto_contrast": {"bright_level": 2.0}}"#).contains("auto_contrast.bright_level")
+        );
         assert!(refusal(r#"{"region": {"max_gap_s": 0.0}}"#).contains("region.max_gap_s"));
     }
 

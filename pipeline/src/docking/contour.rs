@@ -162,8 +162,8 @@ mod tests {
         for radius in [12.0, 40.0, 150.0] {
             let centre = (400.2, 290.7);
             let field = synthetic::drawn(Lines::Even, |x, y| {
-                let panel = (x as f64 - centre.0).abs() < 3.0 * radius
-                    && (y as f64 - centre.1).abs() < 0.15 * radius;
+                let panel =
+                    (x as f64 - centre.0).abs() < 3.0 * radius && (y as f64 - centre.1).abs() < 0.15 * radius;
                 if panel || disk(x, y, centre, radius) { 140 } else { 8 }
             });
             let found = find(&View::new(&field).overview(), &synthetic::lens()).unwrap();
@@ -175,9 +175,8 @@ mod tests {
 
     #[test]
     fn a_body_cut_by_the_border_is_measured_on_what_is_left() {
-        let field = synthetic::drawn(Lines::Odd, |x, y| {
-            if disk(x, y, (380.0, 400.0), 220.0) { 140 } else { 8 }
-        });
+        let field =
+            synthetic::drawn(Lines::Odd, |x, y| if disk(x, y, (380.0, 400.0), 220.0) { 140 } else { 8 });
         let found = find(&View::new(&field).overview(), &synthetic::lens()).unwrap();
         assert!((found.circle.radius - 220.0).abs() < 3.0, "{found:?}");
     }

@@ -196,13 +196,8 @@ impl Scan<'_> {
             let last = whole(view.image_row(centre.y + reach).floor(), view.rows())?;
             values.clear();
             values.extend((first..=last).map(|row| view.at(column, row)));
-            let edges = bar_edges(
-                &values,
-                view.camera_row(first),
-                view.step(),
-                secant * self.width,
-                &self.levels,
-            )?;
+            let edges =
+                bar_edges(&values, view.camera_row(first), view.step(), secant * self.width, &self.levels)?;
             let at = |y: f64| self.lens.to_ideal(PixelPoint::new(column as f64, y));
             found.push((at(edges.0)? + at(edges.1)?) / 2.0);
             Some(())

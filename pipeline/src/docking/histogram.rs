@@ -106,9 +106,7 @@ impl AutoContrastConfig {
             (0.5..=0.95).contains(&v)
         })?;
         require("auto_contrast.tolerance", self.tolerance, "0.01 to 0.3", |v| (0.01..=0.3).contains(&v))?;
-        require("auto_contrast.max_contrast", self.max_contrast, "0.1 to 20", |v| {
-            (0.1..=20.0).contains(&v)
-        })
+        require("auto_contrast.max_contrast", self.max_contrast, "0.1 to 20", |v| (0.1..=20.0).contains(&v))
     }
 
     /// The setting that brings the region's levels to where they are wanted; `None` when the setting is good, or when
@@ -139,7 +137,8 @@ impl AutoContrastConfig {
         // The middle of the two levels goes to its place, at the contrast that is asked for.
         let wanted = (self.dark_level + self.bright_level) / 2.0 - contrast * (low + high) / 2.0;
         let brightness = (now.brightness + 0.5 * (wanted - now.brightness)).clamp(-10.0, 10.0);
-        let moved = (contrast / now.contrast - 1.0).abs() > 0.01 || (brightness - now.brightness).abs() > 0.005;
+        let moved =
+            (contrast / now.contrast - 1.0).abs() > 0.01 || (brightness - now.brightness).abs() > 0.005;
         let digitiser = Digitiser { contrast, brightness };
         (moved && digitiser.check().is_ok()).then_some(digitiser)
     }

@@ -27,6 +27,7 @@ impl Plane {
     }
 
     /// What place of the plane is seen there.
+    #[cfg(test)]
     pub(crate) fn locate(&self, ideal: Vector2<f64>) -> [f64; 2] {
         let (sin, cos) = libm::sincos(self.roll_rad);
         let p = (ideal - self.centre) / self.scale_px_m;
@@ -52,8 +53,7 @@ impl Plane {
         }
         let (p, q) = (p / square, q / square);
         let scale_px_m = libm::hypot(p, q);
-        let centre = mean_p
-            - Vector2::new(p * mean_y.x + q * mean_y.y, q * mean_y.x - p * mean_y.y);
+        let centre = mean_p - Vector2::new(p * mean_y.x + q * mean_y.y, q * mean_y.x - p * mean_y.y);
         (scale_px_m > 0.0).then_some(Self { centre, scale_px_m, roll_rad: libm::atan2(q, p) })
     }
 }
@@ -160,7 +160,7 @@ impl MarkSearch<'_> {
         let step = (0.5 * width).clamp(0.8, 6.0);
         let mut best = (*start, self.contrast(start, &shapes));
         let count = (reach_px / step).ceil().clamp(1.0, 40.0) as i32;
-        let mut consider = |plane: Plane, best: &mut (Plane, f64)| {
+        let consider = |plane: Plane, best: &mut (Plane, f64)| {
             let contrast = self.contrast(&plane, &shapes);
             if contrast > best.1 {
                 *best = (plane, contrast);
@@ -325,8 +325,7 @@ impl MarkSearch<'_> {
             sum_y += weight * (y - middle.y);
         }
         let area_px = sum * self.view.step() * stride as f64 / self.levels.contrast();
-        let nominal_px =
-            4.0 * shape.half_length_m * shape.half_width_m * plane.scale_px_m * plane.scale_px_m;
+        let nominal_px = 4.0 * shape.half_length_m * shape.half_width_m * plane.scale_px_m * plane.scale_px_m;
         let height = area_px / nominal_px;
         (height > 0.15).then(|| (PixelPoint::new(middle.x + sum_x / sum, middle.y + sum_y / sum), height))
     }
@@ -345,8 +344,8 @@ impl MarkSearch<'_> {
             let plane = Plane::fit(&pairs)?;
             let mut errors: Vec<f64> = pairs.iter().map(|(y, p)| (plane.place(*y) - p).norm()).collect();
             errors.sort_by(f64::total_cmp);
-            let mark_radius_px = plane.scale_px_m
-                * self.shapes.iter().map(MarkShape::radius_m).fold(0.0, f64::max);
+            let mark_radius_px =
+                plane.scale_px_m * self.shapes.iter().map(MarkShape::radius_m).fold(0.0, f64::max);
             // A tilt of ten degrees moves marks by 0.8 % of the radius from where a plane seen head on has them.
             let limit = (0.5 + 0.012 * mark_radius_px).max(3.0 * errors[errors.len() / 2]);
             let error = |m: &SeenMark| {

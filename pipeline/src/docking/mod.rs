@@ -16,6 +16,7 @@ mod edges;
 pub mod geometry;
 mod histogram;
 mod marks;
+pub mod model_fit;
 pub mod paper_pose;
 mod pipeline;
 pub mod portions;

@@ -5,14 +5,14 @@ use contract::docking::{
     Features, Field, FieldMeasurement, FieldTelemetry, MotionReport, NoPose, PoseEstimate, TargetModel,
 };
 use contract::{Camera, ContractError, PixelPoint};
-use nalgebra::{Matrix6, Vector2, Vector6};
+use nalgebra::Vector2;
 
 use super::config::DockingConfig;
 use super::contour;
 use super::docking_unit::{self, DiskEdge, Side};
-use super::geometry;
 use super::histogram::Histogram;
 use super::marks::{self, MarkShape};
+use super::model_fit::ModelFit;
 use super::paper_pose::{PaperMeasurement, PaperTarget};
 use super::portions::{ExactPortions, PaperPortions};
 use super::recognise::{Recognition, Sight};
@@ -52,13 +52,14 @@ impl DockingPipelineFactory for DockingFactory {
 }
 
 /// The docking method on a sequence of fields.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Docking {
     config: DockingConfig,
     cameras: Vec<(Camera, Lens)>,
     target: TargetModel,
     shapes: Vec<MarkShape>,
     track: Track,
+    fit: ModelFit,
     portion: Portion,
     exact: ExactPortions,
     paper: PaperPortions,
@@ -97,6 +98,7 @@ impl Docking {
             cameras,
             config,
             track: Track::default(),
+            fit: ModelFit::new(),
             portion: Portion::default(),
         })
     }
@@ -104,12 +106,13 @@ impl Docking {
     /// Recognises and measures, without portions.
     fn solve(
         &mut self,
+        field: &Field,
         view: &View<'_>,
         telemetry: &FieldTelemetry,
         features: &mut Features,
         region: &mut Rectangle,
     ) -> Result<Solved, NoPose> {
-        let Self { config, cameras, target, shapes, track, .. } = self;
+        let Self { config, cameras, target, shapes, track, fit, .. } = self;
         let (camera, lens) = cameras.get(telemetry.camera).ok_or_else(|| {
             NoPose::Failed(format!("the field is of camera {}, which is not known", telemetry.camera))
         })?;
@@ -162,7 +165,7 @@ impl Docking {
             circle: sight.circle.centre.into(),
             radius_px: sight.circle.radius_px,
         };
-        let best = propagated(&measurement, &PaperTarget::of(target), &sight)?;
+        let paper = measurement.pose(&PaperTarget::of(target))?;
         track.push(Sighting {
             time_s: telemetry.time_s,
             camera: telemetry.camera,
@@ -170,8 +173,9 @@ impl Docking {
             cross: cross.seed,
             plane: *plane,
         });
-        let paper = Some(best.pose);
-        Ok((DockingSolution::Measured(Box::new(FieldMeasurement { best, paper })), Some(measurement)))
+        let best = fit.fit(field, lens.model(), target, &paper)?.estimate;
+        let measured = FieldMeasurement { best, paper: Some(paper) };
+        Ok((DockingSolution::Measured(Box::new(measured)), Some(measurement)))
     }
 
     /// Adds a field to its portion; the motion, when the portion is complete.
@@ -214,7 +218,7 @@ impl DockingPipeline for Docking {
         let view = View::new(field);
         let mut features = Features::default();
         let mut region = Rectangle::ALL;
-        let (solution, paper) = match self.solve(&view, telemetry, &mut features, &mut region) {
+        let (solution, paper) = match self.solve(field, &view, telemetry, &mut features, &mut region) {
             Ok(solved) => solved,
             Err(reason) => (DockingSolution::NoSolution(reason), None),
         };
@@ -241,9 +245,12 @@ fn check_target(target: &TargetModel) -> Result<(), PipelineError> {
     require("target.mark_circle_radius_m", target.mark_circle_radius_m, "greater than 0", positive)?;
     require("target.cross.height_m", target.cross.height_m, "greater than 0", positive)?;
     require("target.cross.half_length_m", target.cross.half_length_m, "greater than 0", positive)?;
-    require("target.cross.width_m", target.cross.width_m, "greater than 0, less than the half length", |v| {
-        v > 0.0 && v < target.cross.half_length_m
-    })?;
+    require(
+        "target.cross.width_m",
+        target.cross.width_m,
+        "greater than 0, less than the half length",
+        |v| v > 0.0 && v < target.cross.half_length_m,
+    )?;
     require("target.marks (their number)", target.marks.len() as f64, "5 to 1000", |v| {
         (5.0..=1000.0).contains(&v)
     })?;
@@ -279,7 +286,11 @@ fn outline_range(
     let Some(outline) = contour::find(overview, lens) else {
         // The thousandths hold a small target before an empty sky; a field is empty when they hold nothing.
         let range = whole.quantile(0.999) - whole.quantile(0.01);
-        return Err(if reason == NoPose::NoTarget && range < EMPTY_RANGE { NoPose::EmptyField } else { reason });
+        return Err(if reason == NoPose::NoTarget && range < EMPTY_RANGE {
+            NoPose::EmptyField
+        } else {
+            reason
+        });
     };
     let circle = camera_circle(lens, outline.circle.centre, outline.circle.radius);
     if let Some((centre, radius_px)) = circle {
@@ -310,10 +321,8 @@ fn camera_circle(lens: &Lens, centre: Vector2<f64>, radius: f64) -> Option<(Pixe
         })
         .collect::<Option<_>>()?;
     let n = POINTS as f64;
-    let middle = PixelPoint::new(
-        rim.iter().map(|p| p.x).sum::<f64>() / n,
-        rim.iter().map(|p| p.y).sum::<f64>() / n,
-    );
+    let middle =
+        PixelPoint::new(rim.iter().map(|p| p.x).sum::<f64>() / n, rim.iter().map(|p| p.y).sum::<f64>() / n);
     Some((middle, rim.iter().map(|p| p.distance(middle)).sum::<f64>() / n))
 }
 
@@ -358,35 +367,6 @@ fn station(view: &View<'_>, lens: &Lens, target: &TargetModel, sight: &Sight) ->
     let place = docking_unit::predict(target, &target.station, lens.focal_px(), plane, cross, Side::Nominal);
     let edge = docking_unit::find(view, lens, place, (0.12 * sight.cross.levels.contrast()).max(8.0));
     disk(lens, &edge, 0.5)
-}
-
-/// The paper's pose with the covariance that the errors of its six numbers leave, to first order.
-fn propagated(
-    measurement: &PaperMeasurement,
-    target: &PaperTarget,
-    sight: &Sight,
-) -> Result<PoseEstimate, NoPose> {
-    let pose = measurement.pose(target)?;
-    let pairs = (sight.cross.pairs.0 + sight.cross.pairs.1) as f64;
-    let points = f64::from(sight.circle.points.max(1));
-    // A mark and a pair each to a tenth or two of a pixel.
-    let cross_px = 0.2 / (pairs / 4.0).sqrt();
-    let circle_px = 0.15 / (points / 2.0).sqrt();
-    let slope = cross_px / (0.5 * sight.cross.seed.half_length_px);
-    let sigma = Vector6::new(cross_px, cross_px, circle_px, circle_px, circle_px / 1.41, slope);
-    let mut jacobian = Matrix6::zeros();
-    for (i, sigma) in sigma.iter().enumerate() {
-        let mut moved = *measurement;
-        match i {
-            0 | 1 => moved.cross[i] += sigma,
-            2 | 3 => moved.circle[i - 2] += sigma,
-            4 => moved.radius_px += sigma,
-            _ => moved.slope += sigma,
-        }
-        let column = geometry::to_vector(&moved.pose(target)?) - geometry::to_vector(&pose);
-        jacobian.set_column(i, &column);
-    }
-    Ok(PoseEstimate { pose, covariance: jacobian * jacobian.transpose() })
 }
 
 #[cfg(test)]
@@ -506,9 +486,7 @@ mod tests {
         let mut pipeline = docking();
         let field = Scene::default().field(Lines::Even);
         let reports: Vec<bool> = (0..20)
-            .map(|i| {
-                pipeline.process(&field, &synthetic::telemetry(0.02 * f64::from(i))).motion.is_some()
-            })
+            .map(|i| pipeline.process(&field, &synthetic::telemetry(0.02 * f64::from(i))).motion.is_some())
             .collect();
         assert_eq!(reports.iter().filter(|r| **r).count(), 2);
         assert!(reports[9] && reports[19]);

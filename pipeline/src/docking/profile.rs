@@ -42,7 +42,8 @@ pub(crate) fn bar_edges(
     let (before, after) = (mean(&values[..ends]), mean(&values[n - ends..]));
     let peak = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let surround = before.max(after);
-    if !(peak - surround >= MIN_HEIGHT * levels.contrast() && surround < (levels.dark + levels.bright) / 2.0) {
+    if !(peak - surround >= MIN_HEIGHT * levels.contrast() && surround < (levels.dark + levels.bright) / 2.0)
+    {
         return None;
     }
     let place = |i: f64| first + step * i;
@@ -128,7 +129,8 @@ mod tests {
 
     #[test]
     fn a_shadowed_a_bounded_and_a_missing_bar_are_refused() {
-        let shadow: Vec<f64> = bar(20.0, 32.0, 10.0, 1.0, 34).iter().map(|v| 20.0 + 0.3 * (v - 20.0)).collect();
+        let shadow: Vec<f64> =
+            bar(20.0, 32.0, 10.0, 1.0, 34).iter().map(|v| 20.0 + 0.3 * (v - 20.0)).collect();
         assert_eq!(bar_edges(&shadow, 10.0, 1.0, 12.0, &LEVELS), None);
         assert_eq!(bar_edges(&[20.0; 30], 10.0, 1.0, 12.0, &LEVELS), None);
         assert_eq!(bar_edges(&[180.0; 30], 10.0, 1.0, 12.0, &LEVELS), None);

@@ -148,13 +148,7 @@ impl Recognition<'_> {
     }
 
     /// Marks, circle and checks around a cross.
-    fn complete(
-        &self,
-        cross: CrossFit,
-        start: &Plane,
-        reach_px: f64,
-        stretch: f64,
-    ) -> Result<Sight, NoPose> {
+    fn complete(&self, cross: CrossFit, start: &Plane, reach_px: f64, stretch: f64) -> Result<Sight, NoPose> {
         let search =
             MarkSearch { view: self.view, lens: self.lens, shapes: self.shapes, levels: cross.levels };
         let coarse = search.coarse(start, reach_px, stretch);

@@ -128,9 +128,7 @@ impl Track {
         }
         let zoom = if last.camera == camera { 1.0 } else { focal_px / last.focal_px };
         let share = match &self.before {
-            Some(before) if last.time_s - before.time_s <= max_gap_s => {
-                ahead / (last.time_s - before.time_s)
-            }
+            Some(before) if last.time_s - before.time_s <= max_gap_s => ahead / (last.time_s - before.time_s),
             _ => 0.0,
         };
         // A step of a hundred fields is not a prediction.

@@ -60,14 +60,8 @@ pub(crate) fn docking_unit(
     plane: &Plane,
     side: Side,
 ) -> DiskEdge {
-    let place = docking_unit::predict(
-        model,
-        &model.docking_unit,
-        lens.focal_px(),
-        plane,
-        cross.seed.centre,
-        side,
-    );
+    let place =
+        docking_unit::predict(model, &model.docking_unit, lens.focal_px(), plane, cross.seed.centre, side);
     docking_unit::find(view, lens, place, (0.12 * cross.levels.contrast()).max(8.0))
 }
 

@@ -98,11 +98,7 @@ impl Default for Scene {
 
 impl Scene {
     pub(crate) fn plane(&self) -> Plane {
-        Plane {
-            centre: self.disk_px,
-            scale_px_m: lens().focal_px() / self.range_m,
-            roll_rad: self.roll_rad,
-        }
+        Plane { centre: self.disk_px, scale_px_m: lens().focal_px() / self.range_m, roll_rad: self.roll_rad }
     }
 
     pub(crate) fn cross(&self) -> CrossSeed {
@@ -114,15 +110,13 @@ impl Scene {
         }
     }
 
-    fn grey(&self, marks: &[[[f64; 2]; 4]], ideal: Vector2<f64>) -> f64 {
-        let model = target();
-        let plane = self.plane();
+    fn grey(&self, model: &TargetModel, plane: Plane, seed: &CrossSeed, ideal: Vector2<f64>) -> f64 {
         let shaded = |y1: f64, value: f64| if y1 > self.shadow_from_m { 0.25 * value } else { value };
         let on_target = |centre: Vector2<f64>| -> Option<f64> {
             let local = Plane { centre, ..plane }.locate(ideal);
             let cross = Plane {
                 centre: centre + self.parallax_px,
-                scale_px_m: self.cross().half_length_px / model.cross.half_length_m,
+                scale_px_m: seed.half_length_px / model.cross.half_length_m,
                 ..plane
             }
             .locate(ideal);
@@ -141,7 +135,7 @@ impl Scene {
                     (b[0] - a[0]) * (local[1] - a[1]) - (b[1] - a[1]) * (local[0] - a[0]) >= 0.0
                 })
             };
-            Some(shaded(local[0], if marks.iter().any(inside) { 200.0 } else { 25.0 }))
+            Some(shaded(local[0], if model.marks.iter().any(inside) { 200.0 } else { 25.0 }))
         };
         if let Some(value) = on_target(self.disk_px).or_else(|| self.second_px.and_then(on_target)) {
             return value;
@@ -159,8 +153,7 @@ impl Scene {
     /// Every row of the camera, blurred with a standard deviation of 0.7 px.
     fn rows(&self) -> Vec<f64> {
         const FINE: usize = 3;
-        let marks = target().marks;
-        let camera = camera();
+        let (model, plane, cross, camera) = (target(), self.plane(), self.cross(), camera());
         let sharp: Vec<f64> = (0..COLUMNS * ROWS)
             .map(|i| {
                 let (x, y) = ((i % COLUMNS) as f64, (i / COLUMNS) as f64);
@@ -171,7 +164,7 @@ impl Scene {
                         x + offset(k % FINE) - camera.principal_x_px,
                         y + offset(k / FINE) - camera.principal_y_px,
                     );
-                    sum += self.grey(&marks, point);
+                    sum += self.grey(&model, plane, &cross, point);
                 }
                 sum / (FINE * FINE) as f64
             })
@@ -218,8 +211,7 @@ pub(crate) fn plain(dn: Vec<u16>, lines: Lines) -> Field {
 
 /// A field of a grey value a pixel.
 pub(crate) fn drawn(lines: Lines, grey: impl Fn(usize, usize) -> u16) -> Field {
-    let dn = (0..lines.rows(ROWS) * COLUMNS)
-        .map(|i| grey(i % COLUMNS, lines.camera_row(i / COLUMNS)))
-        .collect();
+    let dn =
+        (0..lines.rows(ROWS) * COLUMNS).map(|i| grey(i % COLUMNS, lines.camera_row(i / COLUMNS))).collect();
     plain(dn, lines)
 }

@@ -120,11 +120,6 @@ impl Overview {
     pub(crate) fn to_camera(&self, x: f64, y: f64) -> PixelPoint {
         PixelPoint::new(self.first_x + Self::PIXEL * x, self.first_y + Self::PIXEL * y)
     }
-
-    /// The place in the overview of a place in the camera.
-    pub(crate) fn of_camera(&self, point: PixelPoint) -> (f64, f64) {
-        ((point.x - self.first_x) / Self::PIXEL, (point.y - self.first_y) / Self::PIXEL)
-    }
 }
 
 /// The way between the camera's pixels and the ideal image of the paper's formulas: (f x1/x3, f x2/x3), px, from the
@@ -141,6 +136,11 @@ impl Lens {
     pub(crate) fn new(camera: &Camera) -> Result<Self, ContractError> {
         let (focal_px, focal_y_px) = camera.focal_length_px();
         Ok(Self { model: CameraModel::new(camera)?, focal_px, row_px: focal_px / focal_y_px })
+    }
+
+    /// The camera's model.
+    pub(crate) fn model(&self) -> &CameraModel {
+        &self.model
     }
 
     /// f, px.

@@ -5,7 +5,7 @@ use contract::PixelPoint;
 use contract::docking::{Lines, Pose};
 use hifitime::{Duration, Epoch};
 use nalgebra::Vector3;
-use sim::docking::FieldTruth;
+use sim::docking::{FieldTruth, GlintImage};
 use sim::television::VideoTruth;
 
 use super::super::FileError;
@@ -21,6 +21,7 @@ const PHI_RATE: [&str; 3] = ["phi1_rate_deg_s", "phi2_rate_deg_s", "phi3_rate_de
 const SUN: [&str; 3] = ["sun_y1", "sun_y2", "sun_y3"];
 const CROSS: [&str; 2] = ["cross_x_px", "cross_y_px"];
 const DISK: [&str; 2] = ["disk_x_px", "disk_y_px"];
+const GLINT: [&str; 4] = ["glint", "glint_x_px", "glint_y_px", "glint_light"];
 const SUN_IMAGE: [&str; 2] = ["sun_x_px", "sun_y_px"];
 
 /// The truth as it comes back from the file: angles have changed their unit twice, which may move their last bit. A score
@@ -83,6 +84,11 @@ impl Row for FieldTruth {
         columns.extend(optional_components(rows, SUN_IMAGE, |row| point(row.sun_image)));
         columns.extend([
             numbers(rows, "sun_visible", |row| row.sun_visible),
+        ]);
+        columns.extend(optional_components(rows, GLINT, |row| {
+            row.glint.map(|glint| [glint.index as f64, glint.centre.x, glint.centre.y, glint.light])
+        }));
+        columns.extend([
             numbers(rows, "video_contrast", |row| row.video.contrast),
             numbers(rows, "video_brightness", |row| row.video.brightness),
             Column::new(
@@ -115,6 +121,7 @@ impl Row for FieldTruth {
         let sun = optional(columns, SUN)?;
         let (cross, disk, sun_image) =
             (optional(columns, CROSS)?, optional(columns, DISK)?, optional(columns, SUN_IMAGE)?);
+        let glint = optional(columns, GLINT)?;
         let circle = columns.optional_f64("circle_radius_px")?;
         let (in_field, shadowed) = (columns.u64("marks_in_field")?, columns.u64("marks_shadowed")?);
         let floodlight: &BooleanArray = columns.every("floodlight")?;
@@ -154,6 +161,11 @@ impl Row for FieldTruth {
                     target_in_field: target_in_field.value(row),
                     sun_image: point(&sun_image, row),
                     sun_visible: sun_visible[row],
+                    glint: values(&glint, row).map(|[index, x, y, light]| GlintImage {
+                        index: index as usize,
+                        centre: PixelPoint::new(x, y),
+                        light,
+                    }),
                     video: VideoTruth {
                         contrast: contrast[row],
                         brightness: brightness[row],

@@ -18,7 +18,7 @@ use nalgebra::{Cholesky, Const, DimMin, SMatrix};
 
 /// Inverse of a symmetric positive definite matrix whose rows have units of their own: scaled to a unit diagonal first, so
 /// that metres beside radians cost no digits. `None` when it is singular.
-pub(super) fn inverse<const N: usize>(matrix: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>>
+pub(in crate::docking) fn inverse<const N: usize>(matrix: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>>
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>>,
 {
@@ -34,7 +34,7 @@ where
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(in crate::docking) mod tests {
     use contract::docking::Pose;
     use nalgebra::Vector3;
 

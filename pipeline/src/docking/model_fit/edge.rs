@@ -1,0 +1,123 @@
+//! A straight edge of a feature in the image, blurred.
+
+use super::gaussian::Gaussian;
+use crate::docking::geometry::Seen;
+
+/// Variance of the lens and of the video along columns and rows, px²: the pixel's own box is not in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Blur {
+    pub(super) x: f64,
+    pub(super) y: f64,
+}
+
+/// Variance of a pixel's box along a side, px².
+pub(super) const BOX_VARIANCE: f64 = 1.0 / 12.0;
+
+/// Pose, blur x and y, brightness of the side faces towards +y1, −y1, +y2, −y2.
+pub(super) const GLOBALS: usize = 12;
+/// The first globals are the pose.
+pub(super) const POSE: usize = 6;
+/// After it the variance along columns, then along rows.
+pub(super) const BLUR: usize = 6;
+/// After these the side faces.
+pub(super) const SIDES: usize = 8;
+
+/// Derivatives with respect to the globals.
+pub(super) type ByGlobals = [f64; GLOBALS];
+
+/// A straight line through the images of two points, its inside, and how it is blurred.
+///
+/// Blurring by a Gaussian of variances (x, y) and a pixel's box turns the step across the line into F(z), z the distance over
+/// σ, σ² = n_x² (x + 1/12) + n_y² (y + 1/12). F is Φ with the next term of its Edgeworth series, for the box, whose fourth
+/// cumulant along the normal is −(n_x⁴ + n_y⁴)/120.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Edge {
+    normal: (f64, f64),
+    offset: f64,
+    along: (f64, f64),
+    along_offset: f64,
+    /// Derivative of the distance with respect to the pose, where the line passes the first and the second point.
+    by_pose: [[f64; POSE]; 2],
+    per_sigma: f64,
+    /// dz/d(variance) over z.
+    by_blur: (f64, f64),
+    kurtosis: f64,
+}
+
+/// The blurred step at a pixel.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Step {
+    z: f64,
+    /// F: 0 far outside, 1 far inside.
+    pub(super) inside: f64,
+    /// φ(z).
+    pub(super) density: f64,
+}
+
+impl Edge {
+    /// The line through a and b; `inside` is any point on its inner side.
+    pub(super) fn through(a: &Seen, b: &Seen, inside: (f64, f64), blur: Blur) -> Self {
+        let (du, dv) = (b.u - a.u, b.v - a.v);
+        let length2 = (du * du + dv * dv).max(f64::MIN_POSITIVE);
+        let length = length2.sqrt();
+        let (mut nx, mut ny) = (-dv / length, du / length);
+        if nx * (inside.0 - a.u) + ny * (inside.1 - a.v) < 0.0 {
+            (nx, ny) = (-nx, -ny);
+        }
+        let mut by_pose = [[0.0; POSE]; 2];
+        for (slopes, point) in by_pose.iter_mut().zip([a, b]) {
+            for (i, slope) in slopes.iter_mut().enumerate() {
+                *slope = -nx * point.by_pose[(0, i)] - ny * point.by_pose[(1, i)];
+            }
+        }
+        let variance = nx * nx * (blur.x + BOX_VARIANCE) + ny * ny * (blur.y + BOX_VARIANCE);
+        Self {
+            normal: (nx, ny),
+            offset: -nx * a.u - ny * a.v,
+            along: (du / length2, dv / length2),
+            along_offset: -(du * a.u + dv * a.v) / length2,
+            by_pose,
+            per_sigma: 1.0 / variance.sqrt(),
+            by_blur: (-0.5 * nx * nx / variance, -0.5 * ny * ny / variance),
+            kurtosis: (nx * nx * nx * nx + ny * ny * ny * ny) / (2880.0 * variance * variance),
+        }
+    }
+
+    /// The step at an ideal image point.
+    pub(super) fn step(&self, gaussian: &Gaussian, u: f64, v: f64) -> Step {
+        let z = (self.normal.0 * u + self.normal.1 * v + self.offset) * self.per_sigma;
+        let (below, density) = gaussian.at(z);
+        Step { z, inside: below + self.kurtosis * z * (z * z - 3.0) * density, density }
+    }
+
+    /// Adds `weight` × the derivative of the step.
+    pub(super) fn add_derivative(&self, step: &Step, u: f64, v: f64, weight: f64, sum: &mut ByGlobals) {
+        let slope = weight * step.density;
+        if slope == 0.0 {
+            return;
+        }
+        let tau = self.along.0 * u + self.along.1 * v + self.along_offset;
+        let (a, b) = (slope * self.per_sigma * (1.0 - tau), slope * self.per_sigma * tau);
+        for (sum, (by_a, by_b)) in sum.iter_mut().zip(self.by_pose[0].iter().zip(&self.by_pose[1])) {
+            *sum += a * by_a + b * by_b;
+        }
+        sum[BLUR] += slope * step.z * self.by_blur.0;
+        sum[BLUR + 1] += slope * step.z * self.by_blur.1;
+    }
+
+    /// Correlation of two edges' blurs: n·Σ·m/(σ_n σ_m), with normals inwards.
+    pub(super) fn correlation(&self, other: &Self, blur: Blur) -> f64 {
+        (self.normal.0 * other.normal.0 * (blur.x + BOX_VARIANCE)
+            + self.normal.1 * other.normal.1 * (blur.y + BOX_VARIANCE))
+            * self.per_sigma
+            * other.per_sigma
+    }
+
+    /// How far a change of the pose moves the line at its two points, px, the larger.
+    pub(super) fn shift(&self, by: &ByGlobals) -> f64 {
+        self.by_pose
+            .iter()
+            .map(|slopes| slopes.iter().zip(by).map(|(slope, d)| slope * d).sum::<f64>().abs())
+            .fold(0.0, f64::max)
+    }
+}

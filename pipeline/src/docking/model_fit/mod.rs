@@ -1,0 +1,290 @@
+//! The pipeline's best estimator: the pose that makes the known features look as they do, by maximum likelihood on the pixels.
+//!
+//! Expected DN of a pixel = plate + what lies beyond the rim × its share + feature × blurred coverage at the pose. Known are
+//! the marks (y3 = 0), the cross's front face (y3 = b) and its side faces; pose, blur and brightness of the side faces are
+//! common to the field, the levels belong to patches (a mark, a piece of an arm), so that a shadow or a slope of brightness
+//! biases nothing. A pixel or a patch that does not look like the model is rejected and told.
+
+mod coverage;
+mod edge;
+mod gaussian;
+mod samples;
+mod solve;
+
+#[cfg(test)]
+mod tests;
+
+use contract::PixelPoint;
+use contract::docking::{Field, Mark, MarkUse, NoPose, Pose, PoseEstimate, TargetModel};
+use nalgebra::{Matrix6, Vector3};
+
+use self::edge::{BLUR, Blur, GLOBALS, POSE, SIDES};
+use self::gaussian::Gaussian;
+use self::samples::{Feature, Samples};
+use self::solve::{Evaluation, Globals, Scene, Search, predicted, solve};
+use crate::CameraModel;
+use crate::docking::geometry::{View, project, to_pose, to_vector};
+use crate::docking::portions::inverse;
+
+/// Variance of the blur that the first field is begun with, px².
+const FIRST_BLUR_PX2: f64 = 0.5;
+
+/// The first guess may be this far off, px: pixels are looked at so much farther from the edges.
+const SLACK_PX: f64 = 1.5;
+
+/// Coarse stages: variances added to the blur, px². The last has none left.
+const EXTRA_BLUR_PX2: [f64; 3] = [2.5, 0.6, 0.0];
+
+/// Pixels are thinned to about this many in the coarse stages.
+const COARSE_SAMPLES: usize = 1500;
+
+/// A residual beyond this many σ is not noise.
+const PIXEL_GATE: f64 = 4.5;
+
+/// A patch is rejected when its variance is above the others' by this many standard deviations of a variance …
+const PATCH_GATE: f64 = 5.0;
+
+/// … or when more than this part of its pixels is.
+const MOST_REJECTED: f64 = 0.25;
+
+/// Error of the model that is no reason for a rejection, as a part of the feature's level.
+const MODEL_ERROR: f64 = 0.005;
+
+/// A mark fainter than this part of the median mark is not seen.
+const FAINTEST_MARK: f64 = 0.15;
+
+/// Rounds of rejection.
+const ROUNDS: usize = 3;
+
+/// Largest σ of range and of lateral position, as parts of the range, and of an angle, rad: beyond these the features in the
+/// field do not determine a pose.
+const LARGEST_SIGMA: (f64, f64, f64) = (0.05, 0.15, 0.15);
+
+/// A fitted field.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fitted {
+    /// The pose and its covariance: the inverse information of the pixels that were used, levels, blur and side faces left
+    /// free, times the variance of their residuals.
+    pub estimate: PoseEstimate,
+    /// What became of every mark, with its centre as the pose predicts it.
+    pub marks: Vec<Mark>,
+    /// Image of the cross's centre (the front face's), as the pose predicts it.
+    pub cross_centre: PixelPoint,
+    /// Image of the disk's centre, as the pose predicts it: perspective corrected, not the centre of an ellipse.
+    pub circle_centre: PixelPoint,
+    /// Blur of lens and video along columns and rows, standard deviations without the pixel's own box, px.
+    pub blur_px: [f64; 2],
+    /// Standard deviation of the residuals, DN.
+    pub noise_dn: f64,
+    /// Pixels that were used.
+    pub pixels: u32,
+}
+
+/// Fits fields of one camera after the other; owns its buffers and begins with the blur of the last field.
+#[derive(Debug)]
+pub struct ModelFit {
+    gaussian: Gaussian,
+    samples: Samples,
+    variances: Vec<f64>,
+    blur: Blur,
+}
+
+impl Default for ModelFit {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ModelFit {
+    /// No field seen yet.
+    pub fn new() -> Self {
+        Self {
+            gaussian: Gaussian::new(),
+            samples: Samples::default(),
+            variances: Vec::new(),
+            blur: Blur { x: FIRST_BLUR_PX2, y: FIRST_BLUR_PX2 },
+        }
+    }
+
+    /// The pose of a field from a first guess that is off by 2 px in the image at most.
+    ///
+    /// # Errors
+    /// [`NoPose::OutOfField`] when most marks are outside the image and the rest does not determine a pose,
+    /// [`NoPose::TooFewFeatures`] when too little is seen, [`NoPose::Inconsistent`] when what is seen is not the target.
+    pub fn fit(
+        &mut self,
+        field: &Field,
+        camera: &CameraModel,
+        target: &TargetModel,
+        initial: &Pose,
+    ) -> Result<Fitted, NoPose> {
+        let pose = to_vector(initial);
+        if !(pose.iter().all(|v| v.is_finite()) && initial.position_m.z > target.cross.height_m) {
+            return Err(NoPose::Inconsistent);
+        }
+        let mut globals = Globals::zeros();
+        globals.fixed_rows_mut::<POSE>(0).copy_from(&pose);
+        globals[BLUR] = self.blur.x;
+        globals[BLUR + 1] = self.blur.y;
+        globals.fixed_rows_mut::<{ GLOBALS - SIDES }>(SIDES).fill(0.5);
+
+        let scene = Scene { camera, target, gaussian: &self.gaussian };
+        let samples = &mut self.samples;
+        let wide = Blur { x: self.blur.x + 0.5, y: self.blur.y + 0.5 };
+        collect(samples, field, &scene, &globals, wide, SLACK_PX)?;
+        let stride = samples.pixels.len().div_ceil(COARSE_SAMPLES).min(4);
+        let mut noise = 4.0;
+        for extra_blur_px2 in EXTRA_BLUR_PX2 {
+            let search = Search { extra_blur_px2, free: POSE, stride, steps: 6, decrement: 1e-2 };
+            noise = solve(&scene, samples, &mut globals, &search, noise)
+                .ok_or(NoPose::TooFewFeatures)?
+                .variance();
+        }
+
+        let blur = Blur { x: globals[BLUR], y: globals[BLUR + 1] };
+        collect(samples, field, &scene, &globals, blur, 0.0)?;
+        let search = Search { extra_blur_px2: 0.0, free: GLOBALS, stride: 1, steps: 12, decrement: 1e-4 };
+        let mut evaluation =
+            solve(&scene, samples, &mut globals, &search, noise).ok_or(NoPose::TooFewFeatures)?;
+        for _ in 0..ROUNDS {
+            let is_changed = reject(samples, &mut self.variances)?;
+            if !is_changed {
+                break;
+            }
+            evaluation = solve(&scene, samples, &mut globals, &search, evaluation.variance())
+                .ok_or(NoPose::TooFewFeatures)?;
+        }
+        let fitted = judge(samples, &scene, &globals, &evaluation)?;
+        self.blur = Blur { x: globals[BLUR], y: globals[BLUR + 1] };
+        Ok(fitted)
+    }
+}
+
+fn collect(
+    samples: &mut Samples,
+    field: &Field,
+    scene: &Scene,
+    globals: &Globals,
+    blur: Blur,
+    slack_px: f64,
+) -> Result<(), NoPose> {
+    let view = View::new(scene.camera, &to_pose(globals));
+    samples
+        .collect(field, scene.camera, scene.target, scene.gaussian, &view, blur, slack_px)
+        .ok_or(NoPose::Inconsistent)?;
+    if samples.patches.is_empty() { Err(too_few(samples)) } else { Ok(()) }
+}
+
+/// Rejects pixels, then patches, by the residuals of the last evaluation; whether anything changed.
+fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPose> {
+    let freedom = |used: usize| (used as f64 - samples::LOCALS as f64 - 1.0).max(1.0);
+    variances.clear();
+    variances.extend(samples.patches.iter().map(|patch| patch.squares / freedom(patch.used_samples)));
+    let typical = median(variances).ok_or(NoPose::TooFewFeatures)?;
+    let Samples { pixels, patches, .. } = samples;
+    let mark_levels: &mut Vec<f64> = variances;
+    mark_levels.clear();
+    mark_levels.extend(
+        patches.iter().filter(|p| p.feature != Feature::Cross).map(|p| p.levels[samples::LOCALS - 1]),
+    );
+    let usual_mark = median(mark_levels).unwrap_or(0.0);
+
+    let mut is_changed = false;
+    for patch in patches.iter_mut() {
+        let level = patch.levels[samples::LOCALS - 1];
+        let tolerated = typical + MODEL_ERROR * MODEL_ERROR * level * level;
+        let gate = PIXEL_GATE * PIXEL_GATE * tolerated;
+        let (mut squares, mut used) = (0.0, 0);
+        let all = patch.end - patch.first;
+        for pixel in &mut pixels[patch.first..patch.end] {
+            let residual = pixel.dn - predicted(patch, pixel.u, pixel.v, pixel.beyond_rim, pixel.coverage);
+            let square = residual * residual;
+            let is_used = square <= gate;
+            is_changed |= is_used != pixel.is_used;
+            pixel.is_used = is_used;
+            if is_used {
+                squares += square;
+                used += 1;
+            }
+        }
+        let variance = squares / freedom(used);
+        let is_like_the_others = variance <= tolerated * (1.0 + PATCH_GATE * (2.0 / all as f64).sqrt())
+            && used as f64 >= (1.0 - MOST_REJECTED) * all as f64;
+        let is_seen = match patch.feature {
+            Feature::Mark(_) => level > FAINTEST_MARK * usual_mark && level > 0.0,
+            Feature::Cross => level > 0.0,
+        };
+        let is_used = is_like_the_others && is_seen;
+        is_changed |= is_used != patch.is_used;
+        patch.is_used = is_used;
+    }
+    Ok(is_changed)
+}
+
+/// The answer, if what was used determines a pose and enough of what is seen looks like the target.
+fn judge(
+    samples: &Samples,
+    scene: &Scene,
+    globals: &Globals,
+    evaluation: &Evaluation,
+) -> Result<Fitted, NoPose> {
+    let used = samples.patches.iter().filter(|patch| patch.is_used);
+    let used_pixels: usize = used.clone().map(|patch| patch.used_samples).sum();
+    if 2 * used.count() < samples.patches.len() {
+        return Err(NoPose::Inconsistent);
+    }
+    let variance = evaluation.variance();
+    let covariance = inverse(&evaluation.information).ok_or_else(|| too_few(samples))? * variance;
+    let covariance: Matrix6<f64> = covariance.fixed_view::<POSE, POSE>(0, 0).into();
+    let pose = to_pose(globals);
+    let range = pose.position_m.norm();
+    let sigma = covariance.diagonal().map(f64::sqrt);
+    let is_determined = sigma[2] <= LARGEST_SIGMA.0 * range
+        && sigma[0].max(sigma[1]) <= LARGEST_SIGMA.1 * range
+        && sigma[3].max(sigma[4]).max(sigma[5]) <= LARGEST_SIGMA.2;
+    if !is_determined {
+        return Err(too_few(samples));
+    }
+    let see = |point: Vector3<f64>| project(scene.camera, &pose, &point).ok_or(NoPose::Inconsistent);
+    Ok(Fitted {
+        estimate: PoseEstimate { pose, covariance },
+        marks: marks(samples, scene, &pose),
+        cross_centre: see(Vector3::new(0.0, 0.0, scene.target.cross.height_m))?,
+        circle_centre: see(Vector3::zeros())?,
+        blur_px: [globals[BLUR].sqrt(), globals[BLUR + 1].sqrt()],
+        noise_dn: variance.sqrt(),
+        pixels: used_pixels as u32,
+    })
+}
+
+fn marks(samples: &Samples, scene: &Scene, pose: &Pose) -> Vec<Mark> {
+    let rejected = |index: usize| {
+        samples.patches.iter().any(|patch| patch.feature == Feature::Mark(index) && !patch.is_used)
+    };
+    scene
+        .target
+        .marks
+        .iter()
+        .zip(&samples.marks)
+        .enumerate()
+        .filter_map(|(index, (corners, usage))| {
+            let middle = |i: usize| 0.25 * corners.iter().map(|corner| corner[i]).sum::<f64>();
+            Some(Mark {
+                index: index as u32,
+                position: project(scene.camera, pose, &Vector3::new(middle(0), middle(1), 0.0))?,
+                usage: if rejected(index) { MarkUse::Rejected } else { *usage },
+            })
+        })
+        .collect()
+}
+
+fn too_few(samples: &Samples) -> NoPose {
+    let outside = samples.marks.iter().filter(|usage| **usage == MarkUse::OutOfField).count();
+    if 2 * outside > samples.marks.len() { NoPose::OutOfField } else { NoPose::TooFewFeatures }
+}
+
+/// The middle value (the lower of two), sorting in place.
+fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len().saturating_sub(1) / 2).copied()
+}

@@ -1,0 +1,388 @@
+//! Which pixels are looked at: bands along the edges of marks and cross, away from what is not in the model.
+
+use contract::PixelPoint;
+use contract::docking::{Field, MarkUse, TargetModel};
+use nalgebra::Vector3;
+
+use super::edge::{BOX_VARIANCE, Blur};
+use super::gaussian::Gaussian;
+use crate::CameraModel;
+use crate::docking::geometry::View;
+
+/// A pixel that is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    /// Ideal image coordinates, px.
+    pub(super) u: f64,
+    pub(super) v: f64,
+    pub(super) dn: f64,
+    /// Blurred share of what lies beyond the plate's rim.
+    pub(super) beyond_rim: f64,
+    /// Coverage at the last evaluation.
+    pub(super) coverage: f64,
+    pub(super) is_used: bool,
+}
+
+/// What a patch shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Feature {
+    Mark(usize),
+    Cross,
+}
+
+/// Levels of a patch: plate (constant and slope), what lies beyond the rim, feature over plate.
+pub(super) const LOCALS: usize = 5;
+
+/// A mark, or a piece of an arm of the cross, with levels of its own: a shadow on one does not change the others.
+#[derive(Debug, Clone)]
+pub(super) struct Patch {
+    pub(super) feature: Feature,
+    pub(super) first: usize,
+    pub(super) end: usize,
+    pub(super) centre: (f64, f64),
+    pub(super) levels: [f64; LOCALS],
+    pub(super) squares: f64,
+    pub(super) used_samples: usize,
+    pub(super) is_used: bool,
+}
+
+/// Pixels below which a patch says nothing beyond its own levels.
+const LEAST_SAMPLES: usize = 10;
+
+/// Pixels looked at in a field at most, roughly; more are thinned evenly.
+const MOST_SAMPLES: f64 = 16_000.0;
+
+/// Arms shorter than this share one patch; longer ones are cut into pieces of about twice this, px.
+const SHORT_ARM_PX: f64 = 15.0;
+
+/// A pixel may lie this far beyond the plate's rim, px: what shines there is a nuisance that few pixels suffice for.
+const BEYOND_RIM_PX: f64 = 0.8;
+
+/// Collects samples; owns its buffers.
+#[derive(Debug, Default)]
+pub(super) struct Samples {
+    pub(super) pixels: Vec<Sample>,
+    pub(super) patches: Vec<Patch>,
+    pub(super) marks: Vec<MarkUse>,
+    /// The number of the collection that took a pixel last.
+    taken: Vec<u32>,
+    collection: u32,
+}
+
+/// Where and how one collection looks.
+struct Search<'a> {
+    field: &'a Field,
+    camera: &'a CameraModel,
+    target: &'a TargetModel,
+    view: &'a View,
+    gaussian: &'a Gaussian,
+    reach_px: f64,
+    blur_px: f64,
+    /// px/m on the plate and on the cross.
+    plate_scale: f64,
+    cross_scale: f64,
+    /// How far the side faces reach beyond the front face, px.
+    side_px: f64,
+    /// The post between plate and cross, where it comes out from behind the cross: two image points and half its width.
+    post: Option<[(f64, f64); 2]>,
+    thin: usize,
+    /// Marks so near the cross in the image that each must keep off the other.
+    crowded: Vec<usize>,
+}
+
+impl Samples {
+    /// Collects the pixels within `slack_px` + the blur's reach of an edge, as seen from a pose. `None` when the features are
+    /// not in front of the camera.
+    #[allow(clippy::too_many_arguments, reason = "the scene, and how closely to look at it")]
+    pub(super) fn collect(
+        &mut self,
+        field: &Field,
+        camera: &CameraModel,
+        target: &TargetModel,
+        gaussian: &Gaussian,
+        view: &View,
+        blur: Blur,
+        slack_px: f64,
+    ) -> Option<()> {
+        let image = field.image();
+        self.taken.resize(image.columns() * image.rows(), 0);
+        self.collection = self.collection.wrapping_add(1);
+        if self.collection == 0 {
+            self.taken.fill(0);
+            self.collection = 1;
+        }
+        self.pixels.clear();
+        self.patches.clear();
+        self.marks.clear();
+        let search = Search::new(field, camera, target, view, gaussian, blur, slack_px)?;
+        for index in 0..target.marks.len() {
+            let usage = self.collect_mark(&search, index);
+            self.marks.push(usage);
+        }
+        self.collect_cross(&search);
+        Some(())
+    }
+
+    fn collect_mark(&mut self, search: &Search, index: usize) -> MarkUse {
+        let corners = search.target.marks[index].map(|[y1, y2]| search.pixel(y1, y2, 0.0));
+        let [Some(a), Some(b), Some(c), Some(d)] = corners else { return MarkUse::OutOfField };
+        if ![a, b, c, d].iter().all(|corner| search.camera.is_on_detector(*corner)) {
+            return MarkUse::OutOfField;
+        }
+        let is_crowded = search.crowded.contains(&index);
+        let first = self.pixels.len();
+        for (from, to) in [(a, b), (b, c), (c, d), (d, a)] {
+            self.collect_band(search, from, to, search.reach_px, |u, v| {
+                let (beyond_rim, _) = search.beyond_rim(u, v)?;
+                (!(is_crowded && search.is_near_cross(u, v))).then_some(beyond_rim)
+            });
+        }
+        if self.close_patch(Feature::Mark(index), first) { MarkUse::Used } else { MarkUse::Missing }
+    }
+
+    fn collect_cross(&mut self, search: &Search) {
+        let cross = &search.target.cross;
+        let (half, length) = (0.5 * cross.width_m, cross.half_length_m);
+        let arm_px = (length - half) * search.cross_scale;
+        let is_whole = arm_px < SHORT_ARM_PX;
+        let pieces = ((arm_px / (2.0 * SHORT_ARM_PX)) as usize).clamp(1, 6);
+        let mut first = self.pixels.len();
+        for (c, s) in [(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)] {
+            // Along and across the arm.
+            let pixel = |along: f64, across: f64| {
+                search.pixel(c * along - s * across, s * along + c * across, cross.height_m)
+            };
+            for piece in 0..pieces {
+                let at = |k: usize| half + (length - half) * k as f64 / pieces as f64;
+                let (near, far) = (at(piece), at(piece + 1));
+                let mut lines = [
+                    Some((pixel(near, -half), pixel(far, -half))),
+                    Some((pixel(near, half), pixel(far, half))),
+                    None,
+                ];
+                if piece + 1 == pieces {
+                    lines[2] = Some((pixel(far, -half), pixel(far, half)));
+                }
+                for (from, to) in lines.into_iter().flatten() {
+                    let (Some(from), Some(to)) = (from, to) else { continue };
+                    self.collect_band(search, from, to, search.reach_px + search.side_px, |u, v| {
+                        let (beyond_rim, inside_px) = search.beyond_rim(u, v)?;
+                        let is_clear = inside_px > search.reach_px
+                            && !search.is_near_mark(u, v)
+                            && !search.is_near_post(u, v);
+                        is_clear.then_some(beyond_rim)
+                    });
+                }
+                if !is_whole {
+                    self.close_patch(Feature::Cross, first);
+                    first = self.pixels.len();
+                }
+            }
+        }
+        if is_whole {
+            self.close_patch(Feature::Cross, first);
+        }
+    }
+
+    /// Makes a patch of the pixels from `first` on, or drops them when they are too few.
+    fn close_patch(&mut self, feature: Feature, first: usize) -> bool {
+        let pixels = &self.pixels[first..];
+        if pixels.len() < LEAST_SAMPLES {
+            self.pixels.truncate(first);
+            return false;
+        }
+        let n = pixels.len() as f64;
+        let centre =
+            (pixels.iter().map(|p| p.u).sum::<f64>() / n, pixels.iter().map(|p| p.v).sum::<f64>() / n);
+        self.patches.push(Patch {
+            feature,
+            first,
+            end: self.pixels.len(),
+            centre,
+            levels: [0.0; LOCALS],
+            squares: 0.0,
+            used_samples: 0,
+            is_used: true,
+        });
+        true
+    }
+
+    /// Takes the free pixels within `reach_px` of a segment that `admit` lets in, with their share beyond the rim.
+    fn collect_band(
+        &mut self,
+        search: &Search,
+        from: PixelPoint,
+        to: PixelPoint,
+        reach_px: f64,
+        admit: impl Fn(f64, f64) -> Option<f64>,
+    ) {
+        let (image, lines) = (search.field.image(), search.field.lines());
+        let (dx, dy) = (to.x - from.x, to.y - from.y);
+        let length = libm::hypot(dx, dy).max(f64::MIN_POSITIVE);
+        let (tx, ty) = (dx / length, dy / length);
+        let step = lines.step() as f64;
+        let first_row = lines.camera_row(0) as f64;
+        let (top, bottom) = (from.y.min(to.y) - reach_px, from.y.max(to.y) + reach_px);
+        let begin = ((top - first_row) / step).ceil().max(0.0);
+        let end = ((bottom - first_row) / step).floor().min(image.rows() as f64 - 1.0);
+        if !(begin <= end) {
+            return;
+        }
+        for row in begin as usize..=end as usize {
+            let camera_row = lines.camera_row(row) as f64;
+            let y = camera_row - from.y;
+            // |across| ≤ reach and −reach ≤ along ≤ length + reach, both linear in x.
+            let mut span = (0.0, image.columns() as f64 - 1.0);
+            narrow(&mut span, -ty, -ty * -from.x + tx * y, -reach_px, reach_px);
+            narrow(&mut span, tx, -tx * from.x + ty * y, -reach_px, length + reach_px);
+            if !(span.0 <= span.1) {
+                continue;
+            }
+            for x in span.0.ceil() as usize..=span.1.floor() as usize {
+                if !(x + row).is_multiple_of(search.thin) {
+                    continue;
+                }
+                let taken = &mut self.taken[row * image.columns() + x];
+                if *taken == self.collection {
+                    continue;
+                }
+                let dn = image.at(x, row);
+                if dn >= image.full_scale_dn() {
+                    continue;
+                }
+                let Some((u, v)) = search.camera.to_ideal(PixelPoint::new(x as f64, camera_row)) else {
+                    continue;
+                };
+                let Some(beyond_rim) = admit(u, v) else { continue };
+                *taken = self.collection;
+                let dn = f64::from(dn);
+                self.pixels.push(Sample { u, v, dn, beyond_rim, coverage: 0.0, is_used: true });
+            }
+        }
+    }
+}
+
+/// Narrows an interval of x to where low ≤ slope x + offset ≤ high.
+fn narrow(span: &mut (f64, f64), slope: f64, offset: f64, low: f64, high: f64) {
+    if slope.abs() < 1e-9 {
+        if !(low..=high).contains(&offset) {
+            *span = (1.0, 0.0);
+        }
+        return;
+    }
+    let (a, b) = ((low - offset) / slope, (high - offset) / slope);
+    *span = (span.0.max(a.min(b)), span.1.min(a.max(b)));
+}
+
+impl<'a> Search<'a> {
+    fn new(
+        field: &'a Field,
+        camera: &'a CameraModel,
+        target: &'a TargetModel,
+        view: &'a View,
+        gaussian: &'a Gaussian,
+        blur: Blur,
+        slack_px: f64,
+    ) -> Option<Self> {
+        let cross = &target.cross;
+        let at = |y1: f64, y2: f64, y3: f64| view.see(&Vector3::new(y1, y2, y3)).map(|seen| (seen.u, seen.v));
+        let scale = |radius: f64, height: f64| -> Option<f64> {
+            let (a, b) = (at(-radius, 0.0, height)?, at(radius, 0.0, height)?);
+            Some(libm::hypot(a.0 - b.0, a.1 - b.1) / (2.0 * radius))
+        };
+        let (plate_scale, cross_scale) =
+            (scale(target.plate_radius_m, 0.0)?, scale(cross.half_length_m, cross.height_m)?);
+        let back_m = cross.height_m - cross.thickness_m;
+        let mut side_px = 0.0f64;
+        let (half, length) = (0.5 * cross.width_m, cross.half_length_m);
+        for (y1, y2) in [(-length, half), (length, half), (half, -length), (half, length)] {
+            let (front, back) = (at(y1, y2, cross.height_m)?, at(y1, y2, back_m)?);
+            side_px = side_px.max(libm::hypot(front.0 - back.0, front.1 - back.1));
+        }
+        let reach_px = super::coverage::reach_px(blur) + slack_px;
+        let post = [at(0.0, 0.0, 0.0)?, at(0.0, 0.0, back_m)?];
+        let post_px = libm::hypot(post[0].0 - post[1].0, post[0].1 - post[1].1);
+        // Length of all edges, times the width of the bands, over the rows that a field leaves out.
+        let mark_px: f64 = target
+            .marks
+            .iter()
+            .map(|[a, _, c, _]| 2.8 * libm::hypot(a[0] - c[0], a[1] - c[1]) * plate_scale)
+            .sum();
+        let edges_px = mark_px + 8.0 * length * cross_scale;
+        let thin =
+            (edges_px * 2.0 * (reach_px + side_px) / field.lines().step() as f64 / MOST_SAMPLES).ceil();
+        let mut search = Self {
+            field,
+            camera,
+            target,
+            view,
+            gaussian,
+            reach_px,
+            blur_px: (0.5 * (blur.x + blur.y) + BOX_VARIANCE).sqrt(),
+            plate_scale,
+            cross_scale,
+            side_px,
+            post: (post_px > half * cross_scale).then_some(post),
+            thin: (thin as usize).max(1),
+            crowded: Vec::new(),
+        };
+        search.crowded = (0..target.marks.len())
+            .filter(|index| {
+                target.marks[*index].iter().any(|[y1, y2]| {
+                    at(*y1, *y2, 0.0)
+                        .is_some_and(|(u, v)| search.from_cross_px(u, v) < 2.0 * reach_px + side_px)
+                })
+            })
+            .collect();
+        Some(search)
+    }
+
+    fn pixel(&self, y1: f64, y2: f64, y3: f64) -> Option<PixelPoint> {
+        self.camera.project_vector(&self.view.to_camera(&Vector3::new(y1, y2, y3)))
+    }
+
+    /// Blurred share of what lies beyond the plate's rim, and the distance inside the rim, px; `None` too far beyond it.
+    fn beyond_rim(&self, u: f64, v: f64) -> Option<(f64, f64)> {
+        let (y1, y2) = self.view.on_plane(u, v, 0.0)?;
+        let inside_px = (self.target.plate_radius_m - libm::hypot(y1, y2)) * self.plate_scale;
+        (inside_px > -BEYOND_RIM_PX).then(|| (self.gaussian.at(-inside_px / self.blur_px).0, inside_px))
+    }
+
+    /// Distance from the cross's front face, px, negative inside.
+    fn from_cross_px(&self, u: f64, v: f64) -> f64 {
+        let cross = &self.target.cross;
+        let Some((y1, y2)) = self.view.on_plane(u, v, cross.height_m) else { return f64::INFINITY };
+        let bar = |half_1: f64, half_2: f64| {
+            let (a, b) = (y1.abs() - half_1, y2.abs() - half_2);
+            if a > 0.0 && b > 0.0 { libm::hypot(a, b) } else { a.max(b) }
+        };
+        let (half, length) = (0.5 * cross.width_m, cross.half_length_m);
+        bar(half, length).min(bar(length, half)) * self.cross_scale
+    }
+
+    fn is_near_cross(&self, u: f64, v: f64) -> bool {
+        self.from_cross_px(u, v) < self.reach_px + self.side_px || self.is_near_post(u, v)
+    }
+
+    fn is_near_mark(&self, u: f64, v: f64) -> bool {
+        if self.crowded.is_empty() {
+            return false;
+        }
+        let Some((y1, y2)) = self.view.on_plane(u, v, 0.0) else { return true };
+        self.crowded.iter().any(|index| {
+            let [a, _, c, _] = self.target.marks[*index];
+            let centre = [0.5 * (a[0] + c[0]), 0.5 * (a[1] + c[1])];
+            let half_diagonal = 0.5 * libm::hypot(a[0] - c[0], a[1] - c[1]);
+            libm::hypot(y1 - centre[0], y2 - centre[1]) < half_diagonal + self.reach_px / self.plate_scale
+        })
+    }
+
+    /// Whether the post may be seen at a point: it is no wider than a bar.
+    fn is_near_post(&self, u: f64, v: f64) -> bool {
+        let Some([a, b]) = self.post else { return false };
+        let (du, dv) = (b.0 - a.0, b.1 - a.1);
+        let along = (((u - a.0) * du + (v - a.1) * dv) / (du * du + dv * dv)).clamp(0.0, 1.0);
+        let off = libm::hypot(u - a.0 - along * du, v - a.1 - along * dv);
+        off < 0.5 * self.target.cross.width_m * self.cross_scale + 0.6 * self.reach_px
+    }
+}

@@ -1,0 +1,280 @@
+//! Least squares with levels of its own for each patch: the levels are eliminated patch by patch.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::coverage::{Coverage, CrossImage, MarkImage};
+use super::edge::{BLUR, Blur, ByGlobals, GLOBALS, POSE, SIDES};
+use super::gaussian::Gaussian;
+use super::samples::{Feature, LOCALS, Patch, Samples};
+use crate::CameraModel;
+use crate::docking::geometry::{View, to_pose};
+use crate::docking::portions::inverse;
+use contract::docking::TargetModel;
+
+pub(super) type Globals = SVector<f64, GLOBALS>;
+pub(super) type GlobalMatrix = SMatrix<f64, GLOBALS, GLOBALS>;
+
+/// What is expected of blur and side faces before the image is seen: mean and standard deviation. Weak; it decides only
+/// where the image does not.
+const BLUR_PRIOR_PX2: (f64, f64) = (0.5, 1.0);
+const SIDE_PRIOR: (f64, f64) = (0.5, 0.5);
+
+/// Ranges of blur and side faces.
+const BLUR_RANGE_PX2: (f64, f64) = (0.02, 25.0);
+const SIDE_RANGE: (f64, f64) = (-0.5, 2.0);
+
+/// A step moves no edge farther than this, px.
+const LONGEST_STEP_PX: f64 = 1.5;
+
+/// Coordinates within a patch are counted in these, px: levels and slopes are then alike in size.
+const PATCH_UNIT_PX: f64 = 10.0;
+
+/// Columns of a row of the equations: DN, plate, two slopes, beyond the rim, coverage; then derivatives of the coverage.
+const ROW: usize = 1 + LOCALS + GLOBALS;
+const COVERAGE: usize = LOCALS;
+const FIRST_GLOBAL: usize = 1 + LOCALS;
+
+/// How a solution is looked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Search {
+    /// Added to the blur's variances: a blurred model finds its way from farther off.
+    pub(super) extra_blur_px2: f64,
+    /// The globals before this one are free.
+    pub(super) free: usize,
+    /// Every how many pixels is looked at.
+    pub(super) stride: usize,
+    pub(super) steps: usize,
+    /// Converged when a step promises less than this part of the noise's variance.
+    pub(super) decrement: f64,
+}
+
+/// The equations at some globals.
+#[derive(Debug, Clone)]
+pub(super) struct Evaluation {
+    pub(super) information: GlobalMatrix,
+    gradient: Globals,
+    objective: f64,
+    /// Sum of squares, and its degrees of freedom.
+    squares: f64,
+    freedom: f64,
+}
+
+impl Evaluation {
+    /// Variance of a pixel, DN².
+    pub(super) fn variance(&self) -> f64 {
+        (self.squares / self.freedom.max(1.0)).max(1e-9)
+    }
+}
+
+/// A target seen by a camera.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub(super) camera: &'a CameraModel,
+    pub(super) target: &'a TargetModel,
+    pub(super) gaussian: &'a Gaussian,
+}
+
+/// The features' images at some globals.
+struct Images {
+    marks: Vec<Option<MarkImage>>,
+    cross: CrossImage,
+}
+
+impl Images {
+    fn new(scene: &Scene, globals: &Globals, extra_blur_px2: f64) -> Option<Self> {
+        let pose = to_pose(globals);
+        let view = View::new(scene.camera, &pose);
+        let blur = Blur { x: globals[BLUR] + extra_blur_px2, y: globals[BLUR + 1] + extra_blur_px2 };
+        let sides = [0, 1, 2, 3].map(|k| globals[SIDES + k]);
+        Some(Self {
+            marks: scene.target.marks.iter().map(|corners| MarkImage::new(corners, &view, blur)).collect(),
+            cross: CrossImage::new(scene.target, &view, &pose.position_m, blur, sides)?,
+        })
+    }
+
+    fn shift(&self, by: &ByGlobals) -> f64 {
+        self.marks.iter().flatten().map(|mark| mark.shift(by)).fold(self.cross.shift(by), f64::max)
+    }
+}
+
+/// Looks for the least squares from `globals` on by Levenberg and Marquardt's method. `noise` is the variance of a pixel
+/// that the priors are weighed against. `None` when the features leave the front of the camera or nothing is determined.
+pub(super) fn solve(
+    scene: &Scene,
+    samples: &mut Samples,
+    globals: &mut Globals,
+    search: &Search,
+    noise: f64,
+) -> Option<Evaluation> {
+    let mut images = Images::new(scene, globals, search.extra_blur_px2)?;
+    let mut now = evaluate(scene, samples, &images, globals, search, noise)?;
+    let mut damping = 0.0;
+    for _ in 0..search.steps {
+        let mut damped = now.information;
+        for i in 0..GLOBALS {
+            damped[(i, i)] *= 1.0 + damping;
+        }
+        let mut step = inverse(&damped)? * now.gradient;
+        let promised = step.dot(&now.gradient);
+        let shift = images.shift(&step.into());
+        if !shift.is_finite() {
+            return None;
+        }
+        if shift > LONGEST_STEP_PX {
+            step *= LONGEST_STEP_PX / shift;
+        }
+        let trial = bounded(&(*globals + step));
+        let trial_images = Images::new(scene, &trial, search.extra_blur_px2)?;
+        let next = evaluate(scene, samples, &trial_images, &trial, search, noise)?;
+        let is_better = next.objective <= now.objective * (1.0 + 1e-9);
+        if is_better {
+            *globals = trial;
+            images = trial_images;
+            now = next;
+            damping *= 0.1;
+        } else {
+            damping = (damping * 10.0f64).max(1e-3);
+        }
+        let is_small = promised <= search.decrement * now.variance();
+        if is_small || damping > 1e6 {
+            if !is_better {
+                // The samples hold the rejected trial's coverages.
+                evaluate(scene, samples, &images, globals, search, noise)?;
+            }
+            break;
+        }
+    }
+    Some(now)
+}
+
+fn bounded(globals: &Globals) -> Globals {
+    let mut bounded = *globals;
+    for i in BLUR..SIDES {
+        bounded[i] = bounded[i].clamp(BLUR_RANGE_PX2.0, BLUR_RANGE_PX2.1);
+    }
+    for i in SIDES..GLOBALS {
+        bounded[i] = bounded[i].clamp(SIDE_RANGE.0, SIDE_RANGE.1);
+    }
+    bounded
+}
+
+/// The equations of all patches that are used; levels and squares of all patches are renewed.
+fn evaluate(
+    scene: &Scene,
+    samples: &mut Samples,
+    images: &Images,
+    globals: &Globals,
+    search: &Search,
+    noise: f64,
+) -> Option<Evaluation> {
+    let mut sum = Evaluation {
+        information: GlobalMatrix::zeros(),
+        gradient: Globals::zeros(),
+        objective: 0.0,
+        squares: 0.0,
+        freedom: -(POSE as f64),
+    };
+    let Samples { pixels, patches, .. } = samples;
+    for patch in patches.iter_mut() {
+        let origin = pixels[patch.first].dn;
+        let mut gram = [[0.0; ROW]; ROW];
+        patch.used_samples = 0;
+        for pixel in pixels[patch.first..patch.end].iter_mut().step_by(search.stride) {
+            let (u, v) = (pixel.u, pixel.v);
+            let coverage: Coverage = match patch.feature {
+                Feature::Mark(index) => images.marks[index].as_ref()?.at(scene.gaussian, u, v),
+                Feature::Cross => images.cross.at(scene.gaussian, u, v),
+            };
+            pixel.coverage = coverage.value;
+            if !pixel.is_used {
+                continue;
+            }
+            patch.used_samples += 1;
+            let [_, one, across, down, rim, covered] =
+                regressors(patch, pixel.u, pixel.v, pixel.beyond_rim, coverage.value);
+            let mut row = [0.0; ROW];
+            row[0] = pixel.dn - origin;
+            row[1..=LOCALS].copy_from_slice(&[one, across, down, rim, covered]);
+            row[FIRST_GLOBAL..].copy_from_slice(&coverage.by);
+            for (i, line) in gram.iter_mut().enumerate() {
+                let factor = row[i];
+                for (sum, other) in line[i..].iter_mut().zip(&row[i..]) {
+                    *sum += factor * other;
+                }
+            }
+        }
+        fold(patch, &gram, origin, &mut sum);
+    }
+    for i in 0..GLOBALS {
+        if i >= search.free {
+            // Not free: no step, and no coupling.
+            sum.information.row_mut(i).fill(0.0);
+            sum.information.column_mut(i).fill(0.0);
+            sum.information[(i, i)] = 1.0;
+            sum.gradient[i] = 0.0;
+        } else if i >= BLUR {
+            let (mean, sigma) = if i < SIDES { BLUR_PRIOR_PX2 } else { SIDE_PRIOR };
+            let weight = noise / (sigma * sigma);
+            let off = mean - globals[i];
+            sum.information[(i, i)] += weight;
+            sum.gradient[i] += weight * off;
+            sum.objective += weight * off * off;
+        }
+    }
+    Some(sum)
+}
+
+/// The regressors of a pixel's levels, after a place for its DN.
+fn regressors(patch: &Patch, u: f64, v: f64, beyond_rim: f64, coverage: f64) -> [f64; 1 + LOCALS] {
+    let (across, down) = ((u - patch.centre.0) / PATCH_UNIT_PX, (v - patch.centre.1) / PATCH_UNIT_PX);
+    [0.0, 1.0, across, down, beyond_rim, coverage]
+}
+
+/// What a pixel should be by the patch's levels and its last coverage, DN.
+pub(super) fn predicted(patch: &Patch, u: f64, v: f64, beyond_rim: f64, coverage: f64) -> f64 {
+    let row = regressors(patch, u, v, beyond_rim, coverage);
+    row[1..].iter().zip(&patch.levels).map(|(x, level)| x * level).sum()
+}
+
+/// Solves a patch's levels and adds what is left of its equations (their Schur complement) to the sum.
+///
+/// With L the regressors of the levels ℓ, A = Lᵀ L and D the derivatives of the coverage, the feature's level a being one of ℓ:
+/// information a² (DᵀD − DᵀL A⁻¹ LᵀD), gradient a Dᵀ(y − L ℓ).
+fn fold(patch: &mut Patch, gram: &[[f64; ROW]; ROW], origin: f64, sum: &mut Evaluation) {
+    let mut normal = SMatrix::<f64, LOCALS, LOCALS>::from_fn(|i, j| gram[1 + i.min(j)][1 + i.max(j)]);
+    for i in 0..LOCALS {
+        // A level that no pixel of the patch shows is zero; another is hardly touched.
+        normal[(i, i)] = if normal[(i, i)] > 1e-9 { normal[(i, i)] * (1.0 + 1e-9) } else { 1.0 };
+    }
+    let Some(normal) = inverse(&normal) else {
+        patch.is_used = false;
+        return;
+    };
+    let right = SVector::<f64, LOCALS>::from_fn(|i, _| gram[0][1 + i]);
+    let levels = normal * right;
+    patch.squares = (gram[0][0] - right.dot(&levels)).max(0.0);
+    patch.levels = levels.into();
+    patch.levels[0] += origin;
+    if !patch.is_used {
+        return;
+    }
+    let feature = levels[COVERAGE - 1];
+    let mixed = SMatrix::<f64, LOCALS, GLOBALS>::from_fn(|i, j| gram[1 + i][FIRST_GLOBAL + j]);
+    let eliminated = mixed.transpose() * normal * mixed;
+    for i in 0..GLOBALS {
+        for j in i..GLOBALS {
+            let term = feature * feature * (gram[FIRST_GLOBAL + i][FIRST_GLOBAL + j] - eliminated[(i, j)]);
+            sum.information[(i, j)] += term;
+            if i != j {
+                sum.information[(j, i)] += term;
+            }
+        }
+    }
+    let residual = mixed.transpose() * levels;
+    for i in 0..GLOBALS {
+        sum.gradient[i] += feature * (gram[0][FIRST_GLOBAL + i] - residual[i]);
+    }
+    sum.objective += patch.squares;
+    sum.squares += patch.squares;
+    sum.freedom += patch.used_samples as f64 - LOCALS as f64;
+}

@@ -1,0 +1,279 @@
+//! Images of the target by another route than the model's: polygons on 256 scan lines a pixel, exact along a line, on cells of a
+//! quarter of a pixel; then discrete Gaussians and a pixel's box over the cells; then noise and rounding.
+
+use contract::docking::{Field, Lines, Pose, StandOffCross, TargetModel};
+use contract::{Camera, Frame};
+use nalgebra::{Rotation3, Vector3};
+
+use crate::docking::portions::tests::normal;
+
+/// Cells a pixel, along either axis.
+const CELLS: usize = 4;
+/// Scan lines a cell. Exactly horizontal edges are off by 1/512 px at most.
+const LINES: usize = 64;
+/// Pixels around the plate that are drawn.
+const MARGIN: i64 = 8;
+
+/// What the target looks like.
+#[derive(Debug, Clone)]
+pub(super) struct Look {
+    pub(super) plate_dn: f64,
+    pub(super) beyond_dn: f64,
+    pub(super) mark_dn: f64,
+    pub(super) cross_dn: f64,
+    pub(super) side_dn: f64,
+    /// Standard deviations along columns and rows, px.
+    pub(super) blur_px: [f64; 2],
+    /// Of this mark only the half towards its first edge is lit.
+    pub(super) half_shadowed: Option<usize>,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            plate_dn: 40.0,
+            beyond_dn: 120.0,
+            mark_dn: 190.0,
+            cross_dn: 180.0,
+            side_dn: 90.0,
+            blur_px: [0.7, 0.7],
+            half_shadowed: None,
+        }
+    }
+}
+
+/// A square camera of 768 × 576 px.
+pub(super) fn camera(focal_px: f64, radial: [f64; 3]) -> Camera {
+    Camera {
+        columns: 768,
+        rows: 576,
+        focal_length_mm: focal_px * 0.01,
+        pixel_width_um: 10.0,
+        pixel_height_um: 10.0,
+        principal_x_px: 385.2,
+        principal_y_px: 286.1,
+        radial,
+        tangential: [0.0; 2],
+    }
+}
+
+/// Twelve marks on a ring, and a cross.
+pub(super) fn target() -> TargetModel {
+    let marks = (0..12)
+        .map(|k| {
+            let (s, c) = libm::sincos(f64::from(k) * std::f64::consts::TAU / 12.0);
+            [(0.23, -0.006), (0.27, -0.006), (0.27, 0.006), (0.23, 0.006)]
+                .map(|(x, y)| [c * x - s * y, s * x + c * y])
+        })
+        .collect();
+    let outline = contract::docking::Outline { centre_m: [0.0, -1.25], radius_m: 0.66, depth_m: 0.1 };
+    TargetModel {
+        name: "test".to_owned(),
+        plate_radius_m: 0.30,
+        mark_circle_radius_m: 0.25,
+        marks,
+        cross: StandOffCross { height_m: 0.30, half_length_m: 0.15, width_m: 0.030, thickness_m: 0.010 },
+        docking_unit: outline,
+        station: contract::docking::Outline { radius_m: 2.05, ..outline },
+    }
+}
+
+/// The expected DN of every pixel of the camera, row by row, without noise.
+pub(super) fn expected(camera: &Camera, target: &TargetModel, look: &Look, pose: &Pose) -> Vec<f64> {
+    let plate: Vec<[f64; 2]> = (0..720)
+        .map(|k| {
+            let (s, c) = libm::sincos(f64::from(k) * std::f64::consts::TAU / 720.0);
+            [target.plate_radius_m * c, target.plate_radius_m * s]
+        })
+        .collect();
+    let plate = image(camera, pose, &plate, 0.0);
+    let mut marks = Vec::new();
+    for (index, [a, b, c, d]) in target.marks.iter().enumerate() {
+        let middle = |p: &[f64; 2], q: &[f64; 2]| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
+        let quad = match look.half_shadowed {
+            Some(shadowed) if shadowed == index => [middle(a, b), middle(a, b), middle(c, d), middle(c, d)],
+            _ => [*a, *b, *c, *d],
+        };
+        let quad = if look.half_shadowed == Some(index) { [*a, quad[0], quad[2], *d] } else { quad };
+        marks.push(image(camera, pose, &quad, 0.0));
+    }
+    let cross = &target.cross;
+    let (h, l) = (0.5 * cross.width_m, cross.half_length_m);
+    let outline = [
+        [h, h],
+        [h, l],
+        [-h, l],
+        [-h, h],
+        [-l, h],
+        [-l, -h],
+        [-h, -h],
+        [-h, -l],
+        [h, -l],
+        [h, -h],
+        [l, -h],
+        [l, h],
+    ];
+    let front = image(camera, pose, &outline, cross.height_m);
+    let back = image(camera, pose, &outline, cross.height_m - cross.thickness_m);
+    // Every side face, seen or not: hidden ones lie under the front face.
+    let n = front.len() / outline.len();
+    let mut solid = vec![front.clone(), back.clone()];
+    for k in 0..outline.len() {
+        let piece = |ring: &[(f64, f64)]| -> Vec<(f64, f64)> {
+            (0..=n).map(|i| ring[(k * n + i) % ring.len()]).collect()
+        };
+        let mut face = piece(&front);
+        face.extend(piece(&back).into_iter().rev());
+        solid.push(face);
+    }
+
+    let all = plate.iter().chain(&front);
+    let low = |get: fn(&(f64, f64)) -> f64| {
+        all.clone().map(get).fold(f64::INFINITY, f64::min).floor() as i64 - MARGIN
+    };
+    let high = |get: fn(&(f64, f64)) -> f64| {
+        all.clone().map(get).fold(f64::NEG_INFINITY, f64::max).ceil() as i64 + MARGIN
+    };
+    let (x0, y0) = (low(|p| p.0).max(-MARGIN), low(|p| p.1).max(-MARGIN));
+    let x1 = high(|p| p.0).min(camera.columns as i64 + MARGIN);
+    let y1 = high(|p| p.1).min(camera.rows as i64 + MARGIN);
+    let (columns, rows) = ((x1 - x0) as usize, (y1 - y0) as usize);
+    let width = columns * CELLS;
+
+    // Each group is a union; groups add their step over what is below.
+    let groups = [
+        (vec![plate], look.plate_dn - look.beyond_dn),
+        (marks, look.mark_dn - look.plate_dn),
+        (solid, look.side_dn - look.plate_dn),
+        (vec![front], look.cross_dn - look.side_dn),
+    ];
+    let kernels = look.blur_px.map(kernel);
+    // The box lies on a pixel's own cells, the Gaussian reaches equally far before and after.
+    let half = |axis: usize| (kernels[axis].len() - CELLS) / 2;
+    let mut across = vec![0.0; columns * rows * CELLS];
+    let mut cells = vec![0.0; width + 1];
+    for cell_row in 0..rows * CELLS {
+        cells.fill(0.0);
+        for line in 0..LINES {
+            let y = y0 as f64 - 0.5 + (cell_row as f64 + (line as f64 + 0.5) / LINES as f64) / CELLS as f64;
+            for (polygons, level) in &groups {
+                for (from, to) in union(polygons, y) {
+                    let to_cells = |x: f64| ((x - x0 as f64 + 0.5) * CELLS as f64).clamp(0.0, width as f64);
+                    add_span(&mut cells, to_cells(from), to_cells(to), level / LINES as f64);
+                }
+            }
+        }
+        for column in 0..columns {
+            let first = (column * CELLS) as i64 - half(0) as i64;
+            across[cell_row * columns + column] = kernels[0]
+                .iter()
+                .enumerate()
+                .map(|(i, weight)| weight * cells[(first + i as i64).clamp(0, width as i64 - 1) as usize])
+                .sum();
+        }
+    }
+    let mut dn = vec![look.beyond_dn; camera.columns * camera.rows];
+    for row in 0..rows {
+        let y = y0 + row as i64;
+        for column in 0..columns {
+            let x = x0 + column as i64;
+            if !(0..camera.columns as i64).contains(&x) || !(0..camera.rows as i64).contains(&y) {
+                continue;
+            }
+            let first = (row * CELLS) as i64 - half(1) as i64;
+            dn[y as usize * camera.columns + x as usize] += kernels[1]
+                .iter()
+                .enumerate()
+                .map(|(i, weight)| {
+                    let cell = (first + i as i64).clamp(0, (rows * CELLS) as i64 - 1) as usize;
+                    weight * across[cell * columns + column]
+                })
+                .sum::<f64>();
+        }
+    }
+    dn
+}
+
+/// A field of such an image with noise of `noise_dn`, rounded to eight bits.
+pub(super) fn field(camera: &Camera, expected: &[f64], lines: Lines, noise_dn: f64, seed: u64) -> Field {
+    let rows = lines.rows(camera.rows);
+    let mut dn = Vec::with_capacity(rows * camera.columns);
+    for row in 0..rows {
+        for x in 0..camera.columns {
+            let place = lines.camera_row(row) * camera.columns + x;
+            let noise = noise_dn * normal(seed * 1_000_003 + place as u64);
+            dn.push((expected[place] + noise).round().clamp(0.0, 255.0) as u16);
+        }
+    }
+    Field::new(Frame::new(0, camera.columns, rows, 8, dn, None).unwrap(), lines, camera.rows).unwrap()
+}
+
+/// Projects a polygon; with a distorting camera each edge in 24 pieces.
+fn image(camera: &Camera, pose: &Pose, polygon: &[[f64; 2]], height_m: f64) -> Vec<(f64, f64)> {
+    let a = nalgebra::Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0))
+        * Rotation3::new(pose.phi_rad).matrix();
+    let (f, _) = camera.focal_length_px();
+    let pieces = if camera.radial == [0.0; 3] { 1 } else { 24 };
+    let mut points = Vec::new();
+    for (k, p) in polygon.iter().enumerate() {
+        let q = polygon[(k + 1) % polygon.len()];
+        for i in 0..pieces {
+            let s = f64::from(i) / f64::from(pieces);
+            let y = Vector3::new(p[0] + s * (q[0] - p[0]), p[1] + s * (q[1] - p[1]), height_m);
+            let x = a.transpose() * (y - pose.position_m);
+            let (u, v) = (f * x.x / x.z, f * x.y / x.z);
+            let scale = 1.0 + camera.radial[0] * (u * u + v * v);
+            points.push((camera.principal_x_px + u * scale, camera.principal_y_px + v * scale));
+        }
+    }
+    points
+}
+
+/// Where a horizontal line crosses a union of polygons (even-odd each): disjoint intervals.
+fn union(polygons: &[Vec<(f64, f64)>], y: f64) -> Vec<(f64, f64)> {
+    let mut intervals = Vec::new();
+    for polygon in polygons {
+        let mut crossings: Vec<f64> = polygon
+            .iter()
+            .zip(polygon.iter().cycle().skip(1))
+            .filter(|(p, q)| (p.1 <= y) != (q.1 <= y))
+            .map(|(p, q)| p.0 + (q.0 - p.0) * (y - p.1) / (q.1 - p.1))
+            .collect();
+        crossings.sort_by(f64::total_cmp);
+        intervals.extend(crossings.chunks_exact(2).map(|pair| (pair[0], pair[1])));
+    }
+    intervals.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut merged: Vec<(f64, f64)> = Vec::new();
+    for (from, to) in intervals {
+        match merged.last_mut() {
+            Some(last) if from <= last.1 => last.1 = last.1.max(to),
+            _ => merged.push((from, to)),
+        }
+    }
+    merged
+}
+
+fn add_span(cells: &mut [f64], from: f64, to: f64, level: f64) {
+    let (first, last) = (from as usize, to as usize);
+    if first == last {
+        cells[first] += level * (to - from);
+        return;
+    }
+    cells[first] += level * (first as f64 + 1.0 - from);
+    cells[first + 1..last].iter_mut().for_each(|cell| *cell += level);
+    cells[last] += level * (to - last as f64);
+}
+
+/// Gaussian, sampled at cells, then a pixel's box; of sum 1, begun half its length before a pixel's first cell.
+fn kernel(sigma_px: f64) -> Vec<f64> {
+    let sigma = sigma_px * CELLS as f64;
+    let reach = (6.0 * sigma).ceil() as i64;
+    let gaussian: Vec<f64> =
+        (-reach..=reach).map(|i| libm::exp(-0.5 * (i * i) as f64 / (sigma * sigma))).collect();
+    let total: f64 = gaussian.iter().sum::<f64>() * CELLS as f64;
+    let mut kernel = vec![0.0; gaussian.len() + CELLS - 1];
+    for (i, weight) in gaussian.iter().enumerate() {
+        kernel[i..i + CELLS].iter_mut().for_each(|k| *k += weight / total);
+    }
+    kernel
+}
