@@ -166,8 +166,7 @@ impl PreparedDocking {
         take: impl FnMut(FieldExposure) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let workspace = || Ok(self.simulator.workspace()?);
-        let make =
-            |workspace: &mut DockingWorkspace, field| Ok(self.simulator.expose(workspace, field)?);
+        let make = |workspace: &mut DockingWorkspace, field| Ok(self.simulator.expose(workspace, field)?);
         in_order(flight.fields.clone(), flight.jobs, workspace, make, take)
     }
 }
@@ -325,8 +324,7 @@ pub fn score_docking(
     let mut scorer = DockingScorer::new(context(&run_file, &setup));
     let truths = TableReader::<FieldTruth>::open(&directory.join("truth/fields.parquet"))?;
     let mut answers = read_field_measurements(measurements)?.into_iter().peekable();
-    let mut reports =
-        motion.map(read_motion).transpose()?.unwrap_or_default().into_iter().peekable();
+    let mut reports = motion.map(read_motion).transpose()?.unwrap_or_default().into_iter().peekable();
     let foreign = |path: &Path, field: u64| {
         Failure::Usage(format!(
             "{}: `field` is `{field}`, expected a field of {}",
@@ -341,8 +339,7 @@ pub fn score_docking(
     };
     for truth in truths {
         let (number, rows) = truth?;
-        let mut outcome =
-            answers.next_if(|(answered, _)| *answered == number).map(|(_, outcome)| outcome);
+        let mut outcome = answers.next_if(|(answered, _)| *answered == number).map(|(_, outcome)| outcome);
         if let Some((_, report)) = reports.next_if(|(reported, _)| *reported == number) {
             outcome = Some(match outcome {
                 Some(outcome) => DockingOutcome { motion: Some(report), ..outcome },

@@ -29,7 +29,13 @@ pub fn docking(score: &DockingScore, styled: bool) -> String {
     text.push('\n');
     text.push_str(&causes("Misses by cause", &rows, &MissCause::CODES, misses, styled));
     text.push('\n');
-    text.push_str(&causes("Wrong answers by error", &rows, &Gross::ALL.map(Gross::code), |row| row.wrong.clone(), styled));
+    text.push_str(&causes(
+        "Wrong answers by error",
+        &rows,
+        &Gross::ALL.map(Gross::code),
+        |row| row.wrong.clone(),
+        styled,
+    ));
     text
 }
 
@@ -88,7 +94,19 @@ fn rows(score: &DockingScore) -> Vec<Row<'_>> {
 
 fn fields(rows: &[Row<'_>], styled: bool) -> String {
     let header = [
-        "range, lens", "fields", "success", "clear", "wrong", "range", "p.", "across", "p.", "attitude", "p.", "3σ", "NEES",
+        "range, lens",
+        "fields",
+        "success",
+        "clear",
+        "wrong",
+        "range",
+        "p.",
+        "across",
+        "p.",
+        "attitude",
+        "p.",
+        "3σ",
+        "NEES",
     ];
     sheet(
         &header,
@@ -119,13 +137,13 @@ fn fields(rows: &[Row<'_>], styled: bool) -> String {
 
 /// The range from the outline of the station, marked as such.
 fn outline(row: &Row<'_>) -> String {
-    row.value(names::OUTLINE_RANGE_RMS_M).map_or("–".to_owned(), |value| format!("outline {}", length(value)))
+    row.value(names::OUTLINE_RANGE_RMS_M)
+        .map_or("–".to_owned(), |value| format!("outline {}", length(value)))
 }
 
 fn portions(rows: &[Row<'_>], styled: bool) -> String {
-    let header = [
-        "portions", "reports", "ρ", "p.", "u", "p.", "α", "p.", "β", "p.", "φ1", "φ2", "φ3", "3σ", "NEES",
-    ];
+    let header =
+        ["portions", "reports", "ρ", "p.", "u", "p.", "α", "p.", "β", "p.", "φ1", "φ2", "φ3", "3σ", "NEES"];
     let name = |name: &str| format!("{}{name}", names::MOTION);
     sheet(
         &header,
@@ -182,9 +200,8 @@ fn causes(
     let words: Vec<String> = occurring.iter().map(|code| code.replace('_', " ")).collect();
     let header: Vec<&str> = [title].into_iter().chain(words.iter().map(String::as_str)).collect();
     let lines = rows.iter().zip(&counts).filter(|(_, counts)| !counts.is_empty()).map(|(row, counts)| {
-        let cell = |code: &&str| {
-            counts.get(*code).map_or("–".to_owned(), |count| share(*count, row.frames))
-        };
+        let cell =
+            |code: &&str| counts.get(*code).map_or("–".to_owned(), |count| share(*count, row.frames));
         [row.name.to_owned()].into_iter().chain(occurring.iter().map(cell)).collect()
     });
     sheet(&header, lines, styled)
@@ -283,6 +300,9 @@ mod tests {
 
     #[test]
     fn lengths_are_in_the_unit_that_suits_them() {
-        assert_eq!([0.00012, 0.0037, 0.4, 2.5, 31.0].map(length), ["0.120 mm", "3.70 mm", "400 mm", "2.50 m", "31.0 m"]);
+        assert_eq!(
+            [0.00012, 0.0037, 0.4, 2.5, 31.0].map(length),
+            ["0.120 mm", "3.70 mm", "400 mm", "2.50 m", "31.0 m"]
+        );
     }
 }

@@ -61,8 +61,7 @@ pub fn in_order<W, T: Send>(
         scope.spawn(move || {
             for start in frames.clone().step_by(batch as usize) {
                 let range = start..(start + batch).min(frames.end);
-                let results =
-                    pool.install(|| range.into_par_iter().map_init(workspace, make_one).collect());
+                let results = pool.install(|| range.into_par_iter().map_init(workspace, make_one).collect());
                 if made.send(results).is_err() {
                     return; // Something failed, and nobody listens any more.
                 }

@@ -11,8 +11,8 @@ use serde_json::json;
 use super::Answer;
 use super::options::{PipelineOptions, Selection};
 use super::output::Output;
-use crate::failure::Failure;
 use crate::docking_run::{DockingFlight, FieldImages, PreparedDocking, process_fields};
+use crate::failure::Failure;
 use crate::files::docking::SetupFile;
 use crate::files::{
     Dataset, FieldOrder, FieldSource, FrameSize, ImageFormat, RunDirectory, Scan, SequenceOptions, StarRow,
@@ -82,7 +82,9 @@ fn render_docking(
     output: &Output,
 ) -> Result<Answer, Failure> {
     if arguments.expected {
-        return Err(Failure::Usage("--expected is given, expected with a far-range scenario alone".to_owned()));
+        return Err(Failure::Usage(
+            "--expected is given, expected with a far-range scenario alone".to_owned(),
+        ));
     }
     let images = format_of(arguments, FieldImages::Png)?;
     let prepared = PreparedDocking::new(source)?;
@@ -97,9 +99,10 @@ fn render_docking(
     let path = directory.path().display();
     let (kept, next) = match images {
         FieldImages::Png => ("frames/", format!("boresight process {path}")),
-        FieldImages::Avi => {
-            ("fields.avi", format!("boresight process {path}/fields.avi --scenario {}", arguments.selection.scenario))
-        }
+        FieldImages::Avi => (
+            "fields.avi",
+            format!("boresight process {path}/fields.avi --scenario {}", arguments.selection.scenario),
+        ),
     };
     output.answer(
         &json!({ "directory": directory.path(), "frames": count }),
@@ -215,8 +218,7 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
     let place = if path.is_dir() { path.as_path() } else { Path::new("") };
     let measurements = arguments.out.clone().unwrap_or_else(|| place.join("measurements.csv"));
     let progress = output.counter(&factory.name());
-    let processed =
-        process_fields(fields, &setup, factory.as_ref(), &measurements, || progress.inc(1));
+    let processed = process_fields(fields, &setup, factory.as_ref(), &measurements, || progress.inc(1));
     progress.finish_and_clear();
     let processed = processed?;
     output.first_failure(processed.first_failure.as_ref());

@@ -12,7 +12,8 @@ use super::Answer;
 use super::output::Output;
 use crate::failure::Failure;
 use crate::scenario::{
-    BUILT_IN, CAMERAS, DOCKING, DockingScenario, FarRangeScenario, STARTING_POINT, Scenario, ScenarioSource, World,
+    BUILT_IN, CAMERAS, DOCKING, DockingScenario, FarRangeScenario, STARTING_POINT, Scenario, ScenarioSource,
+    World,
 };
 
 #[derive(Debug, Subcommand)]

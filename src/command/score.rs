@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::Answer;
 use super::output::Output;
-use crate::failure::Failure;
 use crate::docking_run::score_docking;
 use crate::docking_table::docking;
+use crate::failure::Failure;
 use crate::files::FileError;
 use crate::run;
 use crate::run_file::RunFile;
@@ -40,8 +40,7 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
         doing: "read",
         source,
     })?;
-    let beside =
-        |name: &str| Some(arguments.measurements.with_file_name(name)).filter(|path| path.is_file());
+    let beside = |name: &str| Some(arguments.measurements.with_file_name(name)).filter(|path| path.is_file());
     let world = world(&run_file, &text, "scenario.world")?;
     let (given, expected) = match world {
         World::FarRange => (arguments.motion.as_ref().map(|_| "--motion"), "docking"),

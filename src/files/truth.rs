@@ -28,7 +28,11 @@ pub(super) fn numbers<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> f
     Column::new(name, Float64Array::from_iter_values(rows.iter().map(value)))
 }
 
-pub(super) fn optional_numbers<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> Option<f64>) -> Column {
+pub(super) fn optional_numbers<R>(
+    rows: &[R],
+    name: &'static str,
+    value: impl Fn(&R) -> Option<f64>,
+) -> Column {
     Column::nullable(name, Float64Array::from_iter(rows.iter().map(value)))
 }
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use pipeline::PipelineError;
 use sim::catalog::CatalogSource;
-use sim::optics::PsfConfig;
 use sim::docking::DockingSimulator;
+use sim::optics::PsfConfig;
 use sim::scene::docking::TargetFile;
 use sim::{SimError, Simulator};
 
@@ -120,7 +120,10 @@ impl ScenarioSource {
     }
 
     fn other_world(&self, what: &str, expected: World) -> Failure {
-        Failure::Usage(format!("{what}: scenario `{}` is of another world, expected one of {expected}", self.name))
+        Failure::Usage(format!(
+            "{what}: scenario `{}` is of another world, expected one of {expected}",
+            self.name
+        ))
     }
 
     /// The simulator of a far-range scenario; every value is checked.

@@ -189,7 +189,8 @@ mod tests {
 
     #[test]
     fn ranges_and_reasons_are_read() {
-        let range = read(r#"{"field": 7, "status": "range_only", "range_m": 310, "sigma_range_m": 4}"#).unwrap();
+        let range =
+            read(r#"{"field": 7, "status": "range_only", "range_m": 310, "sigma_range_m": 4}"#).unwrap();
         assert_eq!(range.solution, DockingSolution::RangeOnly { range_m: 310.0, sigma_m: 4.0 });
         for (status, expected) in [
             ("no_target", NoPose::NoTarget),
@@ -210,7 +211,10 @@ mod tests {
         refused(&measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0]"#), "cannot be read");
         refused(&measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "sigma_d_m": [1, 1, -1]"#), "below 0");
         refused(&measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "contrast": 1"#), "not for the other");
-        refused(&measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "contrast": 0, "brightness": 0"#), "no digitiser");
+        refused(
+            &measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "contrast": 0, "brightness": 0"#),
+            "no digitiser",
+        );
         refused(&measured(r#""d_m": [0, 0, 9], "phi_Deg": [0, 0, 0]"#), "unknown field `phi_Deg`");
         refused(r#"{"field": 7, "status": "range_only"}"#, "no range_m");
         refused(r#"{"field": 8, "status": "no_target"}"#, "it answered field 8 instead of field 7");

@@ -103,8 +103,7 @@ struct Plan {
 impl Plan {
     /// Splits a command and checks the limits.
     fn new(command: &str, start_timeout_s: f64, timeout_s: f64) -> Result<Self, ContractError> {
-        let cannot_build =
-            |reason: String| ContractError::CannotBuild { pipeline: name(command), reason };
+        let cannot_build = |reason: String| ContractError::CannotBuild { pipeline: name(command), reason };
         let limit = |name: &str, seconds: f64| {
             if seconds > 0.0 && seconds <= 1e6 {
                 Ok(Duration::from_secs_f64(seconds))

@@ -63,10 +63,10 @@ impl FeatureRow {
             vertical_pairs: cross.vertical_pairs,
             ..plain("cross", 0, cross.centre)
         });
-        let marks = features
-            .marks
-            .iter()
-            .map(|mark| Self { usage: mark.usage.code().to_owned(), ..plain("mark", mark.index, mark.position) });
+        let marks = features.marks.iter().map(|mark| Self {
+            usage: mark.usage.code().to_owned(),
+            ..plain("mark", mark.index, mark.position)
+        });
         cross
             .into_iter()
             .chain(circle("circle", &features.circle))

@@ -334,7 +334,10 @@ mod tests {
             ("x,no_target,,,,,,,,,,,,,,", "field"),
         ] {
             let message = read(&format!("{header}\n{row}\n")).unwrap_err().to_string();
-            assert!(message.contains("line 2") && message.contains(&format!("`{column}`")), "{row}: {message}");
+            assert!(
+                message.contains("line 2") && message.contains(&format!("`{column}`")),
+                "{row}: {message}"
+            );
         }
     }
 

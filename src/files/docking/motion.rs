@@ -12,8 +12,7 @@ use super::super::csv_table::{CsvReader, CsvRow, CsvWriter, Layout, Presence, ce
 use super::covariance::{self, CELLS};
 use crate::score::docking::Shown;
 
-const SHOWN: [&str; 7] =
-    ["rho_m", "u_m_s", "alpha_deg", "beta_deg", "phi1_deg", "phi2_deg", "phi3_deg"];
+const SHOWN: [&str; 7] = ["rho_m", "u_m_s", "alpha_deg", "beta_deg", "phi1_deg", "phi2_deg", "phi3_deg"];
 const SIGMA: [&str; 7] = [
     "sigma_rho_m",
     "sigma_u_m_s",
@@ -366,7 +365,10 @@ mod tests {
 
     #[test]
     fn what_is_shown_is_enough_and_comes_out_again() {
-        let text = format!("{HEADER},{}\n9,0.2,5,-0.1,3,-4,0.1,0.2,0.3,0.01,0.002,0.1,0.2,0.3,0.4,0.5\n", SIGMA.join(","));
+        let text = format!(
+            "{HEADER},{}\n9,0.2,5,-0.1,3,-4,0.1,0.2,0.3,0.01,0.002,0.1,0.2,0.3,0.4,0.5\n",
+            SIGMA.join(",")
+        );
         let reports = read(&text).unwrap();
         let best = &reports[0].1.best;
         let shown = Shown::of(&best.pose, &best.velocity_m_s);
@@ -393,7 +395,10 @@ mod tests {
             ("9,0.2,5,-0.1,3,-4,0.1,0.2,0.3,best,1", "d2_m"),
         ] {
             let message = read(&format!("{header}\n{row}\n")).unwrap_err().to_string();
-            assert!(message.contains("line 2") && message.contains(&format!("`{column}`")), "{row}: {message}");
+            assert!(
+                message.contains("line 2") && message.contains(&format!("`{column}`")),
+                "{row}: {message}"
+            );
         }
         let missing = read("field,time_s\n").unwrap_err().to_string();
         assert!(missing.contains("column `rho_m` is missing"), "{missing}");

@@ -64,11 +64,7 @@ impl SetupFile {
 
     /// What a pipeline is told.
     pub fn setup(&self) -> DockingSetup {
-        DockingSetup {
-            cameras: self.cameras.clone(),
-            bit_depth: self.bit_depth,
-            target: self.target.clone(),
-        }
+        DockingSetup { cameras: self.cameras.clone(), bit_depth: self.bit_depth, target: self.target.clone() }
     }
 
     fn check(&self, path: &Path) -> Result<(), FileError> {

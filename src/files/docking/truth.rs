@@ -82,9 +82,7 @@ impl Row for FieldTruth {
             flags(rows, "target_in_field", |row| row.target_in_field),
         ]);
         columns.extend(optional_components(rows, SUN_IMAGE, |row| point(row.sun_image)));
-        columns.extend([
-            numbers(rows, "sun_visible", |row| row.sun_visible),
-        ]);
+        columns.extend([numbers(rows, "sun_visible", |row| row.sun_visible)]);
         columns.extend(optional_components(rows, GLINT, |row| {
             row.glint.map(|glint| [glint.index as f64, glint.centre.x, glint.centre.y, glint.light])
         }));

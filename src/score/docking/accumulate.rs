@@ -120,7 +120,8 @@ impl DockingScorer {
 
     fn portion(&mut self, truth: &TrueField, outcome: Option<&DockingOutcome>) -> Option<PortionVerdict> {
         let clock = &mut self.portions;
-        let is_measured = outcome.is_some_and(|outcome| matches!(outcome.solution, DockingSolution::Measured(_)));
+        let is_measured =
+            outcome.is_some_and(|outcome| matches!(outcome.solution, DockingSolution::Measured(_)));
         if clock.fields > 0 || is_measured {
             clock.fields += 1;
         }

@@ -98,7 +98,8 @@ mod tests {
 
     #[test]
     fn a_roll_turns_the_attitude_and_moves_nothing() {
-        let errors = PoseErrors::new(&pose([0.0, 0.0, 5.0], [0.0, 0.0, 0.2]), &pose([0.0, 0.0, 5.0], [0.0; 3]));
+        let errors =
+            PoseErrors::new(&pose([0.0, 0.0, 5.0], [0.0, 0.0, 0.2]), &pose([0.0, 0.0, 5.0], [0.0; 3]));
         assert!((errors.attitude_rad - 0.2).abs() < 1e-15, "{errors:?}");
         assert!(errors.place_rad.abs() < 1e-15 && errors.tilt_rad.abs() < 1e-15, "{errors:?}");
         assert!((errors.speed_score - 0.2).abs() < 1e-15, "{errors:?}");
@@ -107,7 +108,8 @@ mod tests {
     /// A pitch φ1 turns the camera about its x axis: everything it sees moves by φ1 across the image.
     #[test]
     fn a_pitch_moves_the_target_and_tilts_its_disk_by_its_angle() {
-        let errors = PoseErrors::new(&pose([0.0, 0.0, 5.0], [0.1, 0.0, 0.0]), &pose([0.0, 0.0, 5.0], [0.0; 3]));
+        let errors =
+            PoseErrors::new(&pose([0.0, 0.0, 5.0], [0.1, 0.0, 0.0]), &pose([0.0, 0.0, 5.0], [0.0; 3]));
         for angle in [errors.attitude_rad, errors.place_rad, errors.tilt_rad] {
             assert!((angle - 0.1).abs() < 1e-15, "{errors:?}");
         }
@@ -120,7 +122,8 @@ mod tests {
     fn a_step_aside_with_the_turn_that_hides_it_is_a_tilt_and_no_displacement() {
         let turn = libm::atan2(0.5, 10.0);
         // Of a camera at d1 the origin is at x1/x3 = −d1/d3 − φ2: φ2 = −turn brings it back to the middle.
-        let errors = PoseErrors::new(&pose([0.5, 0.0, 10.0], [0.0, -turn, 0.0]), &pose([0.0, 0.0, 10.0], [0.0; 3]));
+        let errors =
+            PoseErrors::new(&pose([0.5, 0.0, 10.0], [0.0, -turn, 0.0]), &pose([0.0, 0.0, 10.0], [0.0; 3]));
         assert!(errors.place_rad < 1e-15 && (errors.tilt_rad - turn).abs() < 1e-15, "{errors:?}");
         assert_eq!(errors.lateral_m, 0.5);
         assert!((errors.beta_rad - turn).abs() < 1e-15);

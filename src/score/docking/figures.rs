@@ -51,8 +51,10 @@ pub(super) fn figures(fields: &Fields<'_>) -> Figures {
     );
     errors(fields, names::PAPER, &right, &mut figures);
 
-    let portions: Vec<Vec<&PortionVerdict>> =
-        fields.iter().map(|fields| fields.iter().filter_map(|field| field.portion.as_ref()).collect()).collect();
+    let portions: Vec<Vec<&PortionVerdict>> = fields
+        .iter()
+        .map(|fields| fields.iter().filter_map(|field| field.portion.as_ref()).collect())
+        .collect();
     motion(&portions, names::MOTION, &|portion| Some(portion.best), &mut figures);
     motion(&portions, &format!("{}{}", names::PAPER, names::MOTION), &|portion| portion.paper, &mut figures);
     let of_portions = |value: &dyn Fn(&PortionVerdict) -> Option<f64>| select(&portions, |p| value(p));

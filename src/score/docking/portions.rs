@@ -33,9 +33,8 @@ impl MotionVerdict {
         let phi = motion.pose.phi_rad - truth.pose.phi_rad;
         let d_rate = motion.velocity_m_s - truth.velocity_m_s;
         let phi_rate = motion.phi_rate_rad_s - truth.phi_rate_rad_s;
-        let both = |a: nalgebra::Vector3<f64>, b: nalgebra::Vector3<f64>| {
-            Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z)
-        };
+        let both =
+            |a: nalgebra::Vector3<f64>, b: nalgebra::Vector3<f64>| Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z);
         Self {
             is_wrong: gross(sights, truth, &PoseErrors::new(&motion.pose, &truth.pose)).is_some(),
             errors: errors.into(),

@@ -97,10 +97,7 @@ mod tests {
     fn motion() -> Motion {
         Motion {
             time_s: 1.0,
-            pose: Pose {
-                position_m: Vector3::new(0.8, -0.5, 9.0),
-                phi_rad: Vector3::new(0.01, -0.02, 0.03),
-            },
+            pose: Pose { position_m: Vector3::new(0.8, -0.5, 9.0), phi_rad: Vector3::new(0.01, -0.02, 0.03) },
             velocity_m_s: Vector3::new(0.03, 0.01, -0.2),
             phi_rate_rad_s: Vector3::zeros(),
             position_covariance: Matrix6::from_fn(|i, j| if i == j { 0.01 * (1 + i) as f64 } else { 0.002 }),

@@ -121,11 +121,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// Judges an answer; `None`: there is none.
-    pub(super) fn of(
-        sights: &Sights,
-        truth: &TrueField,
-        outcome: Option<&DockingOutcome>,
-    ) -> Self {
+    pub(super) fn of(sights: &Sights, truth: &TrueField, outcome: Option<&DockingOutcome>) -> Self {
         match outcome.map(|outcome| &outcome.solution) {
             Some(DockingSolution::Measured(measurement)) => {
                 let errors = PoseErrors::new(&measurement.best.pose, &truth.pose);

@@ -71,7 +71,8 @@ fn rates_and_causes_are_those_of_a_count_by_hand() {
     ] {
         assert_eq!(value(&score, name), expected, "{name}");
     }
-    let counts = |counts: &IndexMap<String, u64>| counts.iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>();
+    let counts =
+        |counts: &IndexMap<String, u64>| counts.iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>();
     assert_eq!(counts(&score.misses), ["not_reported 1", "pipeline_failed 1", "no_target 1"]);
     assert_eq!(counts(&score.wrong), ["range 1", "roll 1", "outline 1"]);
     // The first field is clear and the second the first success.
@@ -108,7 +109,10 @@ fn shares_within_three_sigma_are_counted_by_parameter() {
     fields[3].1 = at([0.0, 0.0, 10.029], [0.0; 3]);
     fields[2].1 = at([0.029, 0.04, 10.0], [0.0; 3]);
     let score = score(&fields);
-    assert_eq!((score.figures[names::WITHIN_3_SIGMA].count, score.figures[names::WITHIN_3_SIGMA].of), (17, 18));
+    assert_eq!(
+        (score.figures[names::WITHIN_3_SIGMA].count, score.figures[names::WITHIN_3_SIGMA].of),
+        (17, 18)
+    );
     assert_eq!(value(&score, "d2_within_3_sigma"), 2.0 / 3.0);
     assert_eq!(value(&score, "d1_within_3_sigma"), 1.0);
 }
@@ -123,7 +127,10 @@ fn groups_go_from_far_to_near_by_lens() {
     fields[4].camera = 1;
     let score = score(&fields.into_iter().map(|truth| (truth, None)).collect::<Vec<_>>());
     let groups: Vec<_> = score.groups.keys().map(String::as_str).collect();
-    assert_eq!(groups, ["500–200 m, 15.0°", "20–10 m, 15.0°", "20–10 m, 40.0°", "5–3 m, 15.0°", "< 1.5 m, 40.0°"]);
+    assert_eq!(
+        groups,
+        ["500–200 m, 15.0°", "20–10 m, 15.0°", "20–10 m, 40.0°", "5–3 m, 15.0°", "< 1.5 m, 40.0°"]
+    );
 }
 
 fn report(range_m: f64) -> MotionReport {
@@ -152,7 +159,10 @@ fn portions_are_timed_from_their_first_measured_field() {
     let score = score(&fields);
     assert_eq!(score.portions, 3);
     assert_eq!(value(&score, names::PORTION_LATENCY_FIELDS), 10.0);
-    assert_eq!((value(&score, names::RENEWED_WITHIN_1S), score.figures[names::RENEWED_WITHIN_1S].of), (1.0, 2));
+    assert_eq!(
+        (value(&score, names::RENEWED_WITHIN_1S), score.figures[names::RENEWED_WITHIN_1S].of),
+        (1.0, 2)
+    );
     let rms = ((0.05f64.powi(2) + 0.01f64.powi(2) + 0.03f64.powi(2)) / 3.0).sqrt();
     assert!((value(&score, "motion_range_rms_m") - rms).abs() < 1e-12);
     assert_eq!(value(&score, "paper_motion_range_rms_m"), value(&score, "motion_range_rms_m"));
@@ -182,8 +192,7 @@ fn a_score_of_nothing_and_of_nothing_right_has_no_nan() {
 
 #[test]
 fn a_field_met_twice_is_refused() {
-    let context =
-        DockingContext { scenario: String::new(), seed: 0, version: String::new(), setup: setup() };
+    let context = DockingContext { scenario: String::new(), seed: 0, version: String::new(), setup: setup() };
     let mut scorer = DockingScorer::new(context);
     scorer.add(&field(3, 10.0), None).unwrap();
     assert_eq!(scorer.add(&field(3, 10.0), None), Err(ScoreError::Order { previous: 3, frame: 3 }));
@@ -196,7 +205,8 @@ fn a_pipeline_that_claims_too_much_is_told_by_its_consistency() {
         .map(|i| {
             let error = if i % 2 == 0 { 0.008 } else { -0.008 };
             let mut outcome = at([error, error, 10.0 + error], [error, error, error]);
-            if let Some(DockingSolution::Measured(m)) = outcome.as_mut().map(|outcome| &mut outcome.solution) {
+            if let Some(DockingSolution::Measured(m)) = outcome.as_mut().map(|outcome| &mut outcome.solution)
+            {
                 m.best.covariance *= 0.01;
             }
             (field(i, 10.0), outcome)
