@@ -12,7 +12,7 @@ use crate::files::{
     TelemetryRow, TelemetryWriter, format_utc, write_frame, write_stars,
 };
 use crate::run_file::RunFile;
-use crate::scenario::Scenario;
+use crate::scenario::FarRangeScenario;
 
 /// Writes `run.toml`, `camera.toml`, `stars.csv`, then frame by frame `telemetry.csv` and the truth tables.
 pub struct DatasetWriter {
@@ -116,7 +116,7 @@ pub fn save_image(
 /// World coordinates of a frame: from astrometric directions (ICRS) to pixels, aberration folded in.
 fn world_coordinates(
     simulator: &Simulator,
-    scenario: &Scenario,
+    scenario: &FarRangeScenario,
     truth: &FrameTruth,
     observer: &Observer,
 ) -> Result<TanSip, Failure> {

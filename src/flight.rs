@@ -23,29 +23,45 @@ pub fn fly<T: Send>(
     frames: Range<u64>,
     jobs: usize,
     make: impl Fn(&mut SimulatedCamera<'_>, u64) -> Result<T, Failure> + Sync,
+    take: impl FnMut(T) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    in_order(frames, jobs, || Ok(simulator.camera()?), make, take)
+}
+
+/// Makes something of each of `frames` on `jobs` threads, each with a workspace of its own, and hands it to `take` in
+/// order, on the caller's thread.
+///
+/// # Errors
+/// The first failure in the order of the frames; nothing after it is taken.
+pub fn in_order<W, T: Send>(
+    frames: Range<u64>,
+    jobs: usize,
+    workspace: impl Fn() -> Result<W, Failure> + Sync + Send,
+    make: impl Fn(&mut W, u64) -> Result<T, Failure> + Sync,
     mut take: impl FnMut(T) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     if jobs <= 1 {
-        let mut camera = simulator.camera()?;
-        return frames.into_iter().try_for_each(|frame| take(make(&mut camera, frame)?));
+        let mut workspace = workspace()?;
+        return frames.into_iter().try_for_each(|frame| take(make(&mut workspace, frame)?));
     }
     let pool = ThreadPoolBuilder::new()
         .num_threads(jobs)
         .build()
         .map_err(|error| Failure::Usage(format!("{jobs} threads cannot be started: {error}")))?;
     let batch = FRAMES_PER_JOB * jobs as u64;
-    let make_one = |camera: &mut Result<SimulatedCamera<'_>, _>, frame| match camera {
-        Ok(camera) => make(camera, frame),
+    let make_one = |workspace: &mut Result<W, _>, frame| match workspace {
+        Ok(workspace) => make(workspace, frame),
         Err(_) => Err(Failure::Usage("the camera could not be made on every thread".to_owned())),
     };
     std::thread::scope(|scope| {
         // One batch is taken while the next one is made.
         let (made, waiting) = mpsc::sync_channel::<Vec<Result<T, Failure>>>(1);
+        let workspace = &workspace;
+        let make_one = &make_one;
         scope.spawn(move || {
             for start in frames.clone().step_by(batch as usize) {
                 let range = start..(start + batch).min(frames.end);
-                let results = pool
-                    .install(|| range.into_par_iter().map_init(|| simulator.camera(), make_one).collect());
+                let results = pool.install(|| range.into_par_iter().map_init(workspace, make_one).collect());
                 if made.send(results).is_err() {
                     return; // Something failed, and nobody listens any more.
                 }

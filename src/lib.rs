@@ -3,6 +3,8 @@
 
 pub mod command;
 pub mod dataset_writer;
+pub mod docking_run;
+pub mod docking_table;
 pub mod failure;
 pub mod files;
 pub mod flight;

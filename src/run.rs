@@ -17,8 +17,8 @@ use crate::files::{
 use crate::flight::fly;
 use crate::inject::{InjectedPipeline, Stage};
 use crate::run_file::RunFile;
-use crate::scenario::{Scenario, ScenarioSource};
-use crate::score::{Score, ScoreContext, Scored, Scorer};
+use crate::scenario::{FarRangeScenario, ScenarioSource};
+use crate::score::{ScoreContext, Scored, Scorer};
 use crate::star_list::star_list;
 
 /// Which frames are made, on how many threads, and whether their images are kept.
@@ -74,16 +74,15 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::new`]; [`Failure::Usage`] for the regions of interest of a scenario that has none.
     pub fn with_truth_for(source: &ScenarioSource, inject: Option<Stage>) -> Result<Self, Failure> {
-        let mut source = source.clone();
-        if inject == Some(Stage::Roi) && source.scenario.roi.take().is_none() {
+        let mut scenario = source.far_range("far range")?.clone();
+        if inject == Some(Stage::Roi) && scenario.roi.take().is_none() {
             return Err(Failure::Usage(format!(
                 "--inject is roi, expected a scenario with regions of interest: `{}` has no [roi]",
                 source.name
             )));
         }
-        let simulator = source.simulator()?;
-        let scenario = &source.scenario;
-        let run_file = RunFile::new(&source.name, scenario, simulator.catalog().sha256(), inject)?;
+        let simulator = source.simulator(&scenario)?;
+        let run_file = RunFile::new(&source.name, &scenario, Some(simulator.catalog().sha256()), inject)?;
         let (_, star_epoch) = simulator
             .schedule()
             .frame(0)
@@ -98,7 +97,7 @@ impl Prepared {
     }
 
     /// The scenario.
-    pub fn scenario(&self) -> &Scenario {
+    pub fn scenario(&self) -> &FarRangeScenario {
         &self.run_file.scenario
     }
 
@@ -253,7 +252,7 @@ pub struct FirstFailure {
 /// # Errors
 /// A [`Failure`] for a file that cannot be read, or a measurement of a frame that the truth does not have.
 pub fn score(directory: &Path, measurements: &Path, clusters: Option<&Path>) -> Result<Scored, Failure> {
-    let run_file = RunFile::read(&directory.join("run.toml"))?;
+    let run_file = RunFile::<FarRangeScenario>::read(&directory.join("run.toml"))?;
     let projection = sim::optics::Projection::new(&run_file.scenario.camera)?;
     let unproject = |point| projection.unproject(point);
     let mut scorer = Scorer::new(context(&run_file, &unproject));
@@ -353,7 +352,7 @@ fn context<'a>(run_file: &RunFile, unproject: crate::score::Unproject<'a>) -> Sc
     }
 }
 
-fn write_score(path: &Path, score: &Score) -> Result<(), Failure> {
+pub(crate) fn write_score(path: &Path, score: &impl serde::Serialize) -> Result<(), Failure> {
     let json = serde_json::to_string_pretty(score)
         .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?
         + "\n";

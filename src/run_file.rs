@@ -2,49 +2,51 @@
 
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::dataset_writer::sha256_hex;
 use crate::failure::Failure;
 use crate::files::FileError;
 use crate::inject::Stage;
-use crate::scenario::Scenario;
+use crate::scenario::FarRangeScenario;
 use crate::toml_file;
 
-/// What was run: the resolved scenario with all defaults, and what else the frames depend on.
+/// What was run: the resolved scenario of one world with all defaults, and what else the frames depend on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RunFile {
+pub struct RunFile<S = FarRangeScenario> {
     /// Name of the scenario.
     pub name: String,
     /// Version of Boresight that made the frames.
     pub version: String,
-    /// SHA-256 of the star catalogue's source, hexadecimal.
-    pub catalog_sha256: String,
+    /// SHA-256 of the star catalogue's source, hexadecimal; absent in a world without stars.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub catalog_sha256: Option<String>,
     /// SHA-256 of the resolved scenario as it stands below, hexadecimal.
     pub hash: String,
     /// The stage whose result was replaced by the truth; absent in an honest run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inject: Option<Stage>,
     /// The scenario.
-    pub scenario: Scenario,
+    pub scenario: S,
 }
 
-impl RunFile {
+impl<S: Clone + Serialize + DeserializeOwned> RunFile<S> {
     /// The file of a run that is about to start.
     ///
     /// # Errors
     /// [`Failure::Usage`] when the scenario cannot be written as TOML.
     pub fn new(
         name: &str,
-        scenario: &Scenario,
-        catalog_sha256: &str,
+        scenario: &S,
+        catalog_sha256: Option<&str>,
         inject: Option<Stage>,
     ) -> Result<Self, Failure> {
         Ok(Self {
             name: name.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            catalog_sha256: catalog_sha256.to_owned(),
+            catalog_sha256: catalog_sha256.map(str::to_owned),
             hash: sha256_hex(&to_toml(scenario)?),
             inject,
             scenario: scenario.clone(),

@@ -123,7 +123,7 @@ fn figure(figure: Option<&Figure>, format: fn(f64) -> String) -> (String, Option
 }
 
 /// A fraction in percent with one decimal. A whole 100 has none: all frames, which no rounding reaches.
-fn percent(fraction: f64) -> String {
+pub(crate) fn percent(fraction: f64) -> String {
     if fraction == 1.0 { "100".to_owned() } else { format!("{:.1}", (100.0 * fraction).min(99.9)) }
 }
 
@@ -175,11 +175,11 @@ fn causes(title: &str, columns: &[Column<'_>], pick: Counts, styled: bool) -> St
     finish(table)
 }
 
-fn share(count: u64, frames: u64) -> String {
+pub(crate) fn share(count: u64, frames: u64) -> String {
     format!("{count} ({})", percent(count as f64 / frames as f64))
 }
 
-fn plain_table(styled: bool) -> Table {
+pub(crate) fn plain_table(styled: bool) -> Table {
     let mut table = Table::new();
     let rule = LineStyle::none().fill('─').junction('─');
     let rules = comfy_table::TableStyle::new().top_border(rule).header_separator(rule).bottom_border(rule);
@@ -193,7 +193,7 @@ fn plain_table(styled: bool) -> Table {
 }
 
 /// Numbers to the right, no blanks at the edges; ends with a line feed.
-fn finish(mut table: Table) -> String {
+pub(crate) fn finish(mut table: Table) -> String {
     for (index, column) in table.column_iter_mut().enumerate() {
         if index == 0 {
             column.set_padding((0, 0));

@@ -14,7 +14,15 @@ fn every_built_in_scenario_passes_its_check() {
     for scenario in BUILT_IN {
         let check = bench.boresight(&format!("scenario check {} --json", scenario.name)).done().json();
         assert_eq!((&check["scenario"], &check["ok"]), (&json!(scenario.name), &json!(true)));
-        assert!(check["stars"].as_u64() > Some(1000) && check["frames"].as_u64() > Some(0), "{check}");
+        assert!(check["frames"].as_u64() > Some(0), "{check}");
+        if check["world"] == "docking" {
+            // Its target is a built-in one, so that a copy anywhere finds it.
+            bench.write("copy.toml", scenario.text);
+            let copy = bench.boresight("scenario check copy.toml --json").done().json();
+            assert_eq!((&copy["frames"], &copy["marks"]), (&check["frames"], &check["marks"]));
+            continue;
+        }
+        assert!(check["stars"].as_u64() > Some(1000), "{check}");
         let bytes = |key: &str| check[key].as_u64().unwrap();
         assert!(bytes("frame_bytes_at_most") <= bytes("whole_image_bytes"), "{check}");
         // The file alone is as good as the built-in one.

@@ -1,17 +1,25 @@
 //! `boresight render` and `boresight process`: datasets for somebody else's pipeline, and from somebody else's camera.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use clap::Args;
 use contract::Setup;
+use contract::docking::Digitiser;
 use serde_json::json;
 
 use super::Answer;
 use super::options::{PipelineOptions, Selection};
 use super::output::Output;
+use crate::docking_run::{DockingFlight, FieldImages, PreparedDocking, process_fields};
 use crate::failure::Failure;
-use crate::files::{Dataset, ImageFormat, RunDirectory, StarRow, read_stars};
+use crate::files::docking::SetupFile;
+use crate::files::{
+    Dataset, FieldOrder, FieldSource, FrameSize, ImageFormat, RunDirectory, Scan, SequenceOptions, StarRow,
+    read_stars,
+};
 use crate::run::{self, Expectation, Flight, Prepared};
+use crate::scenario::{Scenario, ScenarioSource};
 use crate::star_list::star_list;
 
 #[derive(Debug, Args)]
@@ -21,9 +29,9 @@ pub(super) struct RenderArguments {
     /// A new or empty directory for the dataset
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Format of the images
-    #[arg(long, value_name = "fits|png|exr", default_value_t = ImageFormat::Fits)]
-    format: ImageFormat,
+    /// Format of the images: fits (the default), png or exr; docking: png (the default) or avi
+    #[arg(long, value_name = "fits|png|exr|avi")]
+    format: Option<String>,
     /// Write the noise-free expectation of every frame too, in electrons, to truth/expected/
     #[arg(long)]
     expected: bool,
@@ -31,11 +39,23 @@ pub(super) struct RenderArguments {
 
 pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Answer, Failure> {
     let source = arguments.selection.scenario()?;
-    let prepared = Prepared::new(&source)?;
+    match source.scenario {
+        Scenario::FarRange(_) => render_far_range(arguments, &source, output),
+        Scenario::Docking(_) => render_docking(arguments, &source, output),
+    }
+}
+
+fn render_far_range(
+    arguments: &RenderArguments,
+    source: &ScenarioSource,
+    output: &Output,
+) -> Result<Answer, Failure> {
+    let format = format_of(arguments, ImageFormat::Fits)?;
+    let prepared = Prepared::new(source)?;
     let flight = Flight {
         frames: arguments.selection.frames(prepared.frame_count())?,
         jobs: arguments.selection.jobs(),
-        images: Some(arguments.format),
+        images: Some(format),
         expectation: if arguments.expected { Expectation::Kept } else { Expectation::Dropped },
     };
     let directory = RunDirectory::create(&arguments.out)?;
@@ -56,10 +76,57 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
     Ok(Answer::Yes)
 }
 
+fn render_docking(
+    arguments: &RenderArguments,
+    source: &ScenarioSource,
+    output: &Output,
+) -> Result<Answer, Failure> {
+    if arguments.expected {
+        return Err(Failure::Usage(
+            "--expected is given, expected with a far-range scenario alone".to_owned(),
+        ));
+    }
+    let images = format_of(arguments, FieldImages::Png)?;
+    let prepared = PreparedDocking::new(source)?;
+    let fields = arguments.selection.frames(prepared.field_count())?;
+    let count = fields.end - fields.start;
+    let flight = DockingFlight { fields, jobs: arguments.selection.jobs(), images: Some(images) };
+    let directory = RunDirectory::create(&arguments.out)?;
+    let progress = output.progress(count, &source.name);
+    let rendered = prepared.render(&directory, &flight, || progress.inc(1));
+    progress.finish_and_clear();
+    rendered?;
+    let path = directory.path().display();
+    let (kept, next) = match images {
+        FieldImages::Png => ("frames/", format!("boresight process {path}")),
+        FieldImages::Avi => (
+            "fields.avi",
+            format!("boresight process {path}/fields.avi --scenario {}", arguments.selection.scenario),
+        ),
+    };
+    output.answer(
+        &json!({ "directory": directory.path(), "frames": count }),
+        format!(
+            "{count} fields in {path}\nfor a pipeline: setup.toml, telemetry.csv, {kept}; the truth is apart in truth/\n\
+             next: {next}, or a pipeline of your own and boresight score {path} MEASUREMENTS"
+        ),
+    )?;
+    Ok(Answer::Yes)
+}
+
+/// The format asked for, of those of a world.
+fn format_of<F: FromStr<Err = String>>(arguments: &RenderArguments, usual: F) -> Result<F, Failure> {
+    let word = arguments.format.as_deref();
+    word.map_or(Ok(usual), |word| word.parse().map_err(|error| Failure::Usage(format!("--format: {error}"))))
+}
+
 #[derive(Debug, Args)]
 pub(super) struct ProcessArguments {
-    /// A dataset: camera.toml, telemetry.csv and the images it names; stars.csv if it has one
+    /// A dataset: camera.toml, telemetry.csv and the images it names; stars.csv if it has one. Docking: a dataset with
+    /// setup.toml, a folder of images, an AVI or Y4M file, or `-` for Y4M on standard input
     directory: PathBuf,
+    #[command(flatten)]
+    sequence: SequenceArguments,
     /// The file of measurements to write; the clusters go to `clusters.parquet` beside it. Default:
     /// `measurements.csv` in the dataset
     #[arg(long, value_name = "FILE")]
@@ -69,6 +136,12 @@ pub(super) struct ProcessArguments {
 }
 
 pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<Answer, Failure> {
+    if arguments.sequence.scenario.is_some()
+        || arguments.directory.join("setup.toml").is_file()
+        || !arguments.directory.is_dir()
+    {
+        return process_sequence(arguments, output);
+    }
     let dataset = Dataset::open(&arguments.directory)?;
     let setup = setup(arguments, &dataset)?;
     let scratch = super::scratch_directory()?;
@@ -85,6 +158,79 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     output.answer(
         &json!({ "measurements": measurements, "clusters": clusters, "frames": frames }),
         format!("{frames} frames processed, answers in {}", measurements.display()),
+    )?;
+    Ok(Answer::Yes)
+}
+
+/// How a sequence of docking fields is to be read.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Docking sequences")]
+struct SequenceArguments {
+    /// The docking scenario whose cameras, target and pipeline these are; default: `setup.toml` of the dataset
+    #[arg(long, value_name = "SCENARIO")]
+    scenario: Option<String>,
+    /// Which of its cameras took the images, where no telemetry.csv tells, from 0
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    camera: usize,
+    /// Which field of a whole frame is first in time
+    #[arg(long, value_name = "top|bottom", default_value = "top")]
+    field_order: FieldOrder,
+    /// Frames are progressive: of one moment, not two fields
+    #[arg(long)]
+    progressive: bool,
+    /// Whole frames a second; default: what the file says, 25 where it says nothing
+    #[arg(long, value_name = "HZ")]
+    frame_rate_hz: Option<f64>,
+    /// Raw grey frames of 8 bits and this size, without headers
+    #[arg(long, value_name = "COLUMNSxROWS")]
+    raw: Option<FrameSize>,
+}
+
+/// Docking: digitised television, from files or standard input.
+fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Answer, Failure> {
+    let (path, sequence) = (&arguments.directory, &arguments.sequence);
+    let (setup, config) = match &sequence.scenario {
+        Some(word) => {
+            let prepared = PreparedDocking::new(&ScenarioSource::read(word)?)?;
+            (prepared.setup(), prepared.scenario().docking.clone())
+        }
+        None if path.is_dir() => {
+            let file = SetupFile::read(&path.join("setup.toml"))?;
+            (file.setup(), file.docking)
+        }
+        None => {
+            return Err(Failure::Usage(format!(
+                "{}: cameras and target of a video are not known, expected --scenario SCENARIO",
+                path.display()
+            )));
+        }
+    };
+    let options = SequenceOptions {
+        scan: if sequence.progressive { Scan::Progressive } else { Scan::Interlaced(sequence.field_order) },
+        camera: sequence.camera,
+        frame_rate_hz: sequence.frame_rate_hz,
+        raw: sequence.raw,
+        digitiser: Digitiser::default(),
+    };
+    let scratch = super::scratch_directory()?;
+    let factory = arguments.pipeline.choice().docking_factory(&config, scratch.path())?;
+    let fields = FieldSource::open(path, &setup, &options)?;
+    let place = if path.is_dir() { path.as_path() } else { Path::new("") };
+    let measurements = arguments.out.clone().unwrap_or_else(|| place.join("measurements.csv"));
+    let progress = output.counter(&factory.name());
+    let processed = process_fields(fields, &setup, factory.as_ref(), &measurements, || progress.inc(1));
+    progress.finish_and_clear();
+    let processed = processed?;
+    output.first_failure(processed.first_failure.as_ref());
+    let fields = processed.frames;
+    output.answer(
+        &json!({
+            "measurements": measurements,
+            "motion": measurements.with_file_name("motion.csv"),
+            "features": measurements.with_file_name("features.parquet"),
+            "frames": fields,
+        }),
+        format!("{fields} fields processed, answers in {}", measurements.display()),
     )?;
     Ok(Answer::Yes)
 }

@@ -31,7 +31,7 @@ impl FromStr for FrameRange {
 pub(super) struct Selection {
     /// A built-in scenario (see `boresight scenario list`) or a TOML file
     pub(super) scenario: String,
-    /// Only these frames, A up to and without B
+    /// Only these frames (docking: fields), A up to and without B
     #[arg(long, value_name = "A..B")]
     pub(super) frames: Option<FrameRange>,
     /// Seed instead of the scenario's own
@@ -45,9 +45,10 @@ pub(super) struct Selection {
 /// Which pipeline, and how long a foreign one may take.
 #[derive(Debug, Args)]
 pub(super) struct PipelineOptions {
-    /// `far_range`, or `exec:COMMAND` for a program that speaks the protocol of docs/external-pipeline.md
-    #[arg(long, value_name = "NAME|exec:COMMAND", default_value = "far_range")]
-    pub(super) pipeline: String,
+    /// `far_range` or `docking`, or `exec:COMMAND` for a program that speaks the protocol of docs/external-pipeline.md;
+    /// default: the one of the scenario's world
+    #[arg(long, value_name = "NAME|exec:COMMAND")]
+    pub(super) pipeline: Option<String>,
     /// Longest time that an `exec:` pipeline may take for a frame, s
     #[arg(long, value_name = "S", default_value_t = 10.0)]
     pub(super) timeout_s: f64,
@@ -62,7 +63,7 @@ impl PipelineOptions {
 
 impl Default for PipelineOptions {
     fn default() -> Self {
-        Self { pipeline: "far_range".to_owned(), timeout_s: 10.0 }
+        Self { pipeline: None, timeout_s: 10.0 }
     }
 }
 
@@ -76,7 +77,7 @@ impl Selection {
     pub(super) fn scenario(&self) -> Result<ScenarioSource, Failure> {
         let mut source = ScenarioSource::read(&self.scenario)?;
         if let Some(seed) = self.seed {
-            source.scenario.seed = seed;
+            source.scenario.set_seed(seed);
         }
         Ok(source)
     }

@@ -79,6 +79,19 @@ impl Output {
         }
     }
 
+    /// A count of fields on stderr, of which nobody knows how many there will be; hidden when stderr is not a terminal.
+    pub(super) fn counter(&self, what: &str) -> ProgressBar {
+        if !std::io::stderr().is_terminal() {
+            return ProgressBar::hidden();
+        }
+        let bar = ProgressBar::no_length().with_message(what.to_owned());
+        bar.enable_steady_tick(Duration::from_millis(200));
+        match ProgressStyle::with_template("{msg} {pos} fields, {per_sec}") {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        }
+    }
+
     /// Whether a person at a terminal reads stdout.
     pub(super) fn is_terminal(&self) -> bool {
         std::io::stdout().is_terminal()

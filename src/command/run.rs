@@ -7,10 +7,13 @@ use clap::Args;
 use super::Answer;
 use super::options::{PipelineOptions, Selection};
 use super::output::Output;
+use crate::docking_run::{DockingFlight, FieldImages, PreparedDocking};
+use crate::docking_table::docking;
 use crate::failure::Failure;
 use crate::files::{ImageFormat, RunDirectory};
 use crate::inject::Stage;
 use crate::run::{Expectation, Flight, Prepared};
+use crate::scenario::{Scenario, ScenarioSource, World, is_argon};
 use crate::score::ARGON_TABLE_2;
 use crate::table::{TableStyle, far_range};
 
@@ -49,15 +52,26 @@ impl RunArguments {
 
 pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     let source = arguments.selection.scenario()?;
+    match source.scenario {
+        Scenario::FarRange(_) => run_far_range(arguments, &source, output),
+        Scenario::Docking(_) => run_docking(arguments, &source, output),
+    }
+}
+
+fn run_far_range(
+    arguments: &RunArguments,
+    source: &ScenarioSource,
+    output: &Output,
+) -> Result<Answer, Failure> {
     if let Some(stage) = arguments.inject
-        && !arguments.pipeline.choice().is_built_in()
+        && !arguments.pipeline.choice().is_built_in(World::FarRange)
     {
         return Err(Failure::Usage(format!(
             "--inject is {stage}, expected with the built-in pipeline `far_range` alone: another one has no place to put the \
              truth in"
         )));
     }
-    let prepared = Prepared::with_truth_for(&source, arguments.inject)?;
+    let prepared = Prepared::with_truth_for(source, arguments.inject)?;
     let flight = Flight {
         frames: arguments.selection.frames(prepared.frame_count())?,
         jobs: arguments.selection.jobs(),
@@ -81,7 +95,7 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
 
     let style = TableStyle {
         styled: output.is_terminal(),
-        reference: source.is_argon().then_some(&ARGON_TABLE_2),
+        reference: is_argon(prepared.scenario()).then_some(&ARGON_TABLE_2),
         ..TableStyle::default()
     };
     let mut text = far_range(&score, style);
@@ -89,5 +103,43 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
         text += &format!("\n\nthe truth was injected for {stage}: this is no result of the pipeline");
     }
     output.answer(&score, format!("{text}\n\nresults in {}", directory.path().display()))?;
+    Ok(Answer::Yes)
+}
+
+fn run_docking(
+    arguments: &RunArguments,
+    source: &ScenarioSource,
+    output: &Output,
+) -> Result<Answer, Failure> {
+    if let Some(stage) = arguments.inject {
+        return Err(Failure::Usage(format!("--inject is {stage}, expected with a far-range scenario alone")));
+    }
+    let images = match arguments.save_frames {
+        None => None,
+        Some(ImageFormat::Png) => Some(FieldImages::Png),
+        Some(format) => {
+            return Err(Failure::Usage(format!(
+                "--save-frames is {format}, expected png: fields of a docking run are kept as PNG"
+            )));
+        }
+    };
+    let prepared = PreparedDocking::new(source)?;
+    let fields = arguments.selection.frames(prepared.field_count())?;
+    let flight = DockingFlight { fields, jobs: arguments.selection.jobs(), images };
+    let scratch = super::scratch_directory()?;
+    let choice = arguments.pipeline.choice();
+    let factory = choice.docking_factory(&prepared.scenario().docking, scratch.path())?;
+    let directory = match &arguments.out {
+        Some(path) => RunDirectory::create(path)?,
+        None => RunDirectory::create_numbered(Path::new(RUNS), &source.name)?,
+    };
+    let fields = flight.fields.end - flight.fields.start;
+    let progress = output.progress(fields, &format!("{}, {}", source.name, factory.name()));
+    let ran = prepared.run(&directory, &flight, factory.as_ref(), || progress.inc(1));
+    progress.finish_and_clear();
+    let ran = ran?;
+    output.first_failure(ran.first_failure.as_ref());
+    let text = docking(&ran.score, output.is_terminal());
+    output.answer(&ran.score, format!("{text}\nresults in {}", directory.path().display()))?;
     Ok(Answer::Yes)
 }

@@ -11,7 +11,10 @@ use sim::onboard::image_bytes;
 use super::Answer;
 use super::output::Output;
 use crate::failure::Failure;
-use crate::scenario::{BUILT_IN, CAMERAS, STARTING_POINT, Scenario, ScenarioSource};
+use crate::scenario::{
+    BUILT_IN, CAMERAS, DOCKING, DockingScenario, FarRangeScenario, STARTING_POINT, Scenario, ScenarioSource,
+    World,
+};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum ScenarioCommand {
@@ -28,11 +31,18 @@ pub(super) enum ScenarioCommand {
         name: Option<String>,
     },
     /// Print the JSON Schema of scenario files
-    Schema,
+    Schema {
+        /// Of this world alone: far_range or docking
+        #[arg(long, value_name = "WORLD")]
+        world: Option<World>,
+    },
     /// Write a commented starting point to a file that does not exist yet
     New {
         /// The TOML file to write
         file: PathBuf,
+        /// Of this world: far_range or docking
+        #[arg(long, value_name = "WORLD", default_value_t = World::FarRange)]
+        world: World,
     },
 }
 
@@ -45,13 +55,13 @@ pub(super) fn scenario(command: &ScenarioCommand, output: &Output) -> Result<Ans
             output.answer(&names, names.join("\n"))
         }
         ScenarioCommand::Camera { name: Some(name) } => camera(name, output),
-        ScenarioCommand::Schema => {
-            let schema = Scenario::json_schema();
+        ScenarioCommand::Schema { world } => {
+            let schema = Scenario::json_schema(*world);
             let text = serde_json::to_string_pretty(&schema)
                 .map_err(|error| Failure::Usage(format!("the schema cannot be written: {error}")))?;
             output.answer(&schema, text)
         }
-        ScenarioCommand::New { file } => new(file, output),
+        ScenarioCommand::New { file, world } => new(file, *world, output),
     }?;
     Ok(Answer::Yes)
 }
@@ -60,8 +70,11 @@ fn list(output: &Output) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for built_in in BUILT_IN {
         let source = ScenarioSource::read(built_in.name)?;
-        let frames = source.scenario.schedule.iter().map(|group| group.count).sum::<u64>();
-        rows.push((built_in.name, frames, source.scenario.title));
+        let frames = match &source.scenario {
+            Scenario::FarRange(scenario) => scenario.schedule.iter().map(|group| group.count).sum(),
+            Scenario::Docking(scenario) => source.docking_simulator(scenario)?.field_count(),
+        };
+        rows.push((built_in.name, frames, source.scenario.title().to_owned()));
     }
     let document: Vec<_> = rows
         .iter()
@@ -85,8 +98,11 @@ fn camera(name: &str, output: &Output) -> Result<(), Failure> {
 
 /// A mistake in a scenario is the answer no; a file that cannot be read is none.
 fn check(scenario: &str, output: &Output) -> Result<Answer, Failure> {
-    let checked = ScenarioSource::read(scenario).and_then(|source| Ok((source.simulator()?, source)));
-    let (simulator, ScenarioSource { name, scenario, .. }) = match checked {
+    let checked = ScenarioSource::read(scenario).and_then(|source| match &source.scenario {
+        Scenario::FarRange(scenario) => check_far_range(&source, scenario),
+        Scenario::Docking(scenario) => check_docking(&source, scenario),
+    });
+    let (document, text) = match checked {
         Err(mistake @ Failure::Toml(_)) => {
             let document = json!({ "scenario": scenario, "ok": false, "error": mistake.to_string() });
             output.answer(&document, mistake.explain())?;
@@ -94,6 +110,15 @@ fn check(scenario: &str, output: &Output) -> Result<Answer, Failure> {
         }
         checked => checked?,
     };
+    output.answer(&document, text)?;
+    Ok(Answer::Yes)
+}
+
+/// What a check tells, for a machine and for a person.
+type Checked = (serde_json::Value, String);
+
+fn check_far_range(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<Checked, Failure> {
+    let (simulator, name) = (source.simulator(scenario)?, &source.name);
     let (frames, stars) = (simulator.schedule().frame_count(), simulator.catalog().stars().len());
     let (columns, rows, bit_depth) =
         (scenario.camera.columns, scenario.camera.rows, scenario.sensor.bit_depth);
@@ -115,15 +140,41 @@ fn check(scenario: &str, output: &Output) -> Result<Answer, Failure> {
         "whole_image_bytes": image,
     });
     let text = format!("{name}: {frames} frames, {stars} stars, no mistake found\n{telemetry}");
-    output.answer(&document, text)?;
-    Ok(Answer::Yes)
+    Ok((document, text))
 }
 
-fn new(file: &PathBuf, output: &Output) -> Result<(), Failure> {
+fn check_docking(source: &ScenarioSource, scenario: &DockingScenario) -> Result<Checked, Failure> {
+    let simulator = source.docking_simulator(scenario)?;
+    let (name, fields, target) = (&source.name, simulator.field_count(), simulator.setup().target);
+    let seconds = fields as f64 / simulator.field_rate_hz();
+    let document = json!({
+        "scenario": name,
+        "ok": true,
+        "world": "docking",
+        "frames": fields,
+        "duration_s": seconds,
+        "target": target.name,
+        "marks": target.marks.len(),
+        "cameras": scenario.cameras.len(),
+    });
+    let text = format!(
+        "{name}: {fields} fields in {seconds:.0} s, target {} with {} marks, {} cameras, no mistake found",
+        target.name,
+        target.marks.len(),
+        scenario.cameras.len()
+    );
+    Ok((document, text))
+}
+
+fn new(file: &PathBuf, world: World, output: &Output) -> Result<(), Failure> {
     let refuse =
         |error: std::io::Error| Failure::Usage(format!("{}: cannot be created: {error}", file.display()));
     let mut created = OpenOptions::new().write(true).create_new(true).open(file).map_err(refuse)?;
-    created.write_all(STARTING_POINT.as_bytes()).map_err(refuse)?;
+    let text = match world {
+        World::FarRange => STARTING_POINT,
+        World::Docking => DOCKING,
+    };
+    created.write_all(text.as_bytes()).map_err(refuse)?;
     let document = json!({ "file": file });
     output.answer(&document, format!("wrote {0}; try: boresight run {0}", file.display()))
 }

@@ -6,31 +6,58 @@ use clap::Args;
 
 use super::Answer;
 use super::output::Output;
+use crate::docking_run::score_docking;
+use crate::docking_table::docking;
 use crate::failure::Failure;
+use crate::files::FileError;
 use crate::run;
 use crate::run_file::RunFile;
-use crate::scenario::is_argon;
+use crate::scenario::{FarRangeScenario, World, is_argon, world};
 use crate::score::ARGON_TABLE_2;
 use crate::table::{TableStyle, far_range};
+use crate::toml_file;
 
 #[derive(Debug, Args)]
 pub(super) struct ScoreArguments {
     /// A rendered dataset or a run directory: `run.toml` and `truth/` are read
     directory: PathBuf,
-    /// The measurements, CSV: frame, status, x_px, y_px and what else docs/formats.md names
+    /// The measurements, CSV: frame, status, x_px, y_px, or field, status, d1_m ..., and what else docs/formats.md names
     measurements: PathBuf,
     /// What the pipeline took each cluster for, Parquet: evidence for the causes of misses. Default:
     /// `clusters.parquet` beside the measurements, if it is there
     #[arg(long, value_name = "FILE")]
     clusters: Option<PathBuf>,
+    /// Docking: what the pipeline said at the end of portions, CSV. Default: `motion.csv` beside the measurements, if it
+    /// is there
+    #[arg(long, value_name = "FILE")]
+    motion: Option<PathBuf>,
 }
 
 pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answer, Failure> {
-    let beside =
-        || Some(arguments.measurements.with_file_name("clusters.parquet")).filter(|path| path.is_file());
-    let clusters = arguments.clusters.clone().or_else(beside);
+    let run_file = arguments.directory.join("run.toml");
+    let text = toml_file::read_text(&run_file).map_err(|source| FileError::Io {
+        path: run_file.clone(),
+        doing: "read",
+        source,
+    })?;
+    let beside = |name: &str| Some(arguments.measurements.with_file_name(name)).filter(|path| path.is_file());
+    let world = world(&run_file, &text, "scenario.world")?;
+    let (given, expected) = match world {
+        World::FarRange => (arguments.motion.as_ref().map(|_| "--motion"), "docking"),
+        World::Docking => (arguments.clusters.as_ref().map(|_| "--clusters"), "far range"),
+    };
+    if let Some(given) = given {
+        return Err(Failure::Usage(format!("{given} is given, expected with a run of {expected} alone")));
+    }
+    if world == World::Docking {
+        let motion = arguments.motion.clone().or_else(|| beside("motion.csv"));
+        let score = score_docking(&arguments.directory, &arguments.measurements, motion.as_deref())?;
+        output.answer(&score, docking(&score, output.is_terminal()))?;
+        return Ok(Answer::Yes);
+    }
+    let clusters = arguments.clusters.clone().or_else(|| beside("clusters.parquet"));
     let score = run::score(&arguments.directory, &arguments.measurements, clusters.as_deref())?.score;
-    let is_argon = is_argon(&RunFile::read(&arguments.directory.join("run.toml"))?.scenario);
+    let is_argon = is_argon(&RunFile::<FarRangeScenario>::read(&run_file)?.scenario);
     let style = TableStyle {
         styled: output.is_terminal(),
         reference: is_argon.then_some(&ARGON_TABLE_2),

@@ -117,13 +117,18 @@ impl CsvRow<'_> {
 
     /// The number of the row's frame, which must be larger than that of the row before.
     pub(super) fn frame_after(&self, previous: Option<u64>) -> Result<u64, FileError> {
-        let frame = self.count("frame")?;
+        self.number_after("frame", previous)
+    }
+
+    /// The number of the row's frame or field, in this column, which must be larger than that of the row before.
+    pub(super) fn number_after(&self, column: &'static str, previous: Option<u64>) -> Result<u64, FileError> {
+        let number = self.count(column)?;
         match previous {
-            Some(previous) if frame <= previous => Err(self.error(
-                "frame",
-                format!("more than {previous}, that of the row before (each frame once, ascending)"),
+            Some(previous) if number <= previous => Err(self.error(
+                column,
+                format!("more than {previous}, that of the row before (each {column} once, ascending)"),
             )),
-            _ => Ok(frame),
+            _ => Ok(number),
         }
     }
 }

@@ -126,6 +126,31 @@ impl RunDirectory {
         self.path.join("clusters.parquet")
     }
 
+    /// `setup.toml` of a docking run: see [`super::docking::SetupFile`].
+    pub fn setup(&self) -> PathBuf {
+        self.path.join("setup.toml")
+    }
+
+    /// `truth/fields.parquet` of a docking run: rows of [`sim::docking::FieldTruth`].
+    pub fn truth_fields(&self) -> PathBuf {
+        self.path.join("truth/fields.parquet")
+    }
+
+    /// `motion.csv` of a docking run: what is said at the end of each portion.
+    pub fn motion(&self) -> PathBuf {
+        self.path.join("motion.csv")
+    }
+
+    /// `features.parquet` of a docking run: rows of [`super::docking::FeatureRow`].
+    pub fn features(&self) -> PathBuf {
+        self.path.join("features.parquet")
+    }
+
+    /// `fields.avi` of a docking dataset that is kept as video.
+    pub fn video(&self) -> PathBuf {
+        self.path.join("fields.avi")
+    }
+
     /// `score.json`.
     pub fn score(&self) -> PathBuf {
         self.path.join("score.json")

@@ -8,6 +8,7 @@ mod clusters;
 mod csv_table;
 mod dataset;
 mod directory;
+pub mod docking;
 mod error;
 mod exr;
 mod field_telemetry;

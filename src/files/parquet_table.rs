@@ -53,8 +53,11 @@ pub trait Row: Sized {
     /// [`FileError::Value`] for a cell that is not as it should be.
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError>;
 
-    /// The frame that the row belongs to.
+    /// The frame, or the field, that the row belongs to.
     fn frame(&self) -> u64;
+
+    /// The column that holds it.
+    const FRAME: &'static str = "frame";
 }
 
 /// Writes a table, in row groups as it goes: memory stays the same however long the table.
@@ -187,7 +190,7 @@ impl<R: Row> TableReader<R> {
                 let frame = row.frame();
                 if let Some(last) = self.last_frame.filter(|&last| frame < last) {
                     let expected = format!("{last} or more, as rows are ordered by frame");
-                    return Err(columns.error(i, "frame", frame, expected));
+                    return Err(columns.error(i, R::FRAME, frame, expected));
                 }
                 self.last_frame = Some(frame);
             }

@@ -14,7 +14,7 @@ use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
 use super::parquet_table::{Column, Columns, Row};
 use super::{FileError, unit};
 
-type Timestamps = PrimitiveArray<TimestampNanosecondType>;
+pub(super) type Timestamps = PrimitiveArray<TimestampNanosecondType>;
 
 const BODY: [&str; 4] = ["q_sc_j2000_w", "q_sc_j2000_x", "q_sc_j2000_y", "q_sc_j2000_z"];
 const CAMERA: [&str; 4] = ["q_cam_j2000_w", "q_cam_j2000_x", "q_cam_j2000_y", "q_cam_j2000_z"];
@@ -24,20 +24,24 @@ const VELOCITY: [&str; 3] = ["velocity_x_km_s", "velocity_y_km_s", "velocity_z_k
 const LINE_OF_SIGHT: [&str; 3] = ["los_j2000_x", "los_j2000_y", "los_j2000_z"];
 const SUN: [&str; 3] = ["sun_j2000_x", "sun_j2000_y", "sun_j2000_z"];
 
-fn numbers<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> f64) -> Column {
+pub(super) fn numbers<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> f64) -> Column {
     Column::new(name, Float64Array::from_iter_values(rows.iter().map(value)))
 }
 
-fn optional_numbers<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> Option<f64>) -> Column {
+pub(super) fn optional_numbers<R>(
+    rows: &[R],
+    name: &'static str,
+    value: impl Fn(&R) -> Option<f64>,
+) -> Column {
     Column::nullable(name, Float64Array::from_iter(rows.iter().map(value)))
 }
 
-fn words<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> &str) -> Column {
+pub(super) fn words<R>(rows: &[R], name: &'static str, value: impl Fn(&R) -> &str) -> Column {
     Column::new(name, StringArray::from_iter_values(rows.iter().map(value)))
 }
 
 /// Numbers that stand together, one column each, all of them there or none.
-fn optional_components<R, const N: usize>(
+pub(super) fn optional_components<R, const N: usize>(
     rows: &[R],
     names: [&'static str; N],
     values: impl Fn(&R) -> Option<[f64; N]>,
@@ -47,7 +51,7 @@ fn optional_components<R, const N: usize>(
 }
 
 /// Numbers that stand together, one column each.
-fn components<R, const N: usize>(
+pub(super) fn components<R, const N: usize>(
     rows: &[R],
     names: [&'static str; N],
     values: impl Fn(&R) -> [f64; N],
@@ -56,7 +60,7 @@ fn components<R, const N: usize>(
     (0..N).map(column).collect::<Vec<_>>().into_iter()
 }
 
-fn columns_f64<'a, const N: usize>(
+pub(super) fn columns_f64<'a, const N: usize>(
     columns: &'a Columns<'_>,
     names: [&str; N],
 ) -> Result<[&'a [f64]; N], FileError> {

@@ -1,6 +1,6 @@
 //! Scenarios that are embedded in the binary.
 
-use super::Scenario;
+use super::FarRangeScenario;
 
 /// A file of the folder `scenarios/`, embedded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,16 +14,21 @@ pub struct BuiltIn {
 /// Every built-in scenario, by name.
 pub const BUILT_IN: &[BuiltIn] = &[
     BuiltIn { name: "argon", text: include_str!("../../scenarios/argon.toml") },
+    BuiltIn { name: "docking", text: DOCKING },
     BuiltIn { name: "starting-point", text: STARTING_POINT },
 ];
 
 /// Whether a scenario flies what the built-in `argon` flies: the same orbits and the same images. Only then do the
 /// figures that the paper publishes stand beside its own.
-pub fn is_argon(scenario: &Scenario) -> bool {
+pub fn is_argon(scenario: &FarRangeScenario) -> bool {
     let built_in = BUILT_IN.iter().find(|built_in| built_in.name == "argon");
-    let argon = built_in.and_then(|argon| toml::from_str::<Scenario>(argon.text).ok());
+    let argon = built_in.and_then(|argon| toml::from_str::<FarRangeScenario>(argon.text).ok());
     argon.is_some_and(|argon| argon.orbit == scenario.orbit && argon.schedule == scenario.schedule)
 }
 
-/// A small scenario with a comment on every line: what `scenario new` writes.
+/// The approach to the station, a comment on every line: the built-in `docking`, and what `scenario new --world docking`
+/// writes.
+pub const DOCKING: &str = include_str!("../../scenarios/docking.toml");
+
+/// A small scenario with a comment on every line: what `scenario new` writes unless told otherwise.
 pub const STARTING_POINT: &str = include_str!("../../scenarios/starting-point.toml");

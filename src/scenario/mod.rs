@@ -1,128 +1,106 @@
-//! Scenarios: what to run, in words.
+//! Scenarios: what to run, in words. A scenario belongs to one of two worlds, each with a type of its own.
 
 mod builtin;
 mod cameras;
+mod docking;
+mod far_range;
 mod source;
 
-pub use builtin::{BUILT_IN, BuiltIn, STARTING_POINT, is_argon};
+pub use builtin::{BUILT_IN, BuiltIn, DOCKING, STARTING_POINT, is_argon};
 pub use cameras::CAMERAS;
-pub use source::ScenarioSource;
+pub use docking::{DockingScenario, DockingWorld};
+pub use far_range::{FarRangeScenario, FarRangeWorld, StarListConfig};
+pub use source::{ScenarioSource, world};
 
-use contract::{Camera, Readout};
-use pipeline::far_range::FarRangeConfig;
+use std::fmt;
+use std::str::FromStr;
+
 use schemars::{JsonSchema, Schema, schema_for};
-use serde::{Deserialize, Serialize};
-use sim::Simulation;
-use sim::catalog::CatalogConfig;
-use sim::onboard::{RoiConfig, ShutterConfig};
-use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
-use sim::scene::{BackgroundConfig, TargetConfig};
-use sim::sensor::{SensorConfig, Switch};
-use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
 
-/// A scenario, as a TOML file holds it. Units are in the names; unknown keys are errors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Scenario {
-    /// What it is, in one line.
-    pub title: String,
-    /// Seed of every random draw but the detector's fixed pattern.
-    pub seed: u64,
-    /// Which stars are drawn.
-    #[serde(default)]
-    pub catalog: CatalogConfig,
-    /// Which stars the pipeline is told of.
-    pub star_list: StarListConfig,
-    /// Orbits of target and chaser.
-    pub orbit: OrbitConfig,
-    /// When images are taken, group by group.
-    pub schedule: Vec<GroupConfig>,
-    /// Where the chaser points, and how well.
-    pub attitude: AttitudeConfig,
-    /// What telemetry knows of the attitude.
-    pub knowledge: KnowledgeConfig,
-    /// How the camera sits on the chaser, in truth and by calibration.
-    pub mounting: MountingConfig,
-    /// Geometry of the camera.
-    pub camera: Camera,
-    /// Point spread function of the optics.
-    pub psf: PsfConfig,
-    /// What of the optics changes over the field: vignetting, sharpness; absent: nothing.
-    #[serde(default)]
-    pub optics: OpticsConfig,
-    /// From magnitudes to photoelectrons.
-    pub radiometry: RadiometryConfig,
-    /// Light without a source in the field: zodiacal light, faint stars, stray light; absent: none.
-    #[serde(default)]
-    pub background: BackgroundConfig,
-    /// The detector.
-    pub sensor: SensorConfig,
-    /// The law of the exposure time.
-    pub shutter: ShutterConfig,
-    /// Regions of interest kept on board; absent: whole images are transmitted.
-    pub roi: Option<RoiConfig>,
-    /// The target spacecraft as a source of light.
-    pub target: TargetConfig,
-    /// Whether the Moon and the planets are drawn, "on" or "off" (the default). They are in no star list.
-    #[serde(default = "off")]
-    pub solar_system: Switch,
-    /// Parameters of the pipeline `far_range`.
-    #[serde(default)]
-    pub far_range: FarRangeConfig,
-}
+use crate::toml_file;
 
-fn off() -> Switch {
-    Switch::Off
-}
-
-/// The star list uploaded to the pipeline.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StarListConfig {
-    /// Faintest star of the list, V magnitude, −2 to 15.
-    pub magnitude_limit: f64,
+/// A scenario of either world.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Scenario {
+    /// Star fields with a distant spacecraft.
+    FarRange(Box<FarRangeScenario>),
+    /// The approach to a docking target.
+    Docking(Box<DockingScenario>),
 }
 
 impl Scenario {
-    /// What the simulator needs of it.
-    pub fn simulation(&self) -> Simulation {
-        Simulation {
-            seed: self.seed,
-            catalog: self.catalog.clone(),
-            orbit: self.orbit.clone(),
-            schedule: self.schedule.clone(),
-            attitude: self.attitude.clone(),
-            knowledge: self.knowledge.clone(),
-            mounting: self.mounting,
-            camera: self.camera.clone(),
-            psf: self.psf.clone(),
-            optics: self.optics.clone(),
-            radiometry: self.radiometry.clone(),
-            background: self.background.clone(),
-            sensor: self.sensor.clone(),
-            shutter: self.shutter.clone(),
-            roi: self.roi.clone(),
-            target: self.target.clone(),
-            solar_system: self.solar_system,
+    /// What it is, in one line.
+    pub fn title(&self) -> &str {
+        match self {
+            Self::FarRange(scenario) => &scenario.title,
+            Self::Docking(scenario) => &scenario.title,
         }
     }
 
-    /// How the detector's electrons become digital numbers, as its calibration tells a pipeline.
-    pub fn readout(&self) -> Readout {
-        let sensor = &self.sensor;
-        // At the full well the read noise still moves a pixel: it counts as full from five standard deviations below.
-        let full_dn =
-            sensor.bias_dn + (sensor.full_well_e - 5.0 * sensor.read_noise_e) / sensor.gain_e_per_dn;
-        Readout {
-            gain_e_per_dn: sensor.gain_e_per_dn,
-            bias_dn: sensor.bias_dn,
-            read_noise_e: sensor.read_noise_e,
-            saturation_dn: full_dn.floor().clamp(1.0, f64::from(sensor.full_scale_dn())) as u16,
+    /// Gives it another seed.
+    pub fn set_seed(&mut self, seed: u64) {
+        match self {
+            Self::FarRange(scenario) => scenario.seed = seed,
+            Self::Docking(scenario) => scenario.seed = seed,
         }
     }
 
-    /// The JSON Schema of the file, from the types that read it.
-    pub fn json_schema() -> Schema {
-        schema_for!(Scenario)
+    /// The JSON Schema of scenario files, from the types that read them: of one world, or of either.
+    pub fn json_schema(world: Option<World>) -> Schema {
+        /// A scenario file: by its key `world`, of one of two kinds.
+        #[derive(JsonSchema)]
+        #[schemars(untagged)]
+        #[allow(dead_code, reason = "its schema is all that is asked of it")]
+        enum Either {
+            /// A far-range scenario: star fields with a distant spacecraft.
+            FarRange(FarRangeScenario),
+            /// A docking scenario: an approach as the television camera sees it.
+            Docking(DockingScenario),
+        }
+        match world {
+            None => schema_for!(Either),
+            Some(World::FarRange) => schema_for!(FarRangeScenario),
+            Some(World::Docking) => schema_for!(DockingScenario),
+        }
+    }
+}
+
+/// What a scenario is about: the key `world` of its file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum World {
+    /// Star fields with a distant spacecraft; the world of a file without the key.
+    FarRange,
+    /// The approach to a docking target.
+    Docking,
+}
+
+impl World {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::FarRange, Self::Docking];
+
+    /// The word used in files and on the command line; also the name of the world's built-in pipeline.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::FarRange => "far_range",
+            Self::Docking => "docking",
+        }
+    }
+}
+
+impl fmt::Display for World {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.code())
+    }
+}
+
+impl FromStr for World {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::ALL.into_iter().find(|world| world.code() == text).ok_or_else(|| {
+            let hint = toml_file::nearest(text, Self::ALL.map(Self::code))
+                .map_or(String::new(), |name| format!("; did you mean `{name}`?"));
+            format!("there is no world `{text}`, expected `far_range` or `docking`{hint}")
+        })
     }
 }

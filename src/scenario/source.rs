@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use pipeline::PipelineError;
 use sim::catalog::CatalogSource;
+use sim::docking::DockingSimulator;
 use sim::optics::PsfConfig;
+use sim::scene::docking::TargetFile;
 use sim::{SimError, Simulator};
 
-use super::{BUILT_IN, Scenario, is_argon};
+use super::{BUILT_IN, DockingScenario, FarRangeScenario, Scenario, World};
 use crate::failure::Failure;
 use crate::run_file::RunFile;
 use crate::toml_file;
@@ -47,7 +49,16 @@ impl ScenarioSource {
             ))
         })?;
         if file.file_name().is_some_and(|name| name == "run.toml") {
-            let RunFile { name, scenario, .. } = RunFile::read(&file)?;
+            let (name, scenario) = match world(&file, &text, "scenario.world")? {
+                World::FarRange => {
+                    let RunFile { name, scenario, .. } = RunFile::<FarRangeScenario>::read(&file)?;
+                    (name, Scenario::FarRange(Box::new(scenario)))
+                }
+                World::Docking => {
+                    let RunFile { name, scenario, .. } = RunFile::<DockingScenario>::read(&file)?;
+                    (name, Scenario::Docking(Box::new(scenario)))
+                }
+            };
             return Ok(Self { name, folder: PathBuf::new(), scenario, file, text });
         }
         let name =
@@ -56,50 +67,96 @@ impl ScenarioSource {
         Self::parse(name, folder, file, text)
     }
 
-    /// Reads the text of a scenario that came from `file`.
+    /// Reads the text of a scenario that came from `file`. Its key `world` says which kind it is.
     ///
     /// # Errors
     /// A [`Failure`] with the place of the first mistake.
     pub fn parse(name: String, folder: PathBuf, file: PathBuf, text: String) -> Result<Self, Failure> {
-        let mut scenario: Scenario = toml_file::parse(&file, &text)?;
-        let catalog = match &mut scenario.catalog.source {
-            CatalogSource::File(path) => Some(path),
-            CatalogSource::Hipparcos2 => None,
-        };
-        let psf = match &mut scenario.psf {
-            PsfConfig::Sampled { path, .. } => Some(path),
-            _ => None,
-        };
-        for path in catalog.into_iter().chain(psf) {
-            if let Ok(absolute) = std::path::absolute(folder.join(&*path)) {
-                // So that run.toml can be run from anywhere.
-                *path = absolute.to_string_lossy().into_owned();
+        let scenario = match world(&file, &text, "world")? {
+            World::FarRange => {
+                let mut scenario: FarRangeScenario = toml_file::parse(&file, &text)?;
+                let catalog = match &mut scenario.catalog.source {
+                    CatalogSource::File(path) => Some(path),
+                    CatalogSource::Hipparcos2 => None,
+                };
+                let psf = match &mut scenario.psf {
+                    PsfConfig::Sampled { path, .. } => Some(path),
+                    _ => None,
+                };
+                catalog.into_iter().chain(psf).for_each(|path| make_absolute(&folder, path));
+                Scenario::FarRange(Box::new(scenario))
             }
-        }
+            World::Docking => {
+                let mut scenario: DockingScenario = toml_file::parse(&file, &text)?;
+                if TargetFile::built_in(&scenario.target).is_none() {
+                    make_absolute(&folder, &mut scenario.target);
+                }
+                Scenario::Docking(Box::new(scenario))
+            }
+        };
         Ok(Self { name, folder, scenario, file, text })
     }
 
-    /// Whether the published figures of ARGON may stand beside those of this scenario.
-    pub fn is_argon(&self) -> bool {
-        is_argon(&self.scenario)
+    /// The far-range scenario that it is.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when it is of another world; `what` is what was meant to be done with it.
+    pub fn far_range(&self, what: &str) -> Result<&FarRangeScenario, Failure> {
+        match &self.scenario {
+            Scenario::FarRange(scenario) => Ok(scenario),
+            Scenario::Docking(_) => Err(self.other_world(what, World::FarRange)),
+        }
     }
 
-    /// The simulator of this scenario; every value is checked.
+    /// The docking scenario that it is.
+    ///
+    /// # Errors
+    /// As [`ScenarioSource::far_range`].
+    pub fn docking(&self, what: &str) -> Result<&DockingScenario, Failure> {
+        match &self.scenario {
+            Scenario::FarRange(_) => Err(self.other_world(what, World::Docking)),
+            Scenario::Docking(scenario) => Ok(scenario),
+        }
+    }
+
+    fn other_world(&self, what: &str, expected: World) -> Failure {
+        Failure::Usage(format!(
+            "{what}: scenario `{}` is of another world, expected one of {expected}",
+            self.name
+        ))
+    }
+
+    /// The simulator of a far-range scenario; every value is checked.
     ///
     /// # Errors
     /// A [`Failure`] with the place of the first value that is not allowed.
-    pub fn simulator(&self) -> Result<Simulator, Failure> {
-        let limit = self.scenario.star_list.magnitude_limit;
+    pub fn simulator(&self, scenario: &FarRangeScenario) -> Result<Simulator, Failure> {
+        let limit = scenario.star_list.magnitude_limit;
         if !(-2.0..=15.0).contains(&limit) {
             let message = format!("is {limit}, expected -2 to 15");
             return Err(self.refuse("star_list.magnitude_limit", message));
         }
-        if let Err(PipelineError::Parameter { field, value, expected }) = self.scenario.far_range.check() {
-            return Err(
-                self.refuse(&format!("far_range.{field}"), format!("is {value}, expected {expected}"))
-            );
+        self.check_pipeline("far_range", scenario.far_range.check())?;
+        Simulator::new(&scenario.simulation(), &self.folder).map_err(|error| self.explain(error))
+    }
+
+    /// The simulator of a docking scenario; every value is checked, those of the target's file too.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the first value that is not allowed.
+    pub fn docking_simulator(&self, scenario: &DockingScenario) -> Result<DockingSimulator, Failure> {
+        self.check_pipeline("docking", scenario.docking.check())?;
+        DockingSimulator::new(&scenario.simulation(), &self.folder).map_err(|error| self.explain(error))
+    }
+
+    fn check_pipeline(&self, table: &str, checked: Result<(), PipelineError>) -> Result<(), Failure> {
+        match checked {
+            Err(PipelineError::Parameter { field, value, expected }) => {
+                Err(self.refuse(&format!("{table}.{field}"), format!("is {value}, expected {expected}")))
+            }
+            Err(PipelineError::Contract(error)) => Err(error.into()),
+            Ok(()) => Ok(()),
         }
-        Simulator::new(&self.scenario.simulation(), &self.folder).map_err(|error| self.explain(error))
     }
 
     /// Gives a refused value its place in the file.
@@ -120,5 +177,30 @@ impl ScenarioSource {
 
     fn refuse(&self, path: &str, message: String) -> Failure {
         toml_file::refuse(&self.file, &self.text, path, message).into()
+    }
+}
+
+/// The world that a file names at a dotted path; far range where it names none.
+///
+/// # Errors
+/// A [`Failure`] with the place of a world that there is not. Text that is not TOML is left to the reader of the whole.
+pub fn world(file: &Path, text: &str, path: &str) -> Result<World, Failure> {
+    let Ok(table) = text.parse::<toml::Table>() else { return Ok(World::FarRange) };
+    let steps: Vec<&str> = path.split('.').collect();
+    let (last, tables) = steps.split_last().map_or((path, &[][..]), |(last, tables)| (*last, tables));
+    let inner = tables.iter().try_fold(&table, |table, step| table.get(*step).and_then(|v| v.as_table()));
+    match inner.and_then(|table| table.get(last)) {
+        Some(toml::Value::String(word)) => {
+            word.parse().map_err(|message| toml_file::refuse(file, text, path, message).into())
+        }
+        // Of another type: its place is told when the whole is read.
+        _ => Ok(World::FarRange),
+    }
+}
+
+/// So that run.toml can be run from anywhere.
+fn make_absolute(folder: &Path, path: &mut String) {
+    if let Ok(absolute) = std::path::absolute(folder.join(&*path)) {
+        *path = absolute.to_string_lossy().into_owned();
     }
 }

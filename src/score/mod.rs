@@ -15,6 +15,7 @@ mod angles;
 mod argon_table2;
 mod belonging;
 mod cause;
+pub mod docking;
 #[cfg(test)]
 mod hand_made;
 mod report;

@@ -1,7 +1,7 @@
 //! Somebody else's pipeline, run as a process.
 //!
 //! The process is given one JSON line on its standard input for each frame, and answers with one JSON line on its
-//! standard output. The lines are described at [`protocol`]. Whatever the process does wrong is an outcome with a
+//! standard output. The lines are described at [`protocol`], those of docking at [`docking_protocol`]. Whatever the process does wrong is an outcome with a
 //! reason, never an error of the run:
 //!
 //! - an answer that cannot be used (garbage, a number that is missing, not finite or off the detector, the wrong
@@ -11,9 +11,13 @@
 //!
 //! There is no shell: the command is split into words by the rules of POSIX quoting, and run.
 
+mod docking;
+pub mod docking_protocol;
 mod group;
 mod process;
 pub mod protocol;
+
+pub use docking::{ExternalDockingFactory, WriteField};
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -73,27 +77,7 @@ impl ExternalFactory {
     }
 
     fn plan(&self) -> Result<Plan, ContractError> {
-        let mut words = shlex::split(&self.command)
-            .ok_or_else(|| self.cannot_build("the command ends inside a quotation"))?
-            .into_iter();
-        Ok(Plan {
-            program: words.next().ok_or_else(|| self.cannot_build("the command is empty"))?,
-            arguments: words.collect(),
-            start_limit: self.limit("start_timeout_s", self.start_timeout_s)?,
-            frame_limit: self.limit("timeout_s", self.timeout_s)?,
-        })
-    }
-
-    fn cannot_build(&self, reason: impl Into<String>) -> ContractError {
-        ContractError::CannotBuild { pipeline: self.name(), reason: reason.into() }
-    }
-
-    fn limit(&self, name: &str, seconds: f64) -> Result<Duration, ContractError> {
-        if seconds > 0.0 && seconds <= 1e6 {
-            Ok(Duration::from_secs_f64(seconds))
-        } else {
-            Err(self.cannot_build(format!("{name} is {seconds}, expected above 0 to 1e6")))
-        }
+        Plan::new(&self.command, self.start_timeout_s, self.timeout_s)
     }
 }
 
@@ -116,23 +100,56 @@ struct Plan {
     frame_limit: Duration,
 }
 
+impl Plan {
+    /// Splits a command and checks the limits.
+    fn new(command: &str, start_timeout_s: f64, timeout_s: f64) -> Result<Self, ContractError> {
+        let cannot_build = |reason: String| ContractError::CannotBuild { pipeline: name(command), reason };
+        let limit = |name: &str, seconds: f64| {
+            if seconds > 0.0 && seconds <= 1e6 {
+                Ok(Duration::from_secs_f64(seconds))
+            } else {
+                Err(cannot_build(format!("{name} is {seconds}, expected above 0 to 1e6")))
+            }
+        };
+        let mut words = shlex::split(command)
+            .ok_or_else(|| cannot_build("the command ends inside a quotation".to_owned()))?
+            .into_iter();
+        Ok(Self {
+            program: words.next().ok_or_else(|| cannot_build("the command is empty".to_owned()))?,
+            arguments: words.collect(),
+            start_limit: limit("start_timeout_s", start_timeout_s)?,
+            frame_limit: limit("timeout_s", timeout_s)?,
+        })
+    }
+
+    /// Starts the process and greets it; the reason when either does not succeed.
+    fn start(&self, greeting: Result<Vec<u8>, String>) -> State {
+        match start(&self.program, &self.arguments, greeting, self.start_limit) {
+            Ok(process) => State::Running(process),
+            Err(reason) => State::Dead(reason),
+        }
+    }
+}
+
+/// The name of the pipeline of a command.
+fn name(command: &str) -> String {
+    format!("exec:{command}")
+}
+
 impl PipelineFactory for ExternalFactory {
     fn name(&self) -> String {
-        format!("exec:{}", self.command)
+        name(&self.command)
     }
 
     /// Starts the process and greets it. A process that does not start or greets wrongly gives a pipeline whose every
     /// answer says so: only a command or a limit that cannot be meant is refused.
     fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
-        let Plan { program, arguments, start_limit, frame_limit } = self.plan()?;
+        let plan = self.plan()?;
         Ok(Box::new(External {
-            state: match start(&program, &arguments, setup, start_limit) {
-                Ok(process) => State::Running(process),
-                Err(reason) => State::Dead(reason),
-            },
+            state: plan.start(protocol::greeting(setup)),
             size_px: (setup.camera.columns, setup.camera.rows),
-            frame_limit,
-            images: Images { directory: self.scratch_dir.clone(), sequence: next_sequence() },
+            frame_limit: plan.frame_limit,
+            images: Images::new(&self.scratch_dir, "fits"),
             write_image: Arc::clone(&self.write_image),
             write_time: self.write_time,
         }))
@@ -140,10 +157,15 @@ impl PipelineFactory for ExternalFactory {
 }
 
 /// Starts a process and greets it.
-fn start(program: &str, arguments: &[String], setup: &Setup, limit: Duration) -> Result<Process, String> {
+fn start(
+    program: &str,
+    arguments: &[String],
+    greeting: Result<Vec<u8>, String>,
+    limit: Duration,
+) -> Result<Process, String> {
     let mut process =
         Process::start(program, arguments).map_err(|error| format!("`{program}` does not start: {error}"))?;
-    let greeted = protocol::greeting(setup)
+    let greeted = greeting
         .map_err(Fault::Broken)
         .and_then(|line| process.exchange(line, limit))
         .and_then(|line| protocol::check_greeting(&line).map_err(Fault::Broken));
@@ -209,11 +231,17 @@ fn next_sequence() -> u64 {
 struct Images {
     directory: PathBuf,
     sequence: u64,
+    extension: &'static str,
 }
 
 impl Images {
+    fn new(directory: &Path, extension: &'static str) -> Self {
+        Self { directory: directory.to_owned(), sequence: next_sequence(), extension }
+    }
+
     fn place(&self, frame: u64) -> Image {
-        let name = format!("boresight-{}-{}-{frame}.fits", std::process::id(), self.sequence);
+        let (sequence, extension) = (self.sequence, self.extension);
+        let name = format!("boresight-{}-{sequence}-{frame}.{extension}", std::process::id());
         Image { path: self.directory.join(name) }
     }
 }

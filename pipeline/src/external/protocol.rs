@@ -195,20 +195,20 @@ fn measurement(answer: &Answer, (columns, rows): (usize, usize)) -> Result<Measu
     Ok(Measurement { position, line_of_sight })
 }
 
-fn line(value: &impl Serialize) -> Result<Vec<u8>, String> {
+pub(super) fn line(value: &impl Serialize) -> Result<Vec<u8>, String> {
     let mut line = serde_json::to_vec(value).map_err(|error| format!("no line can be made: {error}"))?;
     line.push(b'\n');
     Ok(line)
 }
 
-fn parse<'a, T: Deserialize<'a>>(line: &'a [u8]) -> Result<T, String> {
+pub(super) fn parse<'a, T: Deserialize<'a>>(line: &'a [u8]) -> Result<T, String> {
     serde_json::from_slice(line).map_err(|error| {
         format!("its answer `{}` cannot be read: {error}", shortened(&String::from_utf8_lossy(line)))
     })
 }
 
 /// The beginning of a text, for a message.
-fn shortened(text: &str) -> String {
+pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 200;
     let text = text.trim_end();
     match text.char_indices().nth(MOST) {

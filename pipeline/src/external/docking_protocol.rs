@@ -1,0 +1,223 @@
+//! The lines exchanged with an external docking pipeline: JSON, one object a line, UTF-8.
+//!
+//! Greeting, to the process (metres; `marks` are corners y1, y2 in the disk's plane):
+//! ```json
+//! {"boresight_pipeline": 1, "world": "docking", "cameras": [{"columns": 768, "rows": 576, "focal_length_mm": 24.2, "...": 0}],
+//!  "bit_depth": 8, "target": {"name": "progress", "mark_circle_radius_m": 0.25, "marks": [[[0, 0], [0, 0], [0, 0], [0, 0]]],
+//!  "cross": {"height_m": 0.3, "...": 0}, "...": 0}}
+//! ```
+//! and its answer: `{"boresight_pipeline": 1, "name": "my pipeline"}`.
+//!
+//! A field, to the process (`image` is a grey PNG that is removed after the answer; its row k is the camera's row k, 2k or
+//! 2k + 1 for `lines` `all`, `even` or `odd`):
+//! ```json
+//! {"field": 12, "image": "/tmp/12.png", "lines": "even", "time_s": 0.24, "camera": 0, "contrast": 1.0, "brightness": 0.0}
+//! ```
+//! and its answer, angles in degrees, in which the standard deviations may be left out and a setting of the digitiser may
+//! be asked for:
+//! ```json
+//! {"field": 12, "status": "measured", "d_m": [0.1, -0.2, 9.7], "phi_deg": [0.1, 0.0, 1.2],
+//!  "sigma_d_m": [0.02, 0.02, 0.01], "sigma_phi_deg": [0.1, 0.1, 0.05], "contrast": 1.4, "brightness": -0.1}
+//! ```
+//! or the range alone, `{"field": 12, "status": "range_only", "range_m": 310, "sigma_range_m": 4}`, or the reason of none,
+//! `{"field": 12, "status": "no_target"}`: the words are those of [`contract::docking::NoPose::code`], and `failed: `
+//! followed by a reason. A key that is not known makes an answer unusable. A line is at most
+//! [`super::protocol::MAX_LINE_BYTES`] long.
+
+use std::path::Path;
+
+use contract::Camera;
+use contract::docking::{
+    Digitiser, DockingOutcome, DockingSetup, DockingSolution, Features, Field, FieldMeasurement,
+    FieldTelemetry, NoPose, Pose, PoseEstimate, TargetModel,
+};
+use nalgebra::{Matrix6, Vector3, Vector6};
+use serde::{Deserialize, Serialize};
+
+use super::protocol::{VERSION, line, parse, shortened};
+
+#[derive(Serialize)]
+struct Greeting<'a> {
+    boresight_pipeline: u32,
+    world: &'static str,
+    cameras: &'a [Camera],
+    bit_depth: u8,
+    target: &'a TargetModel,
+}
+
+#[derive(Serialize)]
+struct Request<'a> {
+    field: u64,
+    image: &'a str,
+    lines: &'static str,
+    time_s: f64,
+    camera: usize,
+    contrast: f64,
+    brightness: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Answer {
+    field: u64,
+    status: String,
+    d_m: Option<[f64; 3]>,
+    phi_deg: Option<[f64; 3]>,
+    sigma_d_m: Option<[f64; 3]>,
+    sigma_phi_deg: Option<[f64; 3]>,
+    range_m: Option<f64>,
+    sigma_range_m: Option<f64>,
+    contrast: Option<f64>,
+    brightness: Option<f64>,
+}
+
+/// The greeting line.
+pub(super) fn greeting(setup: &DockingSetup) -> Result<Vec<u8>, String> {
+    line(&Greeting {
+        boresight_pipeline: VERSION,
+        world: "docking",
+        cameras: &setup.cameras,
+        bit_depth: setup.bit_depth,
+        target: &setup.target,
+    })
+}
+
+/// The line of a field.
+pub(super) fn request(field: &Field, telemetry: &FieldTelemetry, image: &Path) -> Result<Vec<u8>, String> {
+    let image = image.to_str().ok_or_else(|| format!("the path {} is not UTF-8", image.display()))?;
+    line(&Request {
+        field: field.number(),
+        image,
+        lines: field.lines().code(),
+        time_s: telemetry.time_s,
+        camera: telemetry.camera,
+        contrast: telemetry.digitiser.contrast,
+        brightness: telemetry.digitiser.brightness,
+    })
+}
+
+/// The outcome that an answer to field `number` says, or why the answer cannot be used.
+pub(super) fn outcome(answer: &[u8], number: u64) -> Result<DockingOutcome, String> {
+    let answer: Answer = parse(answer)?;
+    if answer.field != number {
+        return Err(format!("it answered field {} instead of field {number}", answer.field));
+    }
+    let solution = match answer.status.as_str() {
+        "measured" => DockingSolution::Measured(Box::new(measurement(&answer)?)),
+        "range_only" => range_only(&answer)?,
+        status => match NoPose::parse(status) {
+            NoPose::Failed(_) if status != "failed" && !status.starts_with("failed: ") => {
+                return Err(format!("its status `{}` is not known", shortened(status)));
+            }
+            NoPose::Failed(reason) => DockingSolution::NoSolution(NoPose::Failed(shortened(&reason))),
+            reason => DockingSolution::NoSolution(reason),
+        },
+    };
+    let digitiser = digitiser(&answer)?;
+    Ok(DockingOutcome { solution, features: Features::default(), motion: None, digitiser })
+}
+
+fn measurement(answer: &Answer) -> Result<FieldMeasurement, String> {
+    let (Some(d), Some(phi_deg)) = (answer.d_m, answer.phi_deg) else {
+        return Err("it measured a pose and gave no d_m and phi_deg".to_owned());
+    };
+    let position_m = Vector3::from(d);
+    if position_m == Vector3::zeros() {
+        return Err("its d_m is the target's own centre".to_owned());
+    }
+    let sigma_d = answer.sigma_d_m.unwrap_or_default();
+    let sigma_phi = answer.sigma_phi_deg.unwrap_or_default().map(f64::to_radians);
+    for sigma in sigma_d.iter().chain(&sigma_phi) {
+        if *sigma < 0.0 {
+            return Err(format!("its standard deviation {sigma} is below 0"));
+        }
+    }
+    let [a, b, c] = sigma_d;
+    let [d, e, f] = sigma_phi;
+    let sigmas = Vector6::new(a, b, c, d, e, f);
+    let pose = Pose { position_m, phi_rad: Vector3::from(phi_deg.map(f64::to_radians)) };
+    let covariance = Matrix6::from_diagonal(&sigmas.component_mul(&sigmas));
+    Ok(FieldMeasurement { best: PoseEstimate { pose, covariance }, paper: None })
+}
+
+fn range_only(answer: &Answer) -> Result<DockingSolution, String> {
+    let range_m = answer.range_m.ok_or("it measured the range alone and gave no range_m")?;
+    let sigma_m = answer.sigma_range_m.unwrap_or(0.0);
+    if range_m <= 0.0 || sigma_m < 0.0 {
+        return Err(format!("its range_m {range_m} or sigma_range_m {sigma_m} is below 0"));
+    }
+    Ok(DockingSolution::RangeOnly { range_m, sigma_m })
+}
+
+fn digitiser(answer: &Answer) -> Result<Option<Digitiser>, String> {
+    let (contrast, brightness) = match (answer.contrast, answer.brightness) {
+        (None, None) => return Ok(None),
+        (Some(contrast), Some(brightness)) => (contrast, brightness),
+        _ => return Err("it asked for one of contrast and brightness, and not for the other".to_owned()),
+    };
+    let digitiser = Digitiser { contrast, brightness };
+    digitiser.check().map_err(|error| format!("it asked for what no digitiser has: {error}"))?;
+    Ok(Some(digitiser))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(answer: &str) -> Result<DockingOutcome, String> {
+        outcome(answer.as_bytes(), 7)
+    }
+
+    fn refused(answer: &str, because: &str) {
+        let reason = read(answer).unwrap_err();
+        assert!(reason.contains(because), "{reason}");
+    }
+
+    #[test]
+    fn a_pose_is_read_with_its_wish_for_the_digitiser() {
+        let got = read(
+            r#"{"field": 7, "status": "measured", "d_m": [0.1, 0, 9], "phi_deg": [0, 0, 90], "sigma_d_m": [0.1, 0.1, 0.2],
+               "contrast": 2, "brightness": -0.5}"#,
+        )
+        .unwrap();
+        let best = &got.measurement().unwrap().best;
+        assert_eq!(best.pose.position_m, Vector3::new(0.1, 0.0, 9.0));
+        assert_eq!(best.pose.phi_rad.z, std::f64::consts::FRAC_PI_2);
+        assert_eq!((best.covariance[(2, 2)], best.covariance[(3, 3)]), (0.2 * 0.2, 0.0));
+        assert_eq!(got.digitiser, Some(Digitiser { contrast: 2.0, brightness: -0.5 }));
+    }
+
+    #[test]
+    fn ranges_and_reasons_are_read() {
+        let range =
+            read(r#"{"field": 7, "status": "range_only", "range_m": 310, "sigma_range_m": 4}"#).unwrap();
+        assert_eq!(range.solution, DockingSolution::RangeOnly { range_m: 310.0, sigma_m: 4.0 });
+        for (status, expected) in [
+            ("no_target", NoPose::NoTarget),
+            ("out_of_field", NoPose::OutOfField),
+            ("failed: out of film", NoPose::Failed("out of film".to_owned())),
+        ] {
+            let got = read(&format!(r#"{{"field": 7, "status": "{status}"}}"#)).unwrap();
+            assert_eq!(got.solution, DockingSolution::NoSolution(expected));
+        }
+    }
+
+    #[test]
+    fn values_that_cannot_be_are_refused() {
+        let measured = |rest: &str| format!(r#"{{"field": 7, "status": "measured", {rest}}}"#);
+        refused(&measured(r#""d_m": [0, 0, 9]"#), "gave no d_m and phi_deg");
+        refused(&measured(r#""d_m": [0, 0, NaN], "phi_deg": [0, 0, 0]"#), "cannot be read");
+        refused(&measured(r#""d_m": [0, 0, 0], "phi_deg": [0, 0, 0]"#), "target's own centre");
+        refused(&measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0]"#), "cannot be read");
+        refused(&measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "sigma_d_m": [1, 1, -1]"#), "below 0");
+        refused(&measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "contrast": 1"#), "not for the other");
+        refused(
+            &measured(r#""d_m": [0, 0, 9], "phi_deg": [0, 0, 0], "contrast": 0, "brightness": 0"#),
+            "no digitiser",
+        );
+        refused(&measured(r#""d_m": [0, 0, 9], "phi_Deg": [0, 0, 0]"#), "unknown field `phi_Deg`");
+        refused(r#"{"field": 7, "status": "range_only"}"#, "no range_m");
+        refused(r#"{"field": 8, "status": "no_target"}"#, "it answered field 8 instead of field 7");
+        refused(r#"{"field": 7, "status": "fine"}"#, "its status `fine` is not known");
+    }
+}

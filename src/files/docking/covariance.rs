@@ -1,0 +1,53 @@
+//! A symmetric matrix of six as 21 cells of a table: the upper triangle, row by row.
+
+use nalgebra::{Matrix6, Vector6};
+
+use super::super::FileError;
+use super::super::csv_table::{CsvRow, cell};
+
+/// Cells of the upper triangle.
+pub(super) const CELLS: usize = 21;
+
+/// The places of the upper triangle, row by row.
+fn places() -> impl Iterator<Item = (usize, usize)> {
+    (0..6).flat_map(|i| (i..6).map(move |j| (i, j)))
+}
+
+/// The cells of a covariance; `scale` takes each of the six to the unit of the file.
+pub(super) fn to_cells(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> [String; CELLS] {
+    let mut cells = [const { String::new() }; CELLS];
+    for (text, (i, j)) in cells.iter_mut().zip(places()) {
+        *text = cell(covariance[(i, j)] * scale[i] * scale[j]);
+    }
+    cells
+}
+
+/// The covariance as it comes back from its cells.
+pub(super) fn as_filed(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> Matrix6<f64> {
+    let mut filed = Matrix6::zeros();
+    for (i, j) in places() {
+        let entry = covariance[(i, j)] * scale[i] * scale[j] / (scale[i] * scale[j]);
+        filed[(i, j)] = entry;
+        filed[(j, i)] = entry;
+    }
+    filed
+}
+
+/// The covariance that the cells say; `None` when all of them are empty.
+pub(super) fn read(
+    row: &CsvRow<'_>,
+    columns: [&'static str; CELLS],
+    scale: &Vector6<f64>,
+) -> Result<Option<Matrix6<f64>>, FileError> {
+    let Some(values) = row.optional_numbers(columns)? else { return Ok(None) };
+    let mut covariance = Matrix6::zeros();
+    for ((value, column), (i, j)) in values.iter().zip(columns).zip(places()) {
+        if i == j && *value < 0.0 {
+            return Err(row.error(column, "a variance, 0 or greater"));
+        }
+        let entry = value / (scale[i] * scale[j]);
+        covariance[(i, j)] = entry;
+        covariance[(j, i)] = entry;
+    }
+    Ok(Some(covariance))
+}

@@ -1,0 +1,349 @@
+//! `measurements.csv` of a docking run: a pipeline's answer to each field, ours or anybody's.
+
+use std::path::Path;
+
+use contract::docking::{
+    DockingOutcome, DockingSolution, Features, FieldMeasurement, NoPose, Pose, PoseEstimate,
+};
+use nalgebra::{Matrix6, Vector3, Vector6};
+
+use super::super::FileError;
+use super::super::csv_table::Presence::{Optional, Required};
+use super::super::csv_table::{CsvReader, CsvRow, CsvWriter, Layout, Presence, cells};
+use super::covariance::{self, CELLS};
+
+const POSE: [&str; 6] = ["d1_m", "d2_m", "d3_m", "phi1_deg", "phi2_deg", "phi3_deg"];
+const SIGMA: [&str; 6] =
+    ["sigma_d1_m", "sigma_d2_m", "sigma_d3_m", "sigma_phi1_deg", "sigma_phi2_deg", "sigma_phi3_deg"];
+const RANGE: [&str; 2] = ["range_m", "sigma_range_m"];
+const COVARIANCE: [&str; CELLS] = [
+    "cov_d1_d1_m2",
+    "cov_d1_d2_m2",
+    "cov_d1_d3_m2",
+    "cov_d1_phi1_m_deg",
+    "cov_d1_phi2_m_deg",
+    "cov_d1_phi3_m_deg",
+    "cov_d2_d2_m2",
+    "cov_d2_d3_m2",
+    "cov_d2_phi1_m_deg",
+    "cov_d2_phi2_m_deg",
+    "cov_d2_phi3_m_deg",
+    "cov_d3_d3_m2",
+    "cov_d3_phi1_m_deg",
+    "cov_d3_phi2_m_deg",
+    "cov_d3_phi3_m_deg",
+    "cov_phi1_phi1_deg2",
+    "cov_phi1_phi2_deg2",
+    "cov_phi1_phi3_deg2",
+    "cov_phi2_phi2_deg2",
+    "cov_phi2_phi3_deg2",
+    "cov_phi3_phi3_deg2",
+];
+const PAPER: [&str; 6] =
+    ["paper_d1_m", "paper_d2_m", "paper_d3_m", "paper_phi1_deg", "paper_phi2_deg", "paper_phi3_deg"];
+
+const LAYOUT: [(&str, Presence); 43] = {
+    let mut layout = [("field", Required); 43];
+    layout[1] = ("status", Required);
+    let mut i = 0;
+    while i < 6 {
+        layout[2 + i] = (POSE[i], Required);
+        layout[8 + i] = (SIGMA[i], Optional);
+        layout[37 + i] = (PAPER[i], Optional);
+        i += 1;
+    }
+    layout[14] = (RANGE[0], Optional);
+    layout[15] = (RANGE[1], Optional);
+    i = 0;
+    while i < CELLS {
+        layout[16 + i] = (COVARIANCE[i], Optional);
+        i += 1;
+    }
+    layout
+};
+const COLUMNS: Layout = &LAYOUT;
+
+/// The status of a row that has a pose.
+const MEASURED: &str = "measured";
+/// The status of a row that has a range alone; any other text is the reason why there is nothing.
+const RANGE_ONLY: &str = "range_only";
+
+/// From metres and radians to metres and degrees.
+fn scale() -> Vector6<f64> {
+    let degrees = 1.0_f64.to_degrees();
+    Vector6::new(1.0, 1.0, 1.0, degrees, degrees, degrees)
+}
+
+/// Writes the table row by row.
+pub struct FieldMeasurementWriter(CsvWriter);
+
+impl FieldMeasurementWriter {
+    /// Creates the table.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when the file exists or cannot be created.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        CsvWriter::create(path, COLUMNS).map(Self)
+    }
+
+    /// Writes the answer to one field. Features and motion have tables of their own.
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn write(&mut self, field: u64, outcome: &DockingOutcome) -> Result<(), FileError> {
+        let status = match &outcome.solution {
+            DockingSolution::Measured(_) => MEASURED.to_owned(),
+            DockingSolution::RangeOnly { .. } => RANGE_ONLY.to_owned(),
+            DockingSolution::NoSolution(reason) => reason.to_string(),
+        };
+        let measurement = outcome.measurement();
+        let best = measurement.map(|measurement| &measurement.best);
+        let range = match outcome.solution {
+            DockingSolution::RangeOnly { range_m, sigma_m } => Some([range_m, sigma_m]),
+            _ => None,
+        };
+        let sigmas: Option<[f64; 6]> = best.map(|best| {
+            let scale = scale();
+            std::array::from_fn(|i| best.covariance[(i, i)].max(0.0).sqrt() * scale[i])
+        });
+        let covariance = best.map_or([const { String::new() }; CELLS], |best| {
+            covariance::to_cells(&best.covariance, &scale())
+        });
+        let paper = measurement.and_then(|measurement| measurement.paper);
+        self.0.write(
+            [field.to_string(), status]
+                .into_iter()
+                .chain(cells(best.map(|best| in_files(&best.pose))))
+                .chain(cells(sigmas))
+                .chain(cells(range))
+                .chain(covariance)
+                .chain(cells(paper.map(|pose| in_files(&pose)))),
+        )
+    }
+
+    /// Completes the file.
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn finish(self) -> Result<(), FileError> {
+        self.0.finish()
+    }
+}
+
+/// Position in metres, angles in degrees.
+fn in_files(pose: &Pose) -> [f64; 6] {
+    let (d, phi) = (&pose.position_m, &pose.phi_rad);
+    [d.x, d.y, d.z, phi.x.to_degrees(), phi.y.to_degrees(), phi.z.to_degrees()]
+}
+
+fn from_files([d1, d2, d3, phi1, phi2, phi3]: [f64; 6]) -> Pose {
+    Pose {
+        position_m: Vector3::new(d1, d2, d3),
+        phi_rad: Vector3::new(phi1.to_radians(), phi2.to_radians(), phi3.to_radians()),
+    }
+}
+
+/// The answer as it comes back from the file, without features and motion: angles have changed their unit twice, which may
+/// move their last bit. A score of the run is made of these, so that one of the files is the same to the bit.
+pub fn outcome_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
+    let as_filed = |pose: &Pose| from_files(in_files(pose));
+    let solution = match &outcome.solution {
+        DockingSolution::Measured(measurement) => DockingSolution::Measured(Box::new(FieldMeasurement {
+            best: PoseEstimate {
+                pose: as_filed(&measurement.best.pose),
+                covariance: covariance::as_filed(&measurement.best.covariance, &scale()),
+            },
+            paper: measurement.paper.as_ref().map(as_filed),
+        })),
+        other => other.clone(),
+    };
+    DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None }
+}
+
+/// Reads the table: the answer to each field, fields ascending, gaps allowed, without features and motion.
+///
+/// # Errors
+/// A [`FileError`] that names line and column of the first cell that is not as it should be.
+pub fn read_field_measurements(path: &Path) -> Result<Vec<(u64, DockingOutcome)>, FileError> {
+    let mut table = CsvReader::open(path, COLUMNS)?;
+    let mut outcomes: Vec<(u64, DockingOutcome)> = Vec::new();
+    while let Some(row) = table.next_row()? {
+        let field = row.number_after("field", outcomes.last().map(|(field, _)| *field))?;
+        let solution = solution(&row)?;
+        let outcome =
+            DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None };
+        outcomes.push((field, outcome));
+    }
+    Ok(outcomes)
+}
+
+fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
+    // Not trimmed for the reason of none: it is kept to the letter.
+    let status = row.text("status");
+    // Numbers under a status that has none are an answer under a misspelt word: counted as a miss, it would be lost in
+    // silence.
+    let empty = |columns: &[&'static str]| {
+        let full = columns.iter().find(|column| !row.text(column).trim().is_empty());
+        full.map_or(Ok(()), |column| Err(row.error(column, format!("nothing, as the status is `{status}`"))))
+    };
+    match status.trim() {
+        "" => Err(row.error("status", "`measured`, `range_only`, or the reason why there is nothing")),
+        MEASURED => {
+            empty(&RANGE)?;
+            let pose = from_files(row.numbers(POSE)?);
+            if pose.position_m == Vector3::zeros() {
+                return Err(row.error(POSE[2], "a camera that is not inside the target"));
+            }
+            let paper = row.optional_numbers(PAPER)?.map(from_files);
+            let best = PoseEstimate { pose, covariance: covariance(row)? };
+            Ok(DockingSolution::Measured(Box::new(FieldMeasurement { best, paper })))
+        }
+        RANGE_ONLY => {
+            empty(&POSE)?;
+            let range_m = row.number(RANGE[0])?;
+            let told = !row.text(RANGE[1]).trim().is_empty();
+            let sigma_m = if told { row.number(RANGE[1])? } else { 0.0 };
+            if sigma_m < 0.0 {
+                return Err(row.error(RANGE[1], "0 or greater"));
+            }
+            Ok(DockingSolution::RangeOnly { range_m, sigma_m })
+        }
+        _ => {
+            empty(&POSE)?;
+            empty(&RANGE)?;
+            Ok(DockingSolution::NoSolution(NoPose::parse(status)))
+        }
+    }
+}
+
+/// The covariance; without its cells that of the standard deviations, uncorrelated; without these zero, which says
+/// nothing.
+fn covariance(row: &CsvRow<'_>) -> Result<Matrix6<f64>, FileError> {
+    let sigmas = row.optional_numbers(SIGMA)?;
+    for (sigma, column) in sigmas.iter().flatten().zip(SIGMA) {
+        if *sigma < 0.0 {
+            return Err(row.error(column, "0 or greater"));
+        }
+    }
+    if let Some(covariance) = covariance::read(row, COVARIANCE, &scale())? {
+        return Ok(covariance);
+    }
+    let sigmas = Vector6::from(sigmas.unwrap_or_default()).component_div(&scale());
+    Ok(Matrix6::from_diagonal(&sigmas.component_mul(&sigmas)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use tempfile::tempdir;
+
+    use super::*;
+
+    fn read(text: &str) -> Result<Vec<(u64, DockingOutcome)>, FileError> {
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("measurements.csv");
+        fs::write(&path, text).unwrap();
+        read_field_measurements(&path)
+    }
+
+    fn outcome(solution: DockingSolution) -> DockingOutcome {
+        DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None }
+    }
+
+    fn measured() -> DockingOutcome {
+        let pose = Pose {
+            position_m: Vector3::new(0.1, -0.2, 7.0),
+            phi_rad: Vector3::new(0.011, -0.013, 1.0 / 7.0),
+        };
+        let root = Matrix6::from_fn(|i, j| if i == j { 0.01 } else { 0.001 * (i + j) as f64 });
+        let best = PoseEstimate { pose, covariance: root * root.transpose() };
+        let paper = Some(Pose { position_m: Vector3::new(0.1, -0.2, 7.1), ..pose });
+        outcome(DockingSolution::Measured(Box::new(FieldMeasurement { best, paper })))
+    }
+
+    fn write(path: &Path, answers: &[(u64, DockingOutcome)]) {
+        let mut writer = FieldMeasurementWriter::create(path).unwrap();
+        answers.iter().for_each(|(field, outcome)| writer.write(*field, outcome).unwrap());
+        writer.finish().unwrap();
+    }
+
+    #[test]
+    fn every_status_comes_back_as_filed() {
+        let answers: Vec<(u64, DockingOutcome)> = [
+            measured(),
+            outcome(DockingSolution::RangeOnly { range_m: 312.5, sigma_m: 2.0 }),
+            DockingOutcome::none(NoPose::TooFewFeatures),
+            DockingOutcome::none(NoPose::Failed("out of film, twice".to_owned())),
+        ]
+        .into_iter()
+        .enumerate()
+        .map(|(i, outcome)| (2 * i as u64, outcome))
+        .collect();
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("a.csv");
+        write(&path, &answers);
+        let read = read_field_measurements(&path).unwrap();
+        assert_eq!(read[1..], answers[1..]);
+        for ((_, read), (_, written)) in read.iter().zip(&answers) {
+            assert_eq!(*read, outcome_as_filed(written));
+        }
+        let (met, meant) = (read[0].1.measurement().unwrap(), measured());
+        let meant = meant.measurement().unwrap();
+        assert_eq!(met.best.pose.position_m, meant.best.pose.position_m);
+        assert!((met.best.pose.phi_rad - meant.best.pose.phi_rad).norm() < 1e-16);
+        assert!((met.best.covariance - meant.best.covariance).norm() < 1e-18);
+        assert_eq!(met.paper.unwrap().position_m, meant.paper.unwrap().position_m);
+    }
+
+    const HEADER: &str = "field,status,d1_m,d2_m,d3_m,phi1_deg,phi2_deg,phi3_deg";
+
+    #[test]
+    fn eight_columns_are_enough_and_then_the_covariance_says_nothing() {
+        let answers = read(&format!("{HEADER}\n3,measured,0.1,0,5,0,0,90\n9,no_target,,,,,,\n")).unwrap();
+        let best = &answers[0].1.measurement().unwrap().best;
+        assert_eq!(best.pose.phi_rad.z, std::f64::consts::FRAC_PI_2);
+        assert_eq!(best.covariance, Matrix6::zeros());
+        assert_eq!(answers[1], (9, DockingOutcome::none(NoPose::NoTarget)));
+    }
+
+    #[test]
+    fn standard_deviations_alone_make_a_diagonal() {
+        let header = format!("{HEADER},{}", SIGMA.join(","));
+        let answers = read(&format!("{header}\n3,measured,0,0,5,0,0,0,0.1,0.1,0.2,180,180,180\n")).unwrap();
+        let covariance = answers[0].1.measurement().unwrap().best.covariance;
+        assert!((covariance[(2, 2)] - 0.04).abs() < 1e-16 && covariance[(0, 1)] == 0.0);
+        assert!((covariance[(5, 5)].sqrt() - std::f64::consts::PI).abs() < 1e-15);
+    }
+
+    #[test]
+    fn each_bad_cell_is_named_by_line_and_column() {
+        let header = format!("{HEADER},range_m,sigma_range_m,{}", SIGMA.join(","));
+        for (row, column) in [
+            ("0,measured,,0,5,0,0,0,,,,,,,,", "d1_m"),
+            ("0,measured,0,0,inf,0,0,0,,,,,,,,", "d3_m"),
+            ("0,measured,0,0,0,0,0,0,,,,,,,,", "d3_m"),
+            ("0,measured,0,0,5,0,0,0,5,,,,,,,", "range_m"),
+            ("0,measured,0,0,5,0,0,0,,,1,1,,1,1,1", "sigma_d3_m"),
+            ("0,measured,0,0,5,0,0,0,,,1,1,-1,1,1,1", "sigma_d3_m"),
+            ("0,range_only,,,,,,,,,,,,,,", "range_m"),
+            ("0,range_only,,,,,,,9,-1,,,,,,", "sigma_range_m"),
+            ("0,range_only,,,5,,,,9,1,,,,,,", "d3_m"),
+            ("0,Measured,0,0,5,0,0,0,,,,,,,,", "d1_m"),
+            ("0,,0,0,5,0,0,0,,,,,,,,", "status"),
+            ("x,no_target,,,,,,,,,,,,,,", "field"),
+        ] {
+            let message = read(&format!("{header}\n{row}\n")).unwrap_err().to_string();
+            assert!(
+                message.contains("line 2") && message.contains(&format!("`{column}`")),
+                "{row}: {message}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_far_range_table_is_told_by_its_columns() {
+        let message = read("frame,status,x_px,y_px\n1,no_target,,\n").unwrap_err().to_string();
+        assert!(message.contains("unknown column `frame`"), "{message}");
+    }
+}

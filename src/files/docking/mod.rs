@@ -1,0 +1,14 @@
+//! The files of docking: answers, evidence, truth, and what a pipeline knows before the first field.
+
+mod covariance;
+mod features;
+mod measurements;
+mod motion;
+mod setup;
+mod truth;
+
+pub use features::FeatureRow;
+pub use measurements::{FieldMeasurementWriter, outcome_as_filed, read_field_measurements};
+pub use motion::{MotionWriter, read_motion, report_as_filed};
+pub use setup::SetupFile;
+pub use truth::truth_as_filed;

@@ -1,0 +1,63 @@
+//! The docking world: an approach as the television camera sees it.
+
+use pipeline::docking::DockingConfig;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sim::docking::{CameraConfig, DockingSimulation, LensConfig, LightingConfig};
+use sim::television::TelevisionConfig;
+use sim::truth::approach::ApproachConfig;
+
+/// A docking scenario, as a TOML file holds it. Units are in the names; unknown keys are errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DockingScenario {
+    /// The world, "docking".
+    pub world: DockingWorld,
+    /// What it is, in one line.
+    pub title: String,
+    /// Seed of every random draw.
+    pub seed: u64,
+    /// The moment of the first field, UTC, as in 2004-01-31T13:13:00Z.
+    pub start_utc: String,
+    /// Name of a built-in target, or the path of a target file, starting from the scenario's folder.
+    pub target: String,
+    /// How the camera moves.
+    pub approach: ApproachConfig,
+    /// The cameras (lenses), in the order of use, 1 to 8, all with the same columns and rows.
+    pub cameras: Vec<CameraConfig>,
+    /// What all lenses do to the image.
+    #[serde(default)]
+    pub lens: LensConfig,
+    /// The light.
+    pub lighting: LightingConfig,
+    /// The television chain.
+    #[serde(default)]
+    pub television: TelevisionConfig,
+    /// Parameters of the pipeline `docking`.
+    #[serde(default)]
+    pub docking: DockingConfig,
+}
+
+/// The one world of a [`DockingScenario`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DockingWorld {
+    /// The last 500 m to a docking target.
+    Docking,
+}
+
+impl DockingScenario {
+    /// What the simulator needs of it.
+    pub fn simulation(&self) -> DockingSimulation {
+        DockingSimulation {
+            seed: self.seed,
+            start_utc: self.start_utc.clone(),
+            target: self.target.clone(),
+            approach: self.approach.clone(),
+            cameras: self.cameras.clone(),
+            lens: self.lens,
+            lighting: self.lighting.clone(),
+            television: self.television.clone(),
+        }
+    }
+}

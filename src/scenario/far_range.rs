@@ -1,0 +1,128 @@
+//! The far-range world: star fields with a distant spacecraft.
+
+use contract::{Camera, Readout};
+use pipeline::far_range::FarRangeConfig;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sim::Simulation;
+use sim::catalog::CatalogConfig;
+use sim::onboard::{RoiConfig, ShutterConfig};
+use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
+use sim::scene::{BackgroundConfig, TargetConfig};
+use sim::sensor::{SensorConfig, Switch};
+use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
+
+/// A far-range scenario, as a TOML file holds it. Units are in the names; unknown keys are errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FarRangeScenario {
+    /// The world, "far_range"; what a scenario is without this key.
+    // Never written: resolved scenarios, and their hashes, are those from before there was another world.
+    #[serde(default, skip_serializing)]
+    pub world: FarRangeWorld,
+    /// What it is, in one line.
+    pub title: String,
+    /// Seed of every random draw but the detector's fixed pattern.
+    pub seed: u64,
+    /// Which stars are drawn.
+    #[serde(default)]
+    pub catalog: CatalogConfig,
+    /// Which stars the pipeline is told of.
+    pub star_list: StarListConfig,
+    /// Orbits of target and chaser.
+    pub orbit: OrbitConfig,
+    /// When images are taken, group by group.
+    pub schedule: Vec<GroupConfig>,
+    /// Where the chaser points, and how well.
+    pub attitude: AttitudeConfig,
+    /// What telemetry knows of the attitude.
+    pub knowledge: KnowledgeConfig,
+    /// How the camera sits on the chaser, in truth and by calibration.
+    pub mounting: MountingConfig,
+    /// Geometry of the camera.
+    pub camera: Camera,
+    /// Point spread function of the optics.
+    pub psf: PsfConfig,
+    /// What of the optics changes over the field: vignetting, sharpness; absent: nothing.
+    #[serde(default)]
+    pub optics: OpticsConfig,
+    /// From magnitudes to photoelectrons.
+    pub radiometry: RadiometryConfig,
+    /// Light without a source in the field: zodiacal light, faint stars, stray light; absent: none.
+    #[serde(default)]
+    pub background: BackgroundConfig,
+    /// The detector.
+    pub sensor: SensorConfig,
+    /// The law of the exposure time.
+    pub shutter: ShutterConfig,
+    /// Regions of interest kept on board; absent: whole images are transmitted.
+    pub roi: Option<RoiConfig>,
+    /// The target spacecraft as a source of light.
+    pub target: TargetConfig,
+    /// Whether the Moon and the planets are drawn, "on" or "off" (the default). They are in no star list.
+    #[serde(default = "off")]
+    pub solar_system: Switch,
+    /// Parameters of the pipeline `far_range`.
+    #[serde(default)]
+    pub far_range: FarRangeConfig,
+}
+
+/// The one world of a [`FarRangeScenario`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FarRangeWorld {
+    /// Star fields with a distant spacecraft.
+    #[default]
+    FarRange,
+}
+
+fn off() -> Switch {
+    Switch::Off
+}
+
+/// The star list uploaded to the pipeline.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StarListConfig {
+    /// Faintest star of the list, V magnitude, −2 to 15.
+    pub magnitude_limit: f64,
+}
+
+impl FarRangeScenario {
+    /// What the simulator needs of it.
+    pub fn simulation(&self) -> Simulation {
+        Simulation {
+            seed: self.seed,
+            catalog: self.catalog.clone(),
+            orbit: self.orbit.clone(),
+            schedule: self.schedule.clone(),
+            attitude: self.attitude.clone(),
+            knowledge: self.knowledge.clone(),
+            mounting: self.mounting,
+            camera: self.camera.clone(),
+            psf: self.psf.clone(),
+            optics: self.optics.clone(),
+            radiometry: self.radiometry.clone(),
+            background: self.background.clone(),
+            sensor: self.sensor.clone(),
+            shutter: self.shutter.clone(),
+            roi: self.roi.clone(),
+            target: self.target.clone(),
+            solar_system: self.solar_system,
+        }
+    }
+
+    /// How the detector's electrons become digital numbers, as its calibration tells a pipeline.
+    pub fn readout(&self) -> Readout {
+        let sensor = &self.sensor;
+        // At the full well the read noise still moves a pixel: it counts as full from five standard deviations below.
+        let full_dn =
+            sensor.bias_dn + (sensor.full_well_e - 5.0 * sensor.read_noise_e) / sensor.gain_e_per_dn;
+        Readout {
+            gain_e_per_dn: sensor.gain_e_per_dn,
+            bias_dn: sensor.bias_dn,
+            read_noise_e: sensor.read_noise_e,
+            saturation_dn: full_dn.floor().clamp(1.0, f64::from(sensor.full_scale_dn())) as u16,
+        }
+    }
+}

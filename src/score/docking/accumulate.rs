@@ -1,0 +1,209 @@
+//! From fields to figures.
+
+use std::collections::BTreeMap;
+
+use contract::docking::{DockingOutcome, DockingSetup, DockingSolution};
+use indexmap::IndexMap;
+
+use super::bins::{bin, group_name, lens_names};
+use super::cause::MissCause;
+use super::consistency::{nees, within_3_sigma};
+use super::errors::PoseErrors;
+use super::figures::figures;
+use super::portions::{MotionVerdict, PortionVerdict};
+use super::report::{DockingGroup, DockingScore, names};
+use super::sight::Sights;
+use super::truth::{TrueField, View};
+use super::verdict::{Gross, Verdict, gross};
+use crate::score::{Figure, ScoreError};
+
+/// What the score of a docking run needs besides the fields.
+#[derive(Debug, Clone)]
+pub struct DockingContext {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Its seed.
+    pub seed: u64,
+    /// Version of Boresight.
+    pub version: String,
+    /// The true cameras and the target's true dimensions.
+    pub setup: DockingSetup,
+}
+
+/// What the score keeps of a field.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FieldVerdict {
+    /// Bin of the true range, and camera.
+    group: (usize, usize),
+    /// True ρ, m.
+    pub(super) range_m: f64,
+    /// Whether the target is resolved and wholly in the image.
+    pub(super) is_clear: bool,
+    /// Whether all six parameters were given.
+    pub(super) is_measured: bool,
+    pub(super) verdict: Verdict,
+    /// Of a success: NEES over its dimension.
+    pub(super) nees: Option<f64>,
+    /// Of a success: whether each parameter is within three standard deviations.
+    pub(super) within: Option<[Option<bool>; 6]>,
+    /// Errors of the paper's pose, where there is one.
+    pub(super) paper: Option<PoseErrors>,
+    pub(super) paper_is_wrong: bool,
+    /// The report, where the field ends a portion.
+    pub(super) portion: Option<PortionVerdict>,
+}
+
+/// Scores the fields of a docking run one after the other.
+pub struct DockingScorer {
+    context: DockingContext,
+    sights: Sights,
+    verdicts: Vec<FieldVerdict>,
+    last_field: Option<u64>,
+    portions: PortionClock,
+}
+
+/// Where the running portion began and the last one ended.
+#[derive(Debug, Default)]
+struct PortionClock {
+    reports: usize,
+    /// Fields since the portion's first measured one, that one included; 0: there is none yet.
+    fields: u64,
+    last_report_s: Option<f64>,
+}
+
+impl DockingScorer {
+    /// A scorer that has seen no field.
+    pub fn new(context: DockingContext) -> Self {
+        let sights = Sights::new(&context.setup);
+        let portions = PortionClock::default();
+        Self { context, sights, verdicts: Vec::new(), last_field: None, portions }
+    }
+
+    /// Judges the next field; `outcome` is `None` when the measurements have no row for it.
+    ///
+    /// # Errors
+    /// [`ScoreError::Order`] unless the number is larger than the one before. The field is then not counted.
+    pub fn add(&mut self, truth: &TrueField, outcome: Option<&DockingOutcome>) -> Result<(), ScoreError> {
+        if let Some(previous) = self.last_field.filter(|previous| *previous >= truth.field) {
+            return Err(ScoreError::Order { previous, frame: truth.field });
+        }
+        self.last_field = Some(truth.field);
+        let verdict = Verdict::of(&self.sights, truth, outcome);
+        let measurement = outcome.and_then(DockingOutcome::measurement);
+        let success = measurement.filter(|_| matches!(verdict, Verdict::Success { .. }));
+        let error = success.map(|measurement| {
+            let (best, truth) = (&measurement.best.pose, &truth.pose);
+            let (d, phi) = (best.position_m - truth.position_m, best.phi_rad - truth.phi_rad);
+            (nalgebra::Vector6::new(d.x, d.y, d.z, phi.x, phi.y, phi.z), &measurement.best.covariance)
+        });
+        let paper = measurement
+            .and_then(|measurement| measurement.paper)
+            .map(|pose| PoseErrors::new(&pose, &truth.pose));
+        let range_m = truth.pose.position_m.norm();
+        let portion = self.portion(truth, outcome);
+        self.verdicts.push(FieldVerdict {
+            group: (bin(range_m), truth.camera),
+            range_m,
+            is_clear: truth.view == View::Whole && self.sights.resolves(truth.camera, &truth.pose),
+            is_measured: measurement.is_some(),
+            verdict,
+            nees: error.and_then(|(error, covariance)| nees(&error, covariance)),
+            within: error.map(|(error, covariance)| {
+                std::array::from_fn(|i| within_3_sigma(error[i], covariance[(i, i)].sqrt()))
+            }),
+            paper,
+            paper_is_wrong: paper.is_some_and(|errors| gross(&self.sights, truth, &errors).is_some()),
+            portion,
+        });
+        Ok(())
+    }
+
+    fn portion(&mut self, truth: &TrueField, outcome: Option<&DockingOutcome>) -> Option<PortionVerdict> {
+        let clock = &mut self.portions;
+        let is_measured =
+            outcome.is_some_and(|outcome| matches!(outcome.solution, DockingSolution::Measured(_)));
+        if clock.fields > 0 || is_measured {
+            clock.fields += 1;
+        }
+        let report = outcome?.motion.as_ref()?;
+        let verdict = PortionVerdict {
+            number: clock.reports,
+            best: MotionVerdict::of(&self.sights, truth, &report.best),
+            paper: report.paper.as_ref().map(|motion| MotionVerdict::of(&self.sights, truth, motion)),
+            fields: clock.fields,
+            interval_s: clock.last_report_s.map(|last| truth.time_s - last),
+        };
+        *clock = PortionClock { reports: clock.reports + 1, fields: 0, last_report_s: Some(truth.time_s) };
+        Some(verdict)
+    }
+
+    /// The figures over all fields. A bin of range and lens is one sequence for the statistics, even where another one
+    /// interrupts it.
+    pub fn finish(self) -> DockingScore {
+        let mut groups: BTreeMap<(usize, usize), Vec<&FieldVerdict>> = BTreeMap::new();
+        for verdict in &self.verdicts {
+            groups.entry(verdict.group).or_default().push(verdict);
+        }
+        let sequences: Vec<&[&FieldVerdict]> = groups.values().map(Vec::as_slice).collect();
+        let mut all = group_score(&sequences);
+        let latency = Figure::mean(&[latency(&self.verdicts).into_iter().collect()]);
+        all.figures.insert(names::LATENCY_FIELDS.to_owned(), latency);
+        let lenses = lens_names(&self.context.setup.cameras);
+        let name = |(bin, camera): (usize, usize)| {
+            let lens = lenses.get(camera).cloned().unwrap_or_else(|| format!("camera {camera}"));
+            group_name(bin, &lens)
+        };
+        DockingScore {
+            world: "docking".to_owned(),
+            scenario: self.context.scenario,
+            seed: self.context.seed,
+            version: self.context.version,
+            frames: all.frames,
+            portions: all.portions,
+            figures: all.figures,
+            groups: groups.iter().map(|(group, fields)| (name(*group), group_score(&[fields]))).collect(),
+            misses: all.misses,
+            wrong: all.wrong,
+        }
+    }
+}
+
+/// Fields from the first clear one to the first success at or after it; `None` when there is no such pair.
+fn latency(verdicts: &[FieldVerdict]) -> Option<f64> {
+    let after = &verdicts[verdicts.iter().position(|field| field.is_clear)?..];
+    let waited = after.iter().position(|field| matches!(field.verdict, Verdict::Success { .. }))?;
+    Some(waited as f64)
+}
+
+/// The score of some sequences of fields taken together.
+fn group_score(sequences: &[&[&FieldVerdict]]) -> DockingGroup {
+    let fields = || sequences.iter().copied().flatten();
+    let misses = fields().filter_map(|field| match &field.verdict {
+        Verdict::Missed { cause } => Some(cause.code()),
+        _ => None,
+    });
+    let wrong = fields().filter_map(|field| match field.verdict {
+        Verdict::Wrong { gross } => Some(gross.code()),
+        _ => None,
+    });
+    DockingGroup {
+        frames: fields().count() as u64,
+        portions: fields().filter(|field| field.portion.is_some()).count() as u64,
+        figures: figures(sequences),
+        misses: counts(&MissCause::CODES, misses),
+        wrong: counts(&Gross::ALL.map(Gross::code), wrong),
+    }
+}
+
+/// How often each word occurs, in the order of `words`; those that do not occur are left out.
+fn counts(words: &[&str], occurrences: impl Iterator<Item = &'static str>) -> IndexMap<String, u64> {
+    let mut counts: IndexMap<String, u64> = words.iter().map(|word| ((*word).to_owned(), 0)).collect();
+    for word in occurrences {
+        *counts.entry(word.to_owned()).or_default() += 1;
+    }
+    counts.retain(|_, count| *count > 0);
+    counts
+}
+
+#[cfg(test)]
+mod tests;

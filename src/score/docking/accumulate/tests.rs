@@ -1,0 +1,219 @@
+use contract::docking::{Motion, MotionReport, NoPose, Pose};
+use nalgebra::{Matrix3, Matrix6, Vector3};
+
+use super::*;
+use crate::score::docking::hand_made::{ahead, field, measured, range_only, setup};
+
+fn score(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScore {
+    let context = DockingContext {
+        scenario: "hand-made".to_owned(),
+        seed: 42,
+        version: "0.1.0".to_owned(),
+        setup: setup(),
+    };
+    let mut scorer = DockingScorer::new(context);
+    for (truth, outcome) in fields {
+        scorer.add(truth, outcome.as_ref()).unwrap();
+    }
+    scorer.finish()
+}
+
+fn at(d: [f64; 3], phi: [f64; 3]) -> Option<DockingOutcome> {
+    Some(measured(Pose { position_m: d.into(), phi_rad: phi.into() }))
+}
+
+fn value(score: &DockingScore, name: &str) -> f64 {
+    score.figures[name].value.unwrap_or_else(|| panic!("{name}"))
+}
+
+/// Ten fields from 10.0 m: one of each kind of answer.
+fn mixed() -> Vec<(TrueField, Option<DockingOutcome>)> {
+    let none = |reason| Some(DockingOutcome::none(reason));
+    let answers = [
+        none(NoPose::NoTarget),
+        at([0.0, 0.0, 10.0], [0.0; 3]),
+        at([0.03, 0.04, 10.0], [0.0; 3]),
+        at([0.0, 0.0, 10.03], [0.0, 0.0, 0.02]),
+        at([0.0, 0.0, 11.0], [0.0; 3]),
+        at([0.0, 0.0, 10.0], [0.0, 0.0, 3.0]),
+        Some(range_only(10.4, 0.2)),
+        Some(range_only(20.0, 0.2)),
+        none(NoPose::Failed("out of film".to_owned())),
+        None,
+    ];
+    answers.into_iter().enumerate().map(|(i, answer)| (field(i as u64, 10.0), answer)).collect()
+}
+
+#[test]
+fn every_field_is_counted_exactly_once() {
+    let fields: Vec<_> = (0..37).map(|i| (field(i, 10.0), mixed()[i as usize % 10].1.clone())).collect();
+    let score = score(&fields);
+    assert_eq!(score.frames, 37);
+    assert_eq!(score.groups.values().map(|group| group.frames).sum::<u64>(), 37);
+    let count = |name: &str| score.figures[name].count;
+    let parts = [names::SUCCESS_RATE, names::RANGE_ONLY_RATE, names::WRONG_RATE, names::MISS_RATE].map(count);
+    assert_eq!(parts.iter().sum::<u64>(), 37);
+    assert_eq!(score.misses.values().sum::<u64>(), count(names::MISS_RATE));
+    assert_eq!(score.wrong.values().sum::<u64>(), count(names::WRONG_RATE));
+}
+
+#[test]
+fn rates_and_causes_are_those_of_a_count_by_hand() {
+    let score = score(&mixed());
+    for (name, expected) in [
+        (names::SUCCESS_RATE, 0.3),
+        (names::CLEAR_SUCCESS_RATE, 0.3),
+        (names::MEASURED_RATE, 0.5),
+        (names::RANGE_ONLY_RATE, 0.1),
+        (names::WRONG_RATE, 0.3),
+        (names::MISS_RATE, 0.3),
+        ("paper_success_rate", 0.3),
+    ] {
+        assert_eq!(value(&score, name), expected, "{name}");
+    }
+    let counts =
+        |counts: &IndexMap<String, u64>| counts.iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>();
+    assert_eq!(counts(&score.misses), ["not_reported 1", "pipeline_failed 1", "no_target 1"]);
+    assert_eq!(counts(&score.wrong), ["range 1", "roll 1", "outline 1"]);
+    // The first field is clear and the second the first success.
+    assert_eq!(value(&score, names::LATENCY_FIELDS), 1.0);
+}
+
+#[test]
+fn errors_of_the_right_fields_have_their_closed_forms() {
+    let score = score(&mixed());
+    let rms = |squares: f64| (squares / 3.0).sqrt();
+    let range = (0.03f64.powi(2) + 0.04f64.powi(2) + 100.0).sqrt() - 10.0;
+    for (name, expected) in [
+        (names::RANGE_RMS_M, rms(0.03 * 0.03 + range * range)),
+        (names::LATERAL_RMS_M, rms(0.05 * 0.05)),
+        (names::ATTITUDE_RMS_DEG, rms(0.02 * 0.02).to_degrees()),
+        ("d1_rms_m", rms(0.03 * 0.03)),
+        ("phi3_rms_deg", rms(0.02 * 0.02).to_degrees()),
+        // Errors over the standard deviation of 0.01 in each: 0; 3 and 4; 3 and 2.
+        (names::NEES_MEAN, (0.0 + 25.0 / 6.0 + 13.0 / 6.0) / 3.0),
+        (names::OUTLINE_RANGE_RMS_M, 0.4),
+        ("outline_within_3_sigma", 1.0),
+    ] {
+        assert!((value(&score, name) - expected).abs() < 1e-9, "{name}: {}", value(&score, name));
+        assert!(score.figures[name].count > 0);
+    }
+    // The paper's pose is the same here, so its figures are.
+    assert_eq!(value(&score, "paper_range_rms_m"), value(&score, names::RANGE_RMS_M));
+}
+
+/// 18 parameters; the 0.04 m alone is beyond 0.03 m.
+#[test]
+fn shares_within_three_sigma_are_counted_by_parameter() {
+    let mut fields = mixed();
+    fields[3].1 = at([0.0, 0.0, 10.029], [0.0; 3]);
+    fields[2].1 = at([0.029, 0.04, 10.0], [0.0; 3]);
+    let score = score(&fields);
+    assert_eq!(
+        (score.figures[names::WITHIN_3_SIGMA].count, score.figures[names::WITHIN_3_SIGMA].of),
+        (17, 18)
+    );
+    assert_eq!(value(&score, "d2_within_3_sigma"), 2.0 / 3.0);
+    assert_eq!(value(&score, "d1_within_3_sigma"), 1.0);
+}
+
+#[test]
+fn groups_go_from_far_to_near_by_lens() {
+    let mut fields: Vec<_> = [4.0, 300.0, 15.0, 12.0, 1.0].into_iter().map(|range| field(0, range)).collect();
+    for (number, truth) in fields.iter_mut().enumerate() {
+        truth.field = number as u64;
+    }
+    fields[3].camera = 1;
+    fields[4].camera = 1;
+    let score = score(&fields.into_iter().map(|truth| (truth, None)).collect::<Vec<_>>());
+    let groups: Vec<_> = score.groups.keys().map(String::as_str).collect();
+    assert_eq!(
+        groups,
+        ["500–200 m, 15.0°", "20–10 m, 15.0°", "20–10 m, 40.0°", "5–3 m, 15.0°", "< 1.5 m, 40.0°"]
+    );
+}
+
+fn report(range_m: f64) -> MotionReport {
+    let best = Motion {
+        time_s: 0.0,
+        pose: ahead(range_m),
+        velocity_m_s: Vector3::new(0.0, 0.0, -0.2),
+        phi_rate_rad_s: Vector3::zeros(),
+        position_covariance: Matrix6::from_diagonal_element(1e-4),
+        attitude_covariance: Matrix6::from_diagonal_element(1e-4),
+        cross_covariance: Matrix3::zeros(),
+        fields: 10,
+    };
+    MotionReport { best: best.clone(), paper: Some(best) }
+}
+
+/// Two misses, then portions of ten fields at 50 fields a second, the tenth of each with a report.
+#[test]
+fn portions_are_timed_from_their_first_measured_field() {
+    let mut fields: Vec<_> = (0..32).map(|i| (field(i, 10.0), at([0.0, 0.0, 10.0], [0.0; 3]))).collect();
+    fields[0].1 = None;
+    fields[1].1 = None;
+    for (end, range_m) in [(11, 10.05), (21, 10.01), (31, 9.97)] {
+        fields[end].1.as_mut().unwrap().motion = Some(report(range_m));
+    }
+    let score = score(&fields);
+    assert_eq!(score.portions, 3);
+    assert_eq!(value(&score, names::PORTION_LATENCY_FIELDS), 10.0);
+    assert_eq!(
+        (value(&score, names::RENEWED_WITHIN_1S), score.figures[names::RENEWED_WITHIN_1S].of),
+        (1.0, 2)
+    );
+    let rms = ((0.05f64.powi(2) + 0.01f64.powi(2) + 0.03f64.powi(2)) / 3.0).sqrt();
+    assert!((value(&score, "motion_range_rms_m") - rms).abs() < 1e-12);
+    assert_eq!(value(&score, "paper_motion_range_rms_m"), value(&score, "motion_range_rms_m"));
+    // From the second portion on: errors of 1 and 3 standard deviations in one parameter of six.
+    assert!((value(&score, "motion_nees_mean") - (1.0 + 9.0) / 2.0 / 6.0).abs() < 1e-9);
+    assert_eq!(score.figures["motion_within_3_sigma"].of, 14);
+}
+
+#[test]
+fn a_score_of_nothing_and_of_nothing_right_has_no_nan() {
+    let misses: Vec<_> = (0..5).map(|i| (field(i, 100.0), None)).collect();
+    let silent = at([0.0, 0.0, 10.0], [0.0; 3]).map(|mut outcome| {
+        if let DockingSolution::Measured(measurement) = &mut outcome.solution {
+            measurement.best.covariance = Matrix6::zeros();
+            measurement.paper = None;
+        }
+        outcome
+    });
+    for score in [score(&[]), score(&misses), score(&[(field(0, 10.0), silent)])] {
+        for (name, figure) in &score.figures {
+            assert_eq!(figure.value.is_some(), figure.of > 0, "{name}");
+            assert!(figure.value.is_none_or(f64::is_finite), "{name}");
+        }
+        assert!(!serde_json::to_string(&score).unwrap().contains("NaN"));
+    }
+}
+
+#[test]
+fn a_field_met_twice_is_refused() {
+    let context = DockingContext { scenario: String::new(), seed: 0, version: String::new(), setup: setup() };
+    let mut scorer = DockingScorer::new(context);
+    scorer.add(&field(3, 10.0), None).unwrap();
+    assert_eq!(scorer.add(&field(3, 10.0), None), Err(ScoreError::Order { previous: 3, frame: 3 }));
+}
+
+/// A saboteur among pipelines: the same errors, and a covariance that claims ten times as little.
+#[test]
+fn a_pipeline_that_claims_too_much_is_told_by_its_consistency() {
+    let fields: Vec<_> = (0..50)
+        .map(|i| {
+            let error = if i % 2 == 0 { 0.008 } else { -0.008 };
+            let mut outcome = at([error, error, 10.0 + error], [error, error, error]);
+            if let Some(DockingSolution::Measured(m)) = outcome.as_mut().map(|outcome| &mut outcome.solution)
+            {
+                m.best.covariance *= 0.01;
+            }
+            (field(i, 10.0), outcome)
+        })
+        .collect();
+    let score = score(&fields);
+    assert_eq!(value(&score, names::SUCCESS_RATE), 1.0);
+    assert_eq!(value(&score, names::WITHIN_3_SIGMA), 0.0);
+    assert!(value(&score, names::NEES_MEAN) > 60.0);
+}

@@ -1,0 +1,115 @@
+//! Whether errors are as large as their covariance says.
+
+use nalgebra::{SMatrix, SVector};
+
+/// Smallest pivot of a correlation matrix that is taken for more than rounding. Lateral position and attitude of a pose
+/// are correlated to 1 − 1e-6 at most (a direction known to 0.1 px, a tilt to a degree); rounding is at 1e-16.
+const SMALLEST_PIVOT: f64 = 1e-10;
+
+/// The normalised estimation error squared, eᵀ P⁻¹ e / N: 1 in the mean for a covariance P that says the truth (its N-fold
+/// follows χ² with N degrees of freedom). `None` where P is not positive definite: it then says nothing.
+pub fn nees<const N: usize>(error: &SVector<f64, N>, covariance: &SMatrix<f64, N, N>) -> Option<f64> {
+    // Of unit diagonal, so that metres and radians are alike; factored as L Lᵀ and solved forwards by the same rows.
+    let mut sigma = [0.0; N];
+    for (i, sigma) in sigma.iter_mut().enumerate() {
+        *sigma = covariance[(i, i)].sqrt();
+        // Negated, so that a NaN says nothing as well.
+        if !(*sigma > 0.0 && sigma.is_finite()) {
+            return None;
+        }
+    }
+    let mut lower = SMatrix::<f64, N, N>::zeros();
+    let mut solved = [0.0; N];
+    let mut sum = 0.0;
+    for i in 0..N {
+        for j in 0..i {
+            let mut value = covariance[(i, j)] / (sigma[i] * sigma[j]);
+            for k in 0..j {
+                value -= lower[(i, k)] * lower[(j, k)];
+            }
+            lower[(i, j)] = value / lower[(j, j)];
+        }
+        let mut pivot = 1.0;
+        let mut rest = error[i] / sigma[i];
+        for k in 0..i {
+            pivot -= lower[(i, k)] * lower[(i, k)];
+            rest -= lower[(i, k)] * solved[k];
+        }
+        if !(pivot > SMALLEST_PIVOT) {
+            return None;
+        }
+        lower[(i, i)] = pivot.sqrt();
+        solved[i] = rest / lower[(i, i)];
+        sum += solved[i] * solved[i];
+    }
+    Some(sum / N as f64).filter(|value| value.is_finite())
+}
+
+/// Whether an error is at most three standard deviations; `None` for a standard deviation that is not positive: it then
+/// says nothing. Of a normal law 99.73 % are.
+pub fn within_3_sigma(error: f64, sigma: f64) -> Option<bool> {
+    (sigma > 0.0 && sigma.is_finite()).then(|| error.abs() <= 3.0 * sigma)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
+    use sim::randomness::{Effect, Seed, normal};
+
+    use super::*;
+
+    #[test]
+    fn a_diagonal_covariance_gives_the_mean_square_of_errors_over_sigma() {
+        let error = Vector2::new(3.0, -0.1);
+        let value = nees(&error, &Matrix2::new(4.0, 0.0, 0.0, 0.01)).unwrap();
+        assert!((value - (2.25 + 1.0) / 2.0).abs() < 1e-15);
+    }
+
+    /// For correlation c: (x² − 2 c x y + y²)/(1 − c²)/2, in closed form.
+    #[test]
+    fn a_correlation_counts_as_its_closed_form_says() {
+        let (c, x, y) = (0.9, 1.5, -0.5);
+        let value = nees(&Vector2::new(2.0 * x, y), &Matrix2::new(4.0, 2.0 * c, 2.0 * c, 1.0)).unwrap();
+        assert!((value - (x * x - 2.0 * c * x * y + y * y) / (1.0 - c * c) / 2.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_covariance_that_is_none_says_nothing() {
+        let error = Vector2::new(1.0, 1.0);
+        for covariance in [
+            Matrix2::zeros(),
+            Matrix2::new(1.0, 1.0, 1.0, 1.0),
+            Matrix2::new(1.0, 2.0, 2.0, 1.0),
+            Matrix2::new(1.0, 0.0, 0.0, -1.0),
+            Matrix2::new(1.0, f64::NAN, f64::NAN, 1.0),
+            Matrix2::new(f64::INFINITY, 0.0, 0.0, 1.0),
+        ] {
+            assert_eq!(nees(&error, &covariance), None, "{covariance}");
+        }
+        assert_eq!(within_3_sigma(0.0, 0.0), None);
+        assert_eq!(within_3_sigma(1.0, f64::NAN), None);
+    }
+
+    /// Errors drawn from the law that the covariance states.
+    #[test]
+    fn honest_errors_have_a_mean_of_one_and_lie_within_three_sigma() {
+        let root = Matrix6::from_fn(|i, j| match i.cmp(&j) {
+            std::cmp::Ordering::Less => 0.0,
+            std::cmp::Ordering::Equal => 0.1 + i as f64,
+            std::cmp::Ordering::Greater => 0.7,
+        });
+        let covariance = root * root.transpose();
+        let random = &mut Seed { seed: 2004, case: 0 }.stream(0, Effect::PixelNoise, 0);
+        let trials = 20_000;
+        let (mut sum, mut within) = (0.0, 0);
+        for _ in 0..trials {
+            let error = root * Vector6::from_fn(|_, _| normal(random));
+            sum += nees(&error, &covariance).unwrap();
+            within += usize::from(within_3_sigma(error[5], covariance[(5, 5)].sqrt()).unwrap());
+        }
+        // χ² with 6 degrees of freedom over 6 scatters by √(2/6): the mean of 20,000 by 0.4 %.
+        assert!((sum / trials as f64 - 1.0).abs() < 0.02, "{}", sum / trials as f64);
+        // 99.73 %, scatter 0.04 %.
+        assert!((within as f64 / trials as f64 - 0.9973).abs() < 0.002, "{within}");
+    }
+}

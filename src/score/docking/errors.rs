@@ -1,0 +1,131 @@
+//! How far a measured pose is from the true one.
+
+use contract::docking::Pose;
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::shown::Shown;
+
+/// Differences of a measured pose from the true one, measured minus true.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseErrors {
+    /// Of d, m, target frame.
+    pub position_m: Vector3<f64>,
+    /// Of φ, component by component, rad.
+    pub phi_rad: Vector3<f64>,
+    /// Of ρ = |d|, m.
+    pub range_m: f64,
+    /// Of α, rad.
+    pub alpha_rad: f64,
+    /// Of β, rad.
+    pub beta_rad: f64,
+    /// Length of the error of (d1, d2), m, 0 or more.
+    pub lateral_m: f64,
+    /// Angle of the rotation from the true to the measured attitude, rad, 0 to π.
+    pub attitude_rad: f64,
+    /// Angle between the directions in which the target's origin is seen, rad, 0 to π.
+    pub place_rad: f64,
+    /// Angle between the normals of the target's disk as the camera sees them, rad, 0 to π.
+    pub tilt_rad: f64,
+    /// The pose score of SPEED (Kisantal et al. 2020, Eqs. 1 to 4): ‖Δr‖/‖r‖ of the target's place in the camera frame
+    /// and the angle of the rotation, rad, added up.
+    pub speed_score: f64,
+}
+
+impl PoseErrors {
+    /// The errors of a pose whose true one is not at the target's origin itself.
+    pub fn new(measured: &Pose, truth: &Pose) -> Self {
+        let zero = Vector3::zeros();
+        let shown = Shown::of(measured, &zero).minus(&Shown::of(truth, &zero));
+        let position_m = measured.position_m - truth.position_m;
+        let (is, was) = (Seen::of(measured), Seen::of(truth));
+        let attitude_rad = is.ideal_from_camera.angle_to(&was.ideal_from_camera);
+        let r = was.origin_m.norm();
+        Self {
+            position_m,
+            phi_rad: measured.phi_rad - truth.phi_rad,
+            range_m: shown[0],
+            alpha_rad: shown[2],
+            beta_rad: shown[3],
+            lateral_m: position_m.xy().norm(),
+            attitude_rad,
+            place_rad: angle(&is.origin_m, &was.origin_m),
+            tilt_rad: angle(&is.normal, &was.normal),
+            speed_score: if r > 0.0 { (is.origin_m - was.origin_m).norm() / r } else { 0.0 } + attitude_rad,
+        }
+    }
+}
+
+/// The target as seen from a pose, in the camera frame.
+struct Seen {
+    /// exp([φ]×).
+    ideal_from_camera: UnitQuaternion<f64>,
+    /// The target's origin, m.
+    origin_m: Vector3<f64>,
+    /// The disk's normal.
+    normal: Vector3<f64>,
+}
+
+impl Seen {
+    fn of(pose: &Pose) -> Self {
+        let ideal_from_camera = UnitQuaternion::from_scaled_axis(pose.phi_rad);
+        // x = Aᵀ (y − d), A = diag(1, −1, −1) exp([φ]×), at y = 0 and for the direction y3.
+        let flip = |v: Vector3<f64>| Vector3::new(v.x, -v.y, -v.z);
+        let to_camera = |v: Vector3<f64>| ideal_from_camera.inverse() * flip(v);
+        Self { ideal_from_camera, origin_m: to_camera(-pose.position_m), normal: to_camera(Vector3::z()) }
+    }
+}
+
+/// The angle between two vectors, rad; exact for small ones too.
+fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    libm::atan2(a.cross(b).norm(), a.dot(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pose(d: [f64; 3], phi: [f64; 3]) -> Pose {
+        Pose { position_m: d.into(), phi_rad: phi.into() }
+    }
+
+    #[test]
+    fn no_difference_is_no_error() {
+        let pose = pose([0.3, -0.2, 7.0], [0.02, 0.03, -0.1]);
+        let errors = PoseErrors::new(&pose, &pose);
+        assert_eq!((errors.range_m, errors.lateral_m, errors.place_rad), (0.0, 0.0, 0.0));
+        assert!(errors.attitude_rad < 1e-15 && errors.speed_score < 1e-15, "{errors:?}");
+    }
+
+    #[test]
+    fn a_roll_turns_the_attitude_and_moves_nothing() {
+        let errors =
+            PoseErrors::new(&pose([0.0, 0.0, 5.0], [0.0, 0.0, 0.2]), &pose([0.0, 0.0, 5.0], [0.0; 3]));
+        assert!((errors.attitude_rad - 0.2).abs() < 1e-15, "{errors:?}");
+        assert!(errors.place_rad.abs() < 1e-15 && errors.tilt_rad.abs() < 1e-15, "{errors:?}");
+        assert!((errors.speed_score - 0.2).abs() < 1e-15, "{errors:?}");
+    }
+
+    /// A pitch φ1 turns the camera about its x axis: everything it sees moves by φ1 across the image.
+    #[test]
+    fn a_pitch_moves_the_target_and_tilts_its_disk_by_its_angle() {
+        let errors =
+            PoseErrors::new(&pose([0.0, 0.0, 5.0], [0.1, 0.0, 0.0]), &pose([0.0, 0.0, 5.0], [0.0; 3]));
+        for angle in [errors.attitude_rad, errors.place_rad, errors.tilt_rad] {
+            assert!((angle - 0.1).abs() < 1e-15, "{errors:?}");
+        }
+        // ‖Δr‖/‖r‖ is the chord of the angle.
+        assert!((errors.speed_score - (2.0 * libm::sin(0.05) + 0.1)).abs() < 1e-14, "{errors:?}");
+    }
+
+    /// The pair that an image tells apart worst: to the side, and turned so that the target stays where it was.
+    #[test]
+    fn a_step_aside_with_the_turn_that_hides_it_is_a_tilt_and_no_displacement() {
+        let turn = libm::atan2(0.5, 10.0);
+        // Of a camera at d1 the origin is at x1/x3 = −d1/d3 − φ2: φ2 = −turn brings it back to the middle.
+        let errors =
+            PoseErrors::new(&pose([0.5, 0.0, 10.0], [0.0, -turn, 0.0]), &pose([0.0, 0.0, 10.0], [0.0; 3]));
+        assert!(errors.place_rad < 1e-15 && (errors.tilt_rad - turn).abs() < 1e-15, "{errors:?}");
+        assert_eq!(errors.lateral_m, 0.5);
+        assert!((errors.beta_rad - turn).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,30 @@
+//! The score of a docking run: a pure function of the truth and of what a pipeline said about each field.
+//!
+//! Every field is counted exactly once and gets one [`Verdict`]: measured and right, measured and grossly wrong, the
+//! range alone, or missed for one cause. How large the errors are is counted over the right ones, whether they are as
+//! large as the pipeline says ([`consistency`]) as well; what is said at the end of a portion ([`portions`]) and how
+//! long it takes has figures of its own. `docs/score.md` has the definitions in full.
+
+mod accumulate;
+mod bins;
+mod cause;
+pub mod consistency;
+mod errors;
+mod figures;
+#[cfg(test)]
+mod hand_made;
+mod portions;
+mod report;
+mod shown;
+mod sight;
+mod truth;
+mod verdict;
+
+pub use accumulate::{DockingContext, DockingScorer};
+pub use bins::{RANGE_BINS_M, group_name, lens_names};
+pub use cause::MissCause;
+pub use errors::PoseErrors;
+pub use report::{DockingGroup, DockingScore, names};
+pub use shown::Shown;
+pub use truth::{TrueField, View};
+pub use verdict::{Gross, Limits, Verdict};

@@ -1,0 +1,65 @@
+//! What of the truth about a field the score uses.
+
+use contract::docking::Pose;
+use nalgebra::Vector3;
+use sim::docking::FieldTruth;
+
+/// How much of the target lies inside the image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum View {
+    /// Plate, marks and cross, all of them.
+    Whole,
+    /// The whole cross and at least half of the marks.
+    Part,
+    /// Less than that.
+    Outside,
+}
+
+/// The truth about one field, at its own moment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrueField {
+    /// Number of the field.
+    pub field: u64,
+    /// Its moment, s since the beginning of the sequence.
+    pub time_s: f64,
+    /// The camera that took it, as in [`contract::docking::DockingSetup::cameras`].
+    pub camera: usize,
+    /// Pose of the camera.
+    pub pose: Pose,
+    /// Velocity of the camera in the target frame, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// dφ/dt, rad/s.
+    pub phi_rate_rad_s: Vector3<f64>,
+    /// How much of the target is in the picture.
+    pub view: View,
+    /// Fraction of the image's lines that were lost on the way, 0 to 1.
+    pub lost_lines: f64,
+    /// Fraction of the marks that lie in a shadow, wholly or in part, 0 to 1; 1 when neither Sun nor lamp shines.
+    pub marks_in_shadow: f64,
+}
+
+impl TrueField {
+    /// From the whole truth, of a target with `marks` marks and a camera with `camera_rows` rows.
+    pub fn new(truth: &FieldTruth, marks: usize, camera_rows: usize) -> Self {
+        let share = |bits: u64| if marks == 0 { 0.0 } else { f64::from(bits.count_ones()) / marks as f64 };
+        let rows = truth.lines.rows(camera_rows).max(1) as f64;
+        let dark = truth.sun.is_none() && !truth.floodlight;
+        Self {
+            field: truth.field,
+            time_s: truth.time_s,
+            camera: truth.camera,
+            pose: truth.pose,
+            velocity_m_s: truth.velocity_m_s,
+            phi_rate_rad_s: truth.phi_rate_rad_s,
+            view: if truth.target_in_field {
+                View::Whole
+            } else if truth.cross_in_field && share(truth.marks_in_field) >= 0.5 {
+                View::Part
+            } else {
+                View::Outside
+            },
+            lost_lines: f64::from(truth.video.lost_lines) / rows,
+            marks_in_shadow: if dark { 1.0 } else { share(truth.marks_shadowed) },
+        }
+    }
+}
