@@ -204,12 +204,15 @@ fn is_finite_motion(motion: &Motion) -> bool {
     parts.into_iter().flatten().all(|value| value.is_finite())
 }
 
+/// The digital number at a column and a row, of a full scale.
+type Pattern = fn(usize, usize, u16) -> u16;
+
 /// A short sequence with every kind of field that has broken a pipeline.
 fn docking_inputs(setup: &DockingSetup) -> Vec<(&'static str, Field, FieldTelemetry)> {
     let Some(camera) = setup.cameras.first() else { return Vec::new() };
     let full_scale = (u32::MAX >> (32 - u32::from(setup.bit_depth))) as u16;
     let columns = camera.columns;
-    let inputs: [(&'static str, u64, Lines, f64, fn(usize, usize, u16) -> u16); 10] = [
+    let inputs: [(&'static str, u64, Lines, f64, Pattern); 10] = [
         ("an all-zero field first", 0, Lines::Even, 0.0, |_, _, _| 0),
         ("a flat field", 1, Lines::Odd, 0.02, |_, _, full| full / 3),
         ("a saturated field", 2, Lines::Even, 0.04, |_, _, full| full),

@@ -53,9 +53,9 @@ impl Scenario {
         #[allow(dead_code, reason = "its schema is all that is asked of it")]
         enum Either {
             /// A far-range scenario: star fields with a distant spacecraft.
-            FarRange(FarRangeScenario),
+            FarRange(Box<FarRangeScenario>),
             /// A docking scenario: an approach as the television camera sees it.
-            Docking(DockingScenario),
+            Docking(Box<DockingScenario>),
         }
         match world {
             None => schema_for!(Either),

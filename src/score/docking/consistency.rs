@@ -35,7 +35,7 @@ pub fn nees<const N: usize>(error: &SVector<f64, N>, covariance: &SMatrix<f64, N
             pivot -= lower[(i, k)] * lower[(i, k)];
             rest -= lower[(i, k)] * solved[k];
         }
-        if !(pivot > SMALLEST_PIVOT) {
+        if pivot.is_nan() || pivot <= SMALLEST_PIVOT {
             return None;
         }
         lower[(i, i)] = pivot.sqrt();

@@ -83,7 +83,7 @@ fn rates_and_causes_are_those_of_a_count_by_hand() {
 fn errors_of_the_right_fields_have_their_closed_forms() {
     let score = score(&mixed());
     let rms = |squares: f64| (squares / 3.0).sqrt();
-    let range = (0.03f64.powi(2) + 0.04f64.powi(2) + 100.0).sqrt() - 10.0;
+    let range = (0.03_f64 * 0.03 + 0.04_f64 * 0.04 + 100.0).sqrt() - 10.0;
     for (name, expected) in [
         (names::RANGE_RMS_M, rms(0.03 * 0.03 + range * range)),
         (names::LATERAL_RMS_M, rms(0.05 * 0.05)),
@@ -163,7 +163,7 @@ fn portions_are_timed_from_their_first_measured_field() {
         (value(&score, names::RENEWED_WITHIN_1S), score.figures[names::RENEWED_WITHIN_1S].of),
         (1.0, 2)
     );
-    let rms = ((0.05f64.powi(2) + 0.01f64.powi(2) + 0.03f64.powi(2)) / 3.0).sqrt();
+    let rms = ((0.05_f64 * 0.05 + 0.01_f64 * 0.01 + 0.03_f64 * 0.03) / 3.0).sqrt();
     assert!((value(&score, "motion_range_rms_m") - rms).abs() < 1e-12);
     assert_eq!(value(&score, "paper_motion_range_rms_m"), value(&score, "motion_range_rms_m"));
     // From the second portion on: errors of 1 and 3 standard deviations in one parameter of six.
