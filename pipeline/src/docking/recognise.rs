@@ -93,7 +93,7 @@ impl Recognition<'_> {
                 continue;
             }
             examined += 1;
-            match self.from_nothing(&candidate.seed) {
+            match self.target_at(&candidate.seed) {
                 Ok(sight) => match &chosen {
                     None => chosen = Some(sight),
                     Some(first) => {
@@ -120,7 +120,7 @@ impl Recognition<'_> {
     }
 
     /// The target of a candidate.
-    fn from_nothing(&self, seed: &CrossSeed) -> Result<Sight, NoPose> {
+    fn target_at(&self, seed: &CrossSeed) -> Result<Sight, NoPose> {
         let cross = self.cross(seed).ok_or(NoPose::NoTarget)?;
         let (model, focal_px) = (self.model, self.lens.focal_px());
         let d3 = focal_px * model.cross.half_length_m / cross.seed.half_length_px + model.cross.height_m;

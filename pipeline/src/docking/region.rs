@@ -1,13 +1,16 @@
 //! The region of interest: given from outside, or predicted from the previous fields.
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use contract::PixelPoint;
+use contract::docking::{Pose, TargetModel};
 
 use super::cross::CrossSeed;
+use super::geometry::project;
 use super::marks::Plane;
+use super::view::Lens;
 use crate::PipelineError;
 use crate::error::require;
 
@@ -90,6 +93,52 @@ pub(crate) struct Sighting {
     pub(crate) focal_px: f64,
     pub(crate) cross: CrossSeed,
     pub(crate) plane: Plane,
+    pub(crate) pose: Pose,
+}
+
+impl Sighting {
+    /// Where a pose has cross and marks; `None` for a pose from which they cannot be seen.
+    pub(crate) fn of(
+        time_s: f64,
+        camera: usize,
+        lens: &Lens,
+        target: &TargetModel,
+        pose: Pose,
+    ) -> Option<Self> {
+        let (height, half, r) =
+            (target.cross.height_m, target.cross.half_length_m, target.mark_circle_radius_m);
+        let see = |x: f64, y: f64, z: f64| {
+            lens.to_ideal(project(lens.model(), &pose, &Vector3::new(x, y, z))?)
+        };
+        // Differences over the bar, so that perspective along it does not count.
+        let bar = see(0.3 * half, 0.0, height)? - see(-0.3 * half, 0.0, height)?;
+        let disk = see(0.3 * r, 0.0, 0.0)? - see(-0.3 * r, 0.0, 0.0)?;
+        let upwards = see(0.0, 0.3 * r, 0.0)? - see(0.0, -0.3 * r, 0.0)?;
+        Some(Self {
+            time_s,
+            camera,
+            focal_px: lens.focal_px(),
+            cross: CrossSeed {
+                centre: see(0.0, 0.0, height)?,
+                half_length_px: bar.norm() / 0.6,
+                slope: bar.y / bar.x,
+            },
+            plane: Plane {
+                centre: see(0.0, 0.0, 0.0)?,
+                scale_px_m: (disk.norm() + upwards.norm()) / (1.2 * r),
+                roll_rad: libm::atan2(disk.y, disk.x),
+            },
+            pose,
+        })
+    }
+}
+
+/// What the fields before say of the next one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Prediction {
+    pub(crate) cross: CrossSeed,
+    pub(crate) plane: Plane,
+    pub(crate) pose: Pose,
 }
 
 /// What is remembered of the target from field to field.
@@ -105,6 +154,11 @@ impl Track {
         *self = Self::default();
     }
 
+    /// The last sighting.
+    pub(crate) fn last(&self) -> Option<&Sighting> {
+        self.last.as_ref()
+    }
+
     /// Takes a new sighting.
     pub(crate) fn push(&mut self, sighting: Sighting) {
         let same_lens = self.last.is_some_and(|last| last.camera == sighting.camera);
@@ -112,7 +166,7 @@ impl Track {
         self.last = Some(sighting);
     }
 
-    /// Cross and plane at a moment, by constant velocity from the last two sightings, or as in the last one. Another
+    /// Cross, plane and pose at a moment, by constant velocity from the last two sightings, or as in the last one. Another
     /// lens on the same axis shows the same ideal image at another scale.
     pub(crate) fn predict(
         &self,
@@ -120,7 +174,7 @@ impl Track {
         camera: usize,
         focal_px: f64,
         max_gap_s: f64,
-    ) -> Option<(CrossSeed, Plane)> {
+    ) -> Option<Prediction> {
         let last = self.last.as_ref()?;
         let ahead = time_s - last.time_s;
         if !(ahead > 0.0 && ahead <= max_gap_s) {
@@ -141,18 +195,23 @@ impl Track {
         if !(half_length_px > 0.0 && scale > 0.0) {
             return None;
         }
-        Some((
-            CrossSeed {
+        let pose = Pose {
+            position_m: last.pose.position_m + share * (last.pose.position_m - before.pose.position_m),
+            phi_rad: last.pose.phi_rad + share * (last.pose.phi_rad - before.pose.phi_rad),
+        };
+        Some(Prediction {
+            cross: CrossSeed {
                 centre: place(last.cross.centre, before.cross.centre),
                 half_length_px,
                 slope: last.cross.slope,
             },
-            Plane {
+            plane: Plane {
                 centre: place(last.plane.centre, before.plane.centre),
                 scale_px_m: scale,
                 roll_rad: last.plane.roll_rad,
             },
-        ))
+            pose,
+        })
     }
 }
 
@@ -167,6 +226,7 @@ mod tests {
             focal_px,
             cross: CrossSeed { centre: Vector2::new(x, 5.0), half_length_px, slope: 0.1 },
             plane: Plane { centre: Vector2::new(x, 6.0), scale_px_m: 4.0 * half_length_px, roll_rad: 0.1 },
+            pose: Pose { position_m: Vector3::new(0.01 * x, 0.0, 5.0), phi_rad: Vector3::zeros() },
         }
     }
 
@@ -175,7 +235,8 @@ mod tests {
         let mut track = Track::default();
         track.push(sighting(1.00, 0, 1000.0, 10.0, 20.0));
         track.push(sighting(1.02, 0, 1000.0, 11.0, 20.5));
-        let (cross, plane) = track.predict(1.04, 0, 1000.0, 0.5).unwrap();
+        let Prediction { cross, plane, pose } = track.predict(1.04, 0, 1000.0, 0.5).unwrap();
+        assert!((pose.position_m.x - 0.12).abs() < 1e-12);
         assert!((cross.centre.x - 12.0).abs() < 1e-9 && (cross.half_length_px - 21.0).abs() < 1e-9);
         assert!((plane.scale_px_m - 84.0).abs() < 1e-9);
     }
@@ -184,7 +245,7 @@ mod tests {
     fn a_change_of_lens_scales_the_image() {
         let mut track = Track::default();
         track.push(sighting(1.0, 1, 3000.0, 30.0, 60.0));
-        let (cross, _) = track.predict(1.02, 0, 1000.0, 0.5).unwrap();
+        let Prediction { cross, .. } = track.predict(1.02, 0, 1000.0, 0.5).unwrap();
         assert!((cross.centre.x - 10.0).abs() < 1e-9 && (cross.half_length_px - 20.0).abs() < 1e-9);
     }
 

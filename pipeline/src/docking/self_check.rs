@@ -5,6 +5,7 @@ use contract::docking::{MarkUse, NoPose, TargetModel};
 use super::cross::CrossFit;
 use super::docking_unit::{self, DiskEdge, Side};
 use super::marks::{MarksFit, Plane};
+use super::region::Prediction;
 use super::view::{Lens, View};
 
 /// Fewest good marks that tell a target from something else in a field of which nothing is known.
@@ -85,4 +86,20 @@ pub(crate) fn upright(
         .map(|side| docking_unit(view, lens, model, cross, plane, side))
         .any(|edge| edge.in_field > 0.6 && edge.share > 0.7);
     if elsewhere { Err(NoPose::Inconsistent) } else { Ok(()) }
+}
+
+/// Whether so much of the predicted target lies outside the image that cross and circle cannot be measured: most of the marks,
+/// or an end of a bar.
+pub(crate) fn leaves_field(
+    view: &View<'_>,
+    lens: &Lens,
+    model: &TargetModel,
+    prediction: &Prediction,
+) -> bool {
+    let is_inside = |ideal| lens.to_camera(ideal).is_some_and(|point| view.holds(point, 1.0));
+    let half = prediction.cross.half_length_px;
+    let ends = [(half, 0.0), (-half, 0.0), (0.0, half), (0.0, -half)];
+    let middle = |corners: &[[f64; 2]; 4]| [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / 4.0);
+    let outside = model.marks.iter().filter(|c| !is_inside(prediction.plane.place(middle(c)))).count();
+    2 * outside > model.marks.len() || ends.iter().any(|(x, y)| !is_inside(prediction.cross.place(*x, *y)))
 }
