@@ -52,7 +52,12 @@ fn dot(picture: &mut RgbImage, at: PixelPoint, colour: Rgb<u8>) {
 fn ring(picture: &mut RgbImage, circle: &Circle, colour: Rgb<u8>) {
     for i in 0..720 {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(i) / 720.0);
-        put(picture, circle.centre.x + circle.radius_px * cos, circle.centre.y + circle.radius_px * sin, colour);
+        put(
+            picture,
+            circle.centre.x + circle.radius_px * cos,
+            circle.centre.y + circle.radius_px * sin,
+            colour,
+        );
     }
 }
 

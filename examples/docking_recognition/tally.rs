@@ -40,10 +40,15 @@ impl Entry {
                 let d = best.position_m - true_pose.position_m;
                 let phi = best.phi_rad - true_pose.phi_rad;
                 let sigma = measurement.best.covariance.diagonal().map(f64::sqrt);
-                let sigmas =
-                    d.iter().chain(phi.iter()).zip(sigma.iter()).map(|(e, s)| e.abs() / s).fold(0.0, f64::max);
+                let sigmas = d
+                    .iter()
+                    .chain(phi.iter())
+                    .zip(sigma.iter())
+                    .map(|(e, s)| e.abs() / s)
+                    .fold(0.0, f64::max);
                 // What the oracle calls gross: range by 5 %, roll by 5°, tilt by 5° or by a pixel of the cross.
-                let tilt_limit = (range_m / (setup.cameras[truth.camera].focal_length_px().0 * 0.3)).max(0.087);
+                let tilt_limit =
+                    (range_m / (setup.cameras[truth.camera].focal_length_px().0 * 0.3)).max(0.087);
                 let is_wrong = (best.position_m.norm() / range_m - 1.0).abs() > 0.05
                     || phi.z.abs() > 0.087
                     || libm::hypot(phi.x, phi.y) > tilt_limit;
@@ -131,7 +136,10 @@ impl fmt::Display for Tally {
             let bin = LIMITS_M.iter().position(|limit| entry.range_m <= *limit).unwrap_or(LIMITS_M.len());
             groups.entry((entry.focal_px as u32, !entry.is_whole, bin)).or_default().push(entry);
         }
-        writeln!(f, "lens  to m   field  fields measured  range wrong sigmas shadowed  ms first, next  reasons")?;
+        writeln!(
+            f,
+            "lens  to m   field  fields measured  range wrong sigmas shadowed  ms first, next  reasons"
+        )?;
         for ((focal_px, is_cut, bin), entries) in groups {
             let count = |what: &dyn Fn(&Entry) -> bool| entries.iter().filter(|e| what(e)).count();
             let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();

@@ -16,6 +16,15 @@ pub(crate) struct Candidate {
     weight: f64,
 }
 
+impl Candidate {
+    /// Whether it is of the same thing as another one.
+    fn repeats(&self, other: &Self) -> bool {
+        let near: Vector2<f64> = other.seed.centre - self.seed.centre;
+        let scale = self.seed.half_length_px / other.seed.half_length_px;
+        near.norm() < 0.25 * other.seed.half_length_px && (0.8..1.25).contains(&scale)
+    }
+}
+
 /// Smallest half length of a cross, overview pixels.
 const MIN_HALF_PX: f64 = 2.5;
 
@@ -141,18 +150,22 @@ fn scan(
     }
 }
 
+/// The candidates of two ways of finding, each best first: those that both have found, then the rest of the one and of the
+/// other.
+pub(crate) fn agreed_first(one: Vec<Candidate>, other: Vec<Candidate>) -> Vec<Candidate> {
+    let (agreed, alone): (Vec<_>, Vec<_>) =
+        one.iter().partition(|candidate| other.iter().any(|second| candidate.repeats(second)));
+    let others = other.iter().filter(|candidate| !one.iter().any(|first| candidate.repeats(first)));
+    agreed.into_iter().chain(alone).chain(others).copied().collect()
+}
+
 /// The best candidates first, without those that repeat a better one.
 fn best_first(mut found: Vec<Candidate>) -> Vec<Candidate> {
     // Ties keep the order in which they were found, which is fixed.
     found.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let mut kept: Vec<Candidate> = Vec::new();
     for candidate in found {
-        let repeats = |other: &Candidate| {
-            let near: Vector2<f64> = other.seed.centre - candidate.seed.centre;
-            let scale = candidate.seed.half_length_px / other.seed.half_length_px;
-            near.norm() < 0.25 * other.seed.half_length_px && (0.8..1.25).contains(&scale)
-        };
-        if !kept.iter().any(repeats) {
+        if !kept.iter().any(|other| candidate.repeats(other)) {
             kept.push(candidate);
         }
         if kept.len() >= 200 {
@@ -193,6 +206,18 @@ mod tests {
                 assert!(has(&edges, &scene), "edges, {range_m} m");
             }
         }
+    }
+
+    #[test]
+    fn what_two_ways_have_found_comes_first() {
+        let candidate = |x: f64| Candidate {
+            seed: CrossSeed { centre: Vector2::new(x, 0.0), half_length_px: 10.0, slope: 0.0 },
+            weight: 1.0,
+        };
+        let found =
+            agreed_first(vec![candidate(0.0), candidate(50.0)], vec![candidate(100.0), candidate(51.0)]);
+        let places: Vec<f64> = found.iter().map(|c| c.seed.centre.x).collect();
+        assert_eq!(places, [50.0, 0.0, 100.0]);
     }
 
     #[test]

@@ -31,8 +31,14 @@ const MEASURED: usize = 16;
 /// Rays from a circle's centre along which its edge is looked for.
 const RAYS: usize = 72;
 
-/// Share of the rays that must meet the edge on the circle: less does not tell a circle from panels and shadows.
+/// Share of the rays that must meet the edge on the circle: less does not tell a circle from panels and shadows …
 const MIN_SHARE: f64 = 0.6;
+
+/// … nor, below [`SMALL_RADIUS_PX`], from the end of a bar.
+const MIN_SMALL_SHARE: f64 = 0.7;
+
+/// A circle of fewer pixels fits many things.
+const SMALL_RADIUS_PX: f64 = 30.0;
 
 /// Least height of an edge, grey values, and as a multiple of the median difference of neighbours, which is the noise.
 const MIN_STEP: (f64, f64) = (8.0, 3.0);
@@ -114,7 +120,8 @@ fn propose(grey: &GrayImage, min_step: f64) -> Vec<Proposal> {
         votes.clear();
         votes.resize(columns * rows, 0);
         for edge in &edges {
-            let (x, y) = ((edge.x + radius * edge.inwards.x) / cell, (edge.y + radius * edge.inwards.y) / cell);
+            let (x, y) =
+                ((edge.x + radius * edge.inwards.x) / cell, (edge.y + radius * edge.inwards.y) / cell);
             if x >= 0.0 && y >= 0.0 && (x as usize) < columns && (y as usize) < rows {
                 let place = y as usize * columns + x as usize;
                 votes[place] = votes[place].saturating_add(1);
@@ -129,8 +136,7 @@ fn propose(grey: &GrayImage, min_step: f64) -> Vec<Proposal> {
                 let sum = votes[at] + votes[at - 1] + votes[at - columns] + votes[at - columns - 1];
                 let share = f64::from(sum) / circumference;
                 if share > 0.3 && best.last().is_none_or(|last| best.len() < 4 || share > last.share) {
-                    let proposal =
-                        Proposal { x: column as f64 * cell, y: row as f64 * cell, radius, share };
+                    let proposal = Proposal { x: column as f64 * cell, y: row as f64 * cell, radius, share };
                     let place = best.partition_point(|other| other.share >= share);
                     best.insert(place, proposal);
                     best.truncate(4);
@@ -171,6 +177,28 @@ fn edges(grey: &GrayImage, min_step: f64) -> Vec<Edge> {
         }
     }
     found
+}
+
+/// Whether the outline is seen where `centre` and `radius` predict it; `None` when too much of it is outside the image to
+/// say. A tenth of the radius is what tilt and parallax may move it by.
+pub(crate) fn confirms(
+    view: &View<'_>,
+    lens: &Lens,
+    (centre, radius): (Vector2<f64>, f64),
+    min_step: f64,
+) -> Option<bool> {
+    let inside = (0..RAYS)
+        .filter(|ray| {
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * *ray as f64 / RAYS as f64);
+            lens.to_camera(centre + 1.2 * radius * Vector2::new(cos, sin))
+                .is_some_and(|place| view.holds(place, 2.0))
+        })
+        .count();
+    if 5 * inside < 4 * RAYS {
+        return None;
+    }
+    let seen = fit(view, lens, centre, radius, (0.12 * radius).max(3.5), min_step);
+    Some(seen.is_some_and(|seen| (seen.circle.radius / radius - 1.0).abs() < 0.1))
 }
 
 /// The circle through the steepest falls of brightness on rays from a centre, twice, the second time about the first.
@@ -239,7 +267,7 @@ fn fit(
     let on_it: Vec<Vector2<f64>> =
         points.iter().filter(|p| circle.residual(p).abs() <= 2.0 * tolerance).copied().collect();
     let share = on_it.len() as f64 / RAYS as f64;
-    if share < MIN_SHARE {
+    if share < if circle.radius < SMALL_RADIUS_PX { MIN_SMALL_SHARE } else { MIN_SHARE } {
         return None;
     }
     let circle = circle::refine(&on_it, &circle)?;
@@ -312,9 +340,7 @@ mod tests {
 
     #[test]
     fn nothing_is_found_where_there_is_no_circle() {
-        let look = |grey: &dyn Fn(usize, usize) -> u16| {
-            look_at(&synthetic::drawn(Lines::Odd, grey))
-        };
+        let look = |grey: &dyn Fn(usize, usize) -> u16| look_at(&synthetic::drawn(Lines::Odd, grey));
         assert_eq!(look(&|_, _| 30), None);
         assert_eq!(look(&|x, _| if x < 300 { 30 } else { 200 }), None);
         assert_eq!(look(&|x, y| if x == 300 && y < 20 { 200 } else { 10 }), None);

@@ -14,8 +14,7 @@ use super::view::{Lens, View};
 /// The square about the plate: what brightness and contrast are set by.
 pub(crate) fn plate(lens: &Lens, plane: &Plane, target: &TargetModel) -> Rectangle {
     let half_side = target.plate_radius_m * plane.scale_px_m;
-    lens.to_camera(plane.centre)
-        .map_or(Rectangle::ALL, |centre| Rectangle::about(centre, half_side))
+    lens.to_camera(plane.centre).map_or(Rectangle::ALL, |centre| Rectangle::about(centre, half_side))
 }
 
 /// Centre and mean radius, in the camera's pixels, of a circle of the ideal image.
@@ -70,10 +69,8 @@ pub(crate) fn refine(features: &mut Features, fitted: &Fitted) {
         circle.centre = fitted.circle_centre;
     }
     for mark in &mut features.marks {
-        let rejected = fitted
-            .marks
-            .iter()
-            .any(|other| other.index == mark.index && other.usage == MarkUse::Rejected);
+        let rejected =
+            fitted.marks.iter().any(|other| other.index == mark.index && other.usage == MarkUse::Rejected);
         if rejected && mark.usage == MarkUse::Used {
             mark.usage = MarkUse::Rejected;
         }

@@ -30,6 +30,8 @@ pub(crate) struct Observer {
     shapes: Vec<MarkShape>,
     track: Track,
     fit: ModelFit,
+    /// Moment and d3 of the last pose, which a loss of the target does not erase.
+    last_range: Option<(f64, f64)>,
 }
 
 /// What a field gave.
@@ -80,6 +82,7 @@ impl Observer {
             config: config.clone(),
             track: Track::default(),
             fit: ModelFit::new(),
+            last_range: None,
         })
     }
 
@@ -123,6 +126,9 @@ impl Observer {
         let Observed { features, region, .. } = &mut observed;
         observed.solution =
             match outline::range(view, &overview, &lens, &self.target, features, region, reason, &whole) {
+                Ok(DockingSolution::RangeOnly { range_m, .. }) if !self.may_be_at(sheet.time_s, range_m) => {
+                    DockingSolution::NoSolution(NoPose::Inconsistent)
+                }
                 Ok(solution) => solution,
                 Err(reason) => DockingSolution::NoSolution(reason),
             };
@@ -135,8 +141,7 @@ impl Observer {
 
     /// The target about where the fields before have it: cross and marks, or what is left of them about the predicted pose.
     fn follow(&mut self, sheet: &Sheet, lens: &Lens, prediction: &Prediction) -> Result<Observed, NoPose> {
-        let tracked =
-            self.recognition(sheet.view, lens).track(&prediction.cross, &prediction.plane);
+        let tracked = self.recognition(sheet.view, lens).track(&prediction.cross, &prediction.plane);
         let lost = match tracked.and_then(|sight| self.measure(sheet, lens, &sight, false)) {
             Ok(observed) => return Ok(observed),
             Err(reason) => reason,
@@ -204,7 +209,16 @@ impl Observer {
         }
     }
 
+    /// Whether a range can be reached from the last pose: what is near and lost is not far.
+    fn may_be_at(&self, time_s: f64, range_m: f64) -> bool {
+        self.last_range.is_none_or(|(before_s, before_m)| {
+            let elapsed_s = time_s - before_s;
+            elapsed_s < 0.0 || (range_m - before_m).abs() <= 0.2 * before_m + MAX_SPEED_M_S * elapsed_s
+        })
+    }
+
     fn remember(&mut self, sheet: &Sheet, lens: &Lens, pose: Pose) {
+        self.last_range = Some((sheet.time_s, pose.position_m.z));
         if let Some(sighting) = Sighting::of(sheet.time_s, sheet.camera, lens, &self.target, pose) {
             self.track.push(sighting);
         }
@@ -213,6 +227,9 @@ impl Observer {
 
 /// A field of which more than this share is at full scale shows nothing.
 const MAX_SATURATED_SHARE: f64 = 0.6;
+
+/// No approach is faster than this, m/s.
+const MAX_SPEED_M_S: f64 = 10.0;
 
 fn check_target(target: &TargetModel) -> Result<(), PipelineError> {
     use crate::error::require;

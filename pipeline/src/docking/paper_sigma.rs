@@ -42,7 +42,8 @@ pub(crate) fn estimate(
     );
     let mut spread = Matrix6::zeros();
     for i in 0..6 {
-        let by = (moved(measurement, i, sigma[i]).pose(target), moved(measurement, i, -sigma[i]).pose(target));
+        let by =
+            (moved(measurement, i, sigma[i]).pose(target), moved(measurement, i, -sigma[i]).pose(target));
         let column = match by {
             (Ok(up), Ok(down)) => (to_vector(&up) - to_vector(&down)) / 2.0,
             (Ok(one), Err(_)) | (Err(_), Ok(one)) => to_vector(&one) - to_vector(&pose),
@@ -103,10 +104,8 @@ mod tests {
     #[test]
     fn numbers_that_make_no_pose_are_refused() {
         let pose = Pose { position_m: Vector3::new(0.0, 0.0, 5.0), phi_rad: Vector3::zeros() };
-        let measurement = PaperMeasurement {
-            radius_px: f64::NAN,
-            ..PaperMeasurement::expected(&pose, &TARGET, 1000.0)
-        };
+        let measurement =
+            PaperMeasurement { radius_px: f64::NAN, ..PaperMeasurement::expected(&pose, &TARGET, 1000.0) };
         assert!(estimate(&measurement, &TARGET, 30.0).is_err());
     }
 }

@@ -67,10 +67,13 @@ impl Recognition<'_> {
     /// The reason why there is none, or not one.
     pub(crate) fn search(&self, overview: &Overview) -> Result<Sight, NoPose> {
         let mut reason = NoPose::NoTarget;
-        let ways: [&dyn Fn() -> Vec<Candidate>; 3] = [
-            &|| candidates::by_regions(overview, self.lens),
+        let ways: [&dyn Fn() -> Vec<Candidate>; 2] = [
+            &|| {
+                let regions = candidates::by_regions(overview, self.lens);
+                let edges = candidates::by_edges(overview, self.lens, &self.config.edges);
+                candidates::agreed_first(regions, edges)
+            },
             &|| candidates::by_structure(overview, self.lens, self.config.min_contrast),
-            &|| candidates::by_edges(overview, self.lens, &self.config.edges),
         ];
         for way in ways {
             let found = self.examine(way(), &mut reason)?;
@@ -131,7 +134,10 @@ impl Recognition<'_> {
         };
         let radius_px = model.mark_circle_radius_m * plane.scale_px_m;
         match self.complete(cross, &plane, SEARCH_REACH * radius_px, 0.07) {
-            Ok(sight) if sight.marks.count(MarkUse::Used) >= self.least_marks(&sight) => Ok(sight),
+            Ok(sight) if sight.marks.count(MarkUse::Used) >= self.least_marks(&sight) => {
+                self_check::on_station(self.view, self.lens, model, &sight.cross, &sight.marks.plane)?;
+                Ok(sight)
+            }
             Ok(_) => Err(NoPose::NoTarget),
             // Without its marks a cross is any cross, unless its marks have no place in the image.
             Err(NoPose::TooFewFeatures) => Err(NoPose::NoTarget),

@@ -107,9 +107,8 @@ impl Sighting {
     ) -> Option<Self> {
         let (height, half, r) =
             (target.cross.height_m, target.cross.half_length_m, target.mark_circle_radius_m);
-        let see = |x: f64, y: f64, z: f64| {
-            lens.to_ideal(project(lens.model(), &pose, &Vector3::new(x, y, z))?)
-        };
+        let see =
+            |x: f64, y: f64, z: f64| lens.to_ideal(project(lens.model(), &pose, &Vector3::new(x, y, z))?);
         // Differences over the bar, so that perspective along it does not count.
         let bar = see(0.3 * half, 0.0, height)? - see(-0.3 * half, 0.0, height)?;
         let disk = see(0.3 * r, 0.0, 0.0)? - see(-0.3 * r, 0.0, 0.0)?;

@@ -2,6 +2,7 @@
 
 use contract::docking::{MarkUse, NoPose, TargetModel};
 
+use super::contour;
 use super::cross::CrossFit;
 use super::docking_unit::{self, DiskEdge, Side};
 use super::marks::{MarksFit, Plane};
@@ -87,6 +88,35 @@ pub(crate) fn upright(
         .any(|edge| edge.in_field > 0.6 && edge.share > 0.7);
     if elsewhere { Err(NoPose::Inconsistent) } else { Ok(()) }
 }
+
+/// Whether the station stands about a small target. In a few pixels a cross with marks is found in anything that has
+/// strokes: letters of an overlay, tiles of a thermal blanket.
+///
+/// # Errors
+/// [`NoPose::NoTarget`] when the station's outline must be in the image and is not there.
+pub(crate) fn on_station(
+    view: &View<'_>,
+    lens: &Lens,
+    model: &TargetModel,
+    cross: &CrossFit,
+    plane: &Plane,
+) -> Result<(), NoPose> {
+    if model.mark_circle_radius_m * plane.scale_px_m > SMALL_CIRCLE_PX {
+        return Ok(());
+    }
+    let centre = cross.seed.centre;
+    let place = docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
+    match contour::confirms(view, lens, place, MIN_OUTLINE_STEP) {
+        Some(false) => Err(NoPose::NoTarget),
+        _ => Ok(()),
+    }
+}
+
+/// Radius of the circle of the marks, px, up to which a target must have its station around it.
+const SMALL_CIRCLE_PX: f64 = 25.0;
+
+/// Least height of the station's edge, grey values.
+const MIN_OUTLINE_STEP: f64 = 8.0;
 
 /// Whether so much of the predicted target lies outside the image that cross and circle cannot be measured: most of the marks,
 /// or an end of a bar.
