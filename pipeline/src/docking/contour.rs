@@ -37,6 +37,9 @@ const MIN_SHARE: f64 = 0.6;
 /// … nor, below [`SMALL_RADIUS_PX`], from the end of a bar.
 const MIN_SMALL_SHARE: f64 = 0.7;
 
+/// Share of a predicted outline that must be in the image to say whether it is there.
+const MIN_INSIDE: f64 = 0.45;
+
 /// A circle of fewer pixels fits many things.
 const SMALL_RADIUS_PX: f64 = 30.0;
 
@@ -65,7 +68,9 @@ pub(crate) fn find(view: &View<'_>, overview: &Overview, lens: &Lens) -> Option<
     kept.iter()
         .filter_map(|proposal| {
             let centre = lens.to_ideal(overview.to_camera(proposal.x, proposal.y))?;
-            measure(view, lens, centre, proposal.radius * Overview::PIXEL, min_step)
+            let radius = proposal.radius * Overview::PIXEL;
+            let share = if radius < SMALL_RADIUS_PX { MIN_SMALL_SHARE } else { MIN_SHARE };
+            measure(view, lens, (centre, radius), min_step, [MIN_SHARE, share])
         })
         .max_by(|a, b| a.circle.radius.total_cmp(&b.circle.radius))
 }
@@ -194,33 +199,37 @@ pub(crate) fn confirms(
                 .is_some_and(|place| view.holds(place, 2.0))
         })
         .count();
-    if 5 * inside < 4 * RAYS {
+    let inside = inside as f64 / RAYS as f64;
+    if inside < MIN_INSIDE {
         return None;
     }
-    let seen = fit(view, lens, centre, radius, (0.12 * radius).max(3.5), min_step);
-    Some(seen.is_some_and(|seen| (seen.circle.radius / radius - 1.0).abs() < 0.1))
+    // Shadows and what stands behind may hide half of it.
+    let seen = measure(view, lens, (centre, radius), min_step, [0.25 * inside, 0.45 * inside]);
+    Some(seen.is_some_and(|seen| (seen.circle.radius / radius - 1.0).abs() < 0.12))
 }
 
-/// The circle through the steepest falls of brightness on rays from a centre, twice, the second time about the first.
+/// The circle through the steepest falls of brightness on rays from a centre, twice, the second time about the first; on it
+/// must be the given shares of the rays.
 fn measure(
     view: &View<'_>,
     lens: &Lens,
-    centre: Vector2<f64>,
-    radius: f64,
+    (centre, radius): (Vector2<f64>, f64),
     min_step: f64,
+    [first_share, share]: [f64; 2],
 ) -> Option<StationOutline> {
-    let first = fit(view, lens, centre, radius, (0.15 * radius).max(3.5), min_step)?;
+    let reach = (0.15 * radius).max(3.5);
+    let first = fit(view, lens, (centre, radius), reach, min_step, first_share)?;
     let CircleFit { centre, radius, .. } = first.circle;
-    fit(view, lens, centre, radius, (0.07 * radius).max(3.0), min_step)
+    fit(view, lens, (centre, radius), (0.07 * radius).max(3.0), min_step, share)
 }
 
 fn fit(
     view: &View<'_>,
     lens: &Lens,
-    centre: Vector2<f64>,
-    radius: f64,
+    (centre, radius): (Vector2<f64>, f64),
     reach: f64,
     min_step: f64,
+    min_share: f64,
 ) -> Option<StationOutline> {
     let step = (reach / 12.0).max(0.5);
     let count = (2.0 * reach / step).ceil() as usize + 1;
@@ -256,7 +265,7 @@ fn fit(
             points.push(centre + direction * (radius - reach + step * (i as f64 + shift)));
         }
     }
-    if points.len() < RAYS / 3 {
+    if points.len() < 8 || (points.len() as f64) < min_share * RAYS as f64 {
         return None;
     }
     let tolerance = (0.012 * radius).max(1.0);
@@ -267,7 +276,7 @@ fn fit(
     let on_it: Vec<Vector2<f64>> =
         points.iter().filter(|p| circle.residual(p).abs() <= 2.0 * tolerance).copied().collect();
     let share = on_it.len() as f64 / RAYS as f64;
-    if share < if circle.radius < SMALL_RADIUS_PX { MIN_SMALL_SHARE } else { MIN_SHARE } {
+    if share < min_share {
         return None;
     }
     let circle = circle::refine(&on_it, &circle)?;
