@@ -125,7 +125,7 @@ impl Observer {
         let mut observed = Observed::nothing(reason.clone());
         let Observed { features, region, .. } = &mut observed;
         observed.solution =
-            match outline::range(view, &overview, &lens, &self.target, features, region, reason, &whole) {
+            match outline::range(view, &overview, &lens, &self.target, features, region, reason) {
                 Ok(DockingSolution::RangeOnly { range_m, .. }) if !self.may_be_at(sheet.time_s, range_m) => {
                     DockingSolution::NoSolution(NoPose::Inconsistent)
                 }

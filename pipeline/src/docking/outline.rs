@@ -20,10 +20,10 @@ pub(crate) fn range(
     features: &mut Features,
     region: &mut Rectangle,
     reason: NoPose,
-    whole: &Histogram,
 ) -> Result<DockingSolution, NoPose> {
     let Some(outline) = contour::find(view, overview, lens) else {
         // The thousandths hold a small target before an empty sky; a field is empty when they hold nothing.
+        let whole = Histogram::of(view, &Rectangle::ALL);
         let range = whole.quantile(0.999) - whole.quantile(0.01);
         return Err(if reason == NoPose::NoTarget && range < EMPTY_RANGE {
             NoPose::EmptyField
@@ -36,11 +36,12 @@ pub(crate) fn range(
         features.station = Some(Circle { centre, raw_centre: centre, radius_px, points: outline.points });
         *region = Rectangle::about(centre, radius_px);
     }
-    // A station that is nearer than the target can be resolved is something else, or hides its target.
+    // A station that is nearer than the target can be resolved is something else, or hides its target. Farther away, what
+    // made a candidate inconsistent was none.
     let radius_px = outline.circle.radius;
     let resolved = RESOLVED_CIRCLE_PX / target.mark_circle_radius_m * target.station.radius_m;
     match contour::range(&target.station, lens.focal_px(), radius_px, outline.sigma_px) {
-        Some((range_m, sigma_m)) if radius_px < resolved && reason == NoPose::NoTarget => {
+        Some((range_m, sigma_m)) if radius_px < resolved && reason != NoPose::AmbiguousTarget => {
             Ok(DockingSolution::RangeOnly { range_m, sigma_m })
         }
         _ => Err(reason),

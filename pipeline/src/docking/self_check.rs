@@ -93,7 +93,7 @@ pub(crate) fn upright(
 /// strokes: letters of an overlay, tiles of a thermal blanket.
 ///
 /// # Errors
-/// [`NoPose::NoTarget`] when the station's outline must be in the image and is not there.
+/// [`NoPose::NoTarget`] when the station's outline is not there, or mostly outside the image.
 pub(crate) fn on_station(
     view: &View<'_>,
     lens: &Lens,
@@ -107,8 +107,8 @@ pub(crate) fn on_station(
     let centre = cross.seed.centre;
     let place = docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
     match contour::confirms(view, lens, place, MIN_OUTLINE_STEP) {
-        Some(false) => Err(NoPose::NoTarget),
-        _ => Ok(()),
+        Some(true) => Ok(()),
+        _ => Err(NoPose::NoTarget),
     }
 }
 
