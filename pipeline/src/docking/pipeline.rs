@@ -165,8 +165,9 @@ mod tests {
             assert!((pose.phi_rad.z + roll_rad).abs() < 0.01, "{range_m}: {pose:?}");
             let cross = outcome.features.cross.unwrap();
             assert!(cross.centre.distance(cross.raw_centre) < 1.5);
-            // The best estimator leaves out marks that the scene, which has no side faces, does not draw as it expects.
-            assert!(outcome.features.marks.iter().filter(|m| m.usage == MarkUse::Used).count() >= 8);
+            // The best estimator may reject marks of a scene whose cross has no side faces; found they are.
+            let found = |usage| matches!(usage, MarkUse::Used | MarkUse::Rejected);
+            assert!(outcome.features.marks.iter().filter(|m| found(m.usage)).count() >= 11);
         }
     }
 

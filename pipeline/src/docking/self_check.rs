@@ -113,7 +113,7 @@ pub(crate) fn on_station(
 }
 
 /// Radius of the circle of the marks, px, up to which a target must have its station around it.
-const SMALL_CIRCLE_PX: f64 = 25.0;
+const SMALL_CIRCLE_PX: f64 = 18.0;
 
 /// Least height of the station's edge, grey values.
 const MIN_OUTLINE_STEP: f64 = 8.0;
