@@ -35,10 +35,11 @@ struct Arguments {
 
 fn arguments() -> Result<Arguments, Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
-    let out = words
-        .next()
-        .ok_or("usage: docking_accuracy OUT [--poses N] [--seed N] [--python PYTHON] [--rows A,B] [--noise DN]")?;
-    let mut arguments = Arguments { out: out.into(), poses: 200, seed: 1, python: None, rows: None, noise_dn: NOISE_DN };
+    let out = words.next().ok_or(
+        "usage: docking_accuracy OUT [--poses N] [--seed N] [--python PYTHON] [--rows A,B] [--noise DN]",
+    )?;
+    let mut arguments =
+        Arguments { out: out.into(), poses: 200, seed: 1, python: None, rows: None, noise_dn: NOISE_DN };
     while let Some(option) = words.next() {
         let value = words.next().ok_or_else(|| format!("{option} has no value"))?;
         match option.as_str() {
@@ -98,7 +99,11 @@ fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>
     let estimates = |of: &dyn Fn(&Measured) -> Option<PoseEstimate>| -> Vec<Answer> {
         let answer = |m| {
             let estimate = of(m);
-            Answer { truth: m.truth, pose: estimate.map(|e| e.pose), covariance: estimate.map(|e| e.covariance) }
+            Answer {
+                truth: m.truth,
+                pose: estimate.map(|e| e.pose),
+                covariance: estimate.map(|e| e.covariance),
+            }
         };
         measured.iter().map(answer).collect()
     };
@@ -110,7 +115,11 @@ fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>
             .collect()
     };
     let (best, near) = (estimates(&|m| m.best), estimates(&|m| m.near));
-    table::write_errors(&folder.join("errors.csv"), &[("best", &best), ("near", &near)], &measured_bounds(&measured))?;
+    table::write_errors(
+        &folder.join("errors.csv"),
+        &[("best", &best), ("near", &near)],
+        &measured_bounds(&measured),
+    )?;
     let mut lines = vec![
         Line::of_answers(row.name, "best", &best),
         Line::of_answers(row.name, "near", &near),

@@ -52,7 +52,9 @@ pub(crate) fn write_errors(
     methods: &[(&str, &[Answer])],
     bounds: &[Bound],
 ) -> Result<(), Box<dyn Error>> {
-    let mut text = String::from("method,frame,range_percent,lateral_mm,phi12_deg,range_per_bound,lateral_per_bound,phi12_per_bound,nees\n");
+    let mut text = String::from(
+        "method,frame,range_percent,lateral_mm,phi12_deg,range_per_bound,lateral_per_bound,phi12_per_bound,nees\n",
+    );
     for (method, answers) in methods {
         for (frame, (answer, bound)) in answers.iter().zip(bounds).enumerate() {
             let (Some(error), Some(range)) = (answer.error(), answer.range_error()) else {
@@ -103,7 +105,14 @@ impl Line {
         let answered = Some((errors[0].len(), answers.len()));
         let nees: Vec<f64> = answers.iter().filter_map(Answer::nees).collect();
         let nees = (!nees.is_empty()).then(|| nees.iter().sum::<f64>() / (6 * nees.len()) as f64);
-        Self { row, method, answered, rms: errors.each_ref().map(|e| rms(e)), p68: Some(errors.map(p68)), nees }
+        Self {
+            row,
+            method,
+            answered,
+            rms: errors.each_ref().map(|e| rms(e)),
+            p68: Some(errors.map(p68)),
+            nees,
+        }
     }
 
     pub(crate) fn of_bounds(row: &'static str, method: &'static str, bounds: &[Bound]) -> Self {

@@ -20,7 +20,7 @@ use contract::PixelPoint;
 use contract::docking::{Field, Mark, MarkUse, NoPose, Pose, PoseEstimate, TargetModel};
 use nalgebra::{Matrix6, Vector3};
 
-use self::edge::{BLUR, Blur, GLOBALS, POSE, SIDES};
+use self::edge::{BLUR, Blur, GLOBALS, GRID, POSE};
 use self::gaussian::Gaussian;
 use self::samples::{Feature, Samples};
 use self::shadow::ShadowFinder;
@@ -117,7 +117,7 @@ impl ModelFit {
             samples: Samples::default(),
             shadows: ShadowFinder::default(),
             variances: Vec::new(),
-            blur: Blur { x: FIRST_BLUR_PX2, y: FIRST_BLUR_PX2 },
+            blur: Blur::new(FIRST_BLUR_PX2, FIRST_BLUR_PX2),
         }
     }
 
@@ -182,11 +182,11 @@ impl ModelFit {
         globals.fixed_rows_mut::<POSE>(0).copy_from(&pose);
         globals[BLUR] = self.blur.x;
         globals[BLUR + 1] = self.blur.y;
-        globals.fixed_rows_mut::<{ GLOBALS - SIDES }>(SIDES).fill(0.5);
+        globals.fixed_rows_mut::<{ GLOBALS - GRID }>(GRID).fill(0.5);
 
         let scene = Scene { camera, target, gaussian: &self.gaussian };
         let samples = &mut self.samples;
-        let wide = Blur { x: self.blur.x + 0.5, y: self.blur.y + 0.5 };
+        let wide = Blur::new(self.blur.x + 0.5, self.blur.y + 0.5);
         collect(samples, field, &scene, &globals, wide, slack_px)?;
         let stride = samples.pixels.len().div_ceil(COARSE_SAMPLES).min(4);
         let mut noise = 4.0;
@@ -197,7 +197,7 @@ impl ModelFit {
                 .variance();
         }
 
-        let blur = Blur { x: globals[BLUR], y: globals[BLUR + 1] };
+        let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
         collect(samples, field, &scene, &globals, blur, 0.0)?;
         let view = View::new(camera, &to_pose(&globals));
         samples.shade(&mut self.shadows, field, camera, target, &self.gaussian, &view, blur);
@@ -213,7 +213,7 @@ impl ModelFit {
                 .ok_or(NoPose::TooFewFeatures)?;
         }
         let fitted = judge(samples, &scene, &globals, &evaluation)?;
-        self.blur = Blur { x: globals[BLUR], y: globals[BLUR + 1] };
+        self.blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
         Ok(fitted)
     }
 }

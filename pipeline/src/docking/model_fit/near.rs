@@ -73,13 +73,11 @@ fn points(camera: &CameraModel, target: &TargetModel, rough: &Pose) -> Vec<Point
     };
     for [a, b, c, d] in &target.marks {
         let centre = [0.25 * (a[0] + b[0] + c[0] + d[0]), 0.25 * (a[1] + b[1] + c[1] + d[1])];
-        let half_axis = |p: &[f64; 2], q: &[f64; 2]| {
-            [0.5 * (p[0] + q[0]) - centre[0], 0.5 * (p[1] + q[1]) - centre[1]]
-        };
+        let half_axis =
+            |p: &[f64; 2], q: &[f64; 2]| [0.5 * (p[0] + q[0]) - centre[0], 0.5 * (p[1] + q[1]) - centre[1]];
         let (first, second) = (half_axis(a, b), half_axis(b, c));
         let length = |v: &[f64; 2]| libm::hypot(v[0], v[1]);
-        let (short, long) =
-            if length(&first) < length(&second) { (first, second) } else { (second, first) };
+        let (short, long) = if length(&first) < length(&second) { (first, second) } else { (second, first) };
         let half = length(&short).max(f64::MIN_POSITIVE);
         for along in [-0.5, 0.0, 0.5] {
             let place = [centre[0] + along * long[0], centre[1] + along * long[1]];

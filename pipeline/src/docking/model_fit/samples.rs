@@ -308,7 +308,15 @@ impl Samples {
                 let Some(beyond_rim) = admit(u, v) else { continue };
                 *taken = self.collection;
                 let dn = f64::from(dn);
-                self.pixels.push(Sample { u, v, dn, beyond_rim, shadow_dn: 0.0, coverage: 0.0, is_used: true });
+                self.pixels.push(Sample {
+                    u,
+                    v,
+                    dn,
+                    beyond_rim,
+                    shadow_dn: 0.0,
+                    coverage: 0.0,
+                    is_used: true,
+                });
             }
         }
     }

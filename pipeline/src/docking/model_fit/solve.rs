@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
 use super::coverage::{Coverage, CrossImage, MarkImage};
-use super::edge::{BLUR, Blur, ByGlobals, GLOBALS, POSE, SIDES};
+use super::edge::{BLUR, Blur, ByGlobals, GLOBALS, GRID, POSE, SIDES};
 use super::gaussian::Gaussian;
 use super::samples::{Feature, LOCALS, Patch, Sample, Samples};
 use crate::CameraModel;
@@ -16,14 +16,14 @@ use contract::docking::TargetModel;
 pub(super) type Globals = SVector<f64, GLOBALS>;
 pub(super) type GlobalMatrix = SMatrix<f64, GLOBALS, GLOBALS>;
 
-/// What is expected of blur and side faces before the image is seen: mean and standard deviation. Weak; it decides only
+/// What is expected of blur, its share on pixels and side faces before the image is seen: mean and standard deviation. Weak; it decides only
 /// where the image does not.
 const BLUR_PRIOR_PX2: (f64, f64) = (0.5, 1.0);
-const SIDE_PRIOR: (f64, f64) = (0.5, 0.5);
+const SHARE_PRIOR: (f64, f64) = (0.5, 0.5);
 
-/// Ranges of blur and side faces.
+/// Ranges of blur, and of its share on pixels and side faces.
 const BLUR_RANGE_PX2: (f64, f64) = (0.02, 25.0);
-const SIDE_RANGE: (f64, f64) = (-0.5, 2.0);
+const SHARE_RANGE: (f64, f64) = (-0.5, 2.0);
 
 /// A step moves no edge farther than this, px.
 const LONGEST_STEP_PX: f64 = 1.5;
@@ -88,7 +88,8 @@ impl Images {
     fn new(scene: &Scene, globals: &Globals, extra_blur_px2: f64) -> Option<Self> {
         let pose = to_pose(globals);
         let view = View::new(scene.camera, &pose);
-        let blur = Blur { x: globals[BLUR] + extra_blur_px2, y: globals[BLUR + 1] + extra_blur_px2 };
+        let (x, y) = (globals[BLUR] + extra_blur_px2, globals[BLUR + 1] + extra_blur_px2);
+        let blur = Blur::on_grid(x, y, globals[GRID]);
         let sides = [0, 1, 2, 3].map(|k| globals[SIDES + k]);
         Some(Self {
             marks: scene.target.marks.iter().map(|corners| MarkImage::new(corners, &view, blur)).collect(),
@@ -156,11 +157,11 @@ pub(super) fn solve(
 
 fn bounded(globals: &Globals) -> Globals {
     let mut bounded = *globals;
-    for i in BLUR..SIDES {
+    for i in BLUR..GRID {
         bounded[i] = bounded[i].clamp(BLUR_RANGE_PX2.0, BLUR_RANGE_PX2.1);
     }
-    for i in SIDES..GLOBALS {
-        bounded[i] = bounded[i].clamp(SIDE_RANGE.0, SIDE_RANGE.1);
+    for i in GRID..GLOBALS {
+        bounded[i] = bounded[i].clamp(SHARE_RANGE.0, SHARE_RANGE.1);
     }
     bounded
 }
@@ -225,7 +226,7 @@ fn evaluate(
             sum.information[(i, i)] = 1.0;
             sum.gradient[i] = 0.0;
         } else if i >= BLUR {
-            let (mean, sigma) = if i < SIDES { BLUR_PRIOR_PX2 } else { SIDE_PRIOR };
+            let (mean, sigma) = if i < GRID { BLUR_PRIOR_PX2 } else { SHARE_PRIOR };
             let weight = noise / (sigma * sigma);
             let off = mean - globals[i];
             sum.information[(i, i)] += weight;
