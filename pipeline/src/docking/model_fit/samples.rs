@@ -55,7 +55,7 @@ pub(super) struct Patch {
 const LEAST_SAMPLES: usize = 10;
 
 /// Pixels looked at in a field at most, roughly; more are thinned evenly.
-const MOST_SAMPLES: f64 = 16_000.0;
+const MOST_SAMPLES: f64 = 48_000.0;
 
 /// Arms shorter than this share one patch; longer ones are cut into pieces of about twice this, px.
 const SHORT_ARM_PX: f64 = 15.0;
