@@ -5,9 +5,9 @@ use std::ops::Range;
 use nalgebra::{SMatrix, SVector};
 
 use super::coverage::{Coverage, CrossImage, MarkImage};
-use super::edge::{BLUR, Blur, ByGlobals, GLOBALS, POSE, SIDES};
+use super::edge::{BLUR, Blur, ByGlobals, GLOBALS, GRID, POSE, SIDES};
 use super::gaussian::Gaussian;
-use super::samples::{Feature, LOCALS, Patch, Samples};
+use super::samples::{Feature, LOCALS, Patch, Sample, Samples};
 use crate::CameraModel;
 use crate::docking::geometry::{View, to_pose};
 use crate::docking::portions::inverse;
@@ -16,14 +16,14 @@ use contract::docking::TargetModel;
 pub(super) type Globals = SVector<f64, GLOBALS>;
 pub(super) type GlobalMatrix = SMatrix<f64, GLOBALS, GLOBALS>;
 
-/// What is expected of blur and side faces before the image is seen: mean and standard deviation. Weak; it decides only
+/// What is expected of blur, its share on pixels and side faces before the image is seen: mean and standard deviation. Weak; it decides only
 /// where the image does not.
 const BLUR_PRIOR_PX2: (f64, f64) = (0.5, 1.0);
-const SIDE_PRIOR: (f64, f64) = (0.5, 0.5);
+const SHARE_PRIOR: (f64, f64) = (0.5, 0.5);
 
-/// Ranges of blur and side faces.
+/// Ranges of blur, and of its share on pixels and side faces.
 const BLUR_RANGE_PX2: (f64, f64) = (0.02, 25.0);
-const SIDE_RANGE: (f64, f64) = (-0.5, 2.0);
+const SHARE_RANGE: (f64, f64) = (-0.5, 2.0);
 
 /// A step moves no edge farther than this, px.
 const LONGEST_STEP_PX: f64 = 1.5;
@@ -88,7 +88,8 @@ impl Images {
     fn new(scene: &Scene, globals: &Globals, extra_blur_px2: f64) -> Option<Self> {
         let pose = to_pose(globals);
         let view = View::new(scene.camera, &pose);
-        let blur = Blur { x: globals[BLUR] + extra_blur_px2, y: globals[BLUR + 1] + extra_blur_px2 };
+        let (x, y) = (globals[BLUR] + extra_blur_px2, globals[BLUR + 1] + extra_blur_px2);
+        let blur = Blur::on_grid(x, y, globals[GRID]);
         let sides = [0, 1, 2, 3].map(|k| globals[SIDES + k]);
         Some(Self {
             marks: scene.target.marks.iter().map(|corners| MarkImage::new(corners, &view, blur)).collect(),
@@ -156,11 +157,11 @@ pub(super) fn solve(
 
 fn bounded(globals: &Globals) -> Globals {
     let mut bounded = *globals;
-    for i in BLUR..SIDES {
+    for i in BLUR..GRID {
         bounded[i] = bounded[i].clamp(BLUR_RANGE_PX2.0, BLUR_RANGE_PX2.1);
     }
-    for i in SIDES..GLOBALS {
-        bounded[i] = bounded[i].clamp(SIDE_RANGE.0, SIDE_RANGE.1);
+    for i in GRID..GLOBALS {
+        bounded[i] = bounded[i].clamp(SHARE_RANGE.0, SHARE_RANGE.1);
     }
     bounded
 }
@@ -184,6 +185,7 @@ fn evaluate(
     let Samples { pixels, patches, .. } = samples;
     for patch in patches.iter_mut() {
         let origin = pixels[patch.first].dn;
+        let known = patch.levels[COVERAGE - 1];
         let mut gram = [[0.0; ROW]; ROW];
         patch.used_samples = 0;
         for pixel in pixels[patch.first..patch.end].iter_mut().step_by(search.stride) {
@@ -200,9 +202,14 @@ fn evaluate(
             let [_, one, across, down, rim, covered] =
                 regressors(patch, pixel.u, pixel.v, pixel.beyond_rim, coverage.value);
             let mut row = [0.0; ROW];
-            row[0] = pixel.dn - origin;
+            // A shadow darkens the plate where the feature does not hide it.
+            row[0] = pixel.dn + pixel.shadow_dn * (1.0 - coverage.value) - origin;
             row[1..=LOCALS].copy_from_slice(&[one, across, down, rim, covered]);
-            row[FIRST_GLOBAL..].copy_from_slice(&coverage.by);
+            // The feature stands over the darker plate by so much more, in units of its level over the light one.
+            let over = if known > 0.0 { 1.0 + pixel.shadow_dn / known } else { 1.0 };
+            for (slot, by) in row[FIRST_GLOBAL..].iter_mut().zip(&coverage.by) {
+                *slot = over * by;
+            }
             if row[SHORT_ROW..].iter().all(|by_side| *by_side == 0.0) {
                 accumulate::<SHORT_ROW>(&mut gram, &row);
             } else {
@@ -219,7 +226,7 @@ fn evaluate(
             sum.information[(i, i)] = 1.0;
             sum.gradient[i] = 0.0;
         } else if i >= BLUR {
-            let (mean, sigma) = if i < SIDES { BLUR_PRIOR_PX2 } else { SIDE_PRIOR };
+            let (mean, sigma) = if i < GRID { BLUR_PRIOR_PX2 } else { SHARE_PRIOR };
             let weight = noise / (sigma * sigma);
             let off = mean - globals[i];
             sum.information[(i, i)] += weight;
@@ -247,10 +254,11 @@ fn regressors(patch: &Patch, u: f64, v: f64, beyond_rim: f64, coverage: f64) -> 
     [0.0, 1.0, across, down, beyond_rim, coverage]
 }
 
-/// What a pixel should be by the patch's levels and its last coverage, DN.
-pub(super) fn predicted(patch: &Patch, u: f64, v: f64, beyond_rim: f64, coverage: f64) -> f64 {
-    let row = regressors(patch, u, v, beyond_rim, coverage);
-    row[1..].iter().zip(&patch.levels).map(|(x, level)| x * level).sum()
+/// What a pixel is over what it should be by the patch's levels and its last coverage, DN.
+pub(super) fn residual(patch: &Patch, pixel: &Sample) -> f64 {
+    let row = regressors(patch, pixel.u, pixel.v, pixel.beyond_rim, pixel.coverage);
+    let model: f64 = row[1..].iter().zip(&patch.levels).map(|(x, level)| x * level).sum();
+    pixel.dn + pixel.shadow_dn * (1.0 - pixel.coverage) - model
 }
 
 /// Solves a patch's levels and adds what is left of its equations (their Schur complement) to the sum.

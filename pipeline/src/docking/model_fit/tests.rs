@@ -333,7 +333,7 @@ fn derivatives_are_those_of_finite_differences() {
     let evaluate = |g: &super::solve::Globals, u: f64, v: f64| {
         let pose = to_pose(g);
         let view = View::new(&model, &pose);
-        let blur = Blur { x: g[BLUR], y: g[BLUR + 1] };
+        let blur = Blur::new(g[BLUR], g[BLUR + 1]);
         let sides = [0, 1, 2, 3].map(|k| g[SIDES + k]);
         let cross = CrossImage::new(&target, &view, &pose.position_m, blur, sides).unwrap();
         let mark = MarkImage::new(&target.marks[1], &view, blur).unwrap();
