@@ -17,7 +17,7 @@ use sim::scene::docking::TargetFile;
 use sim::television::{Interlace, TelevisionConfig, VideoNoiseConfig};
 use sim::truth::approach::{ApproachConfig, ConstantVelocityConfig, target_from_camera};
 
-use crate::bound::{self, Bound, Features};
+use crate::bound::{self, Bound};
 
 /// The target.
 const TARGET: &str = "progress";
@@ -80,7 +80,7 @@ pub(crate) struct Case {
 impl Case {
     /// The pose of this number: d3 is the row's, lateral offsets and angles uniform within their limits, drawn again until
     /// every mark and the cross are in the field; the Sun uniform over the cap about the face's normal.
-    pub(crate) fn random(row: &Row, seed: u64, number: u64) -> Result<Self, SimError> {
+    pub(crate) fn random(row: &Row, seed: u64, number: u64, noise_dn: f64) -> Result<Self, SimError> {
         let case = Seed { seed, case: row.focal_px as u64 * 1000 + row.range_m as u64 };
         let mut stream = case.stream(number, Effect::AttitudeControl, 0);
         let camera = row.camera();
@@ -112,12 +112,17 @@ impl Case {
         let prior = Pose { position_m: pose.position_m + PRIOR * row.range_m * direction, ..pose };
         // The noise of a field is addressed by seed and number of the field, which is 0 in every case: so seeds differ.
         let noise_seed = (seed << 32) ^ (case.case << 16) ^ number;
-        let simulator = simulator(row, &camera, &pose, angles, noise_seed)?;
+        let simulator = simulator(row, &camera, &pose, angles, noise_dn, noise_seed)?;
         Ok(Self { number, camera, pose, prior, simulator })
     }
 
     pub(crate) fn pose(&self) -> &Pose {
         &self.pose
+    }
+
+    /// The pose that OpenCV is given to begin with.
+    pub(crate) fn prior(&self) -> &Pose {
+        &self.prior
     }
 
     pub(crate) fn setup(&self) -> DockingSetup {
@@ -130,10 +135,10 @@ impl Case {
         Ok(self.simulator.expose(&mut workspace, 0)?.video.digitise(&Digitiser::default()))
     }
 
-    /// The Cramér–Rao bound of its pose.
-    pub(crate) fn bound(&self, features: Features) -> Result<Bound, SimError> {
+    /// The Cramér–Rao bounds of its pose.
+    pub(crate) fn bounds(&self) -> Result<[Bound; 3], SimError> {
         let lighting = self.simulator.moment(0)?.lighting;
-        bound::of(&self.camera, self.simulator.scene(), &lighting, &self.pose, features)
+        bound::of(&self.camera, self.simulator.scene(), &lighting, &self.pose)
     }
 
     /// The image's file in its folder.
@@ -148,6 +153,7 @@ fn simulator(
     camera: &Camera,
     pose: &Pose,
     [azimuth_deg, elevation_deg]: [f64; 2],
+    noise_dn: f64,
     seed: u64,
 ) -> Result<DockingSimulator, SimError> {
     let simulation = DockingSimulation {
@@ -180,7 +186,7 @@ fn simulator(
         },
         television: TelevisionConfig {
             interlace: Interlace::Off,
-            noise: VideoNoiseConfig { sigma_dn8: NOISE_DN },
+            noise: VideoNoiseConfig { sigma_dn8: noise_dn },
             ..TelevisionConfig::default()
         },
     };

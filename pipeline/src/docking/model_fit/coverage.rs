@@ -48,6 +48,14 @@ impl MarkImage {
         coverage
     }
 
+    /// The coverage alone.
+    pub(super) fn value_at(&self, gaussian: &Gaussian, u: f64, v: f64) -> f64 {
+        let steps = [0, 1, 2, 3].map(|k: usize| self.edges[k].step(gaussian, u, v));
+        let corners: f64 =
+            (0..4).map(|k| self.correlations[k] * steps[k].density * steps[(k + 1) % 4].density).sum();
+        (steps[0].inside + steps[2].inside - 1.0) * (steps[1].inside + steps[3].inside - 1.0) + corners
+    }
+
     pub(super) fn shift(&self, by: &ByGlobals) -> f64 {
         self.edges.iter().map(|edge| edge.shift(by)).fold(0.0, f64::max)
     }

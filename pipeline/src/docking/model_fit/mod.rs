@@ -8,7 +8,9 @@
 mod coverage;
 mod edge;
 mod gaussian;
+mod near;
 mod samples;
+mod shadow;
 mod solve;
 
 #[cfg(test)]
@@ -21,7 +23,8 @@ use nalgebra::{Matrix6, Vector3};
 use self::edge::{BLUR, Blur, GLOBALS, POSE, SIDES};
 use self::gaussian::Gaussian;
 use self::samples::{Feature, Samples};
-use self::solve::{Evaluation, Globals, Scene, Search, predicted, solve};
+use self::shadow::ShadowFinder;
+use self::solve::{Evaluation, Globals, Scene, Search, residual, solve};
 use crate::CameraModel;
 use crate::docking::geometry::{View, project, to_pose, to_vector};
 use crate::docking::portions::inverse;
@@ -35,6 +38,12 @@ const SLACK_PX: f64 = 1.5;
 /// Coarse stages: variances added to the blur, px², and how many of the globals are held. A lateral position that is free too
 /// early tilts the plate to make up for a shift.
 const COARSE: [(f64, usize); 4] = [(4.0, 2), (1.0, 2), (1.0, 0), (0.0, 0)];
+
+/// The same from a rough place, whose range shows the marks up to 3 px off, and how far the arrangement is searched for as a
+/// part of the focal length.
+const NEAR_SLACK_PX: f64 = 3.0;
+const NEAR_COARSE: [(f64, usize); 5] = [(9.0, 0), (4.0, 2), (1.0, 2), (1.0, 0), (0.0, 0)];
+const NEAR_REACH: f64 = 0.013;
 
 /// Pixels are thinned to about this many in the coarse stages.
 const COARSE_SAMPLES: usize = 1500;
@@ -89,6 +98,7 @@ pub struct Fitted {
 pub struct ModelFit {
     gaussian: Gaussian,
     samples: Samples,
+    shadows: ShadowFinder,
     variances: Vec<f64>,
     blur: Blur,
 }
@@ -105,6 +115,7 @@ impl ModelFit {
         Self {
             gaussian: Gaussian::new(),
             samples: Samples::default(),
+            shadows: ShadowFinder::default(),
             variances: Vec::new(),
             blur: Blur { x: FIRST_BLUR_PX2, y: FIRST_BLUR_PX2 },
         }
@@ -122,6 +133,47 @@ impl ModelFit {
         target: &TargetModel,
         initial: &Pose,
     ) -> Result<Fitted, NoPose> {
+        self.fit_from(field, camera, target, initial, SLACK_PX, &COARSE)
+    }
+
+    /// The pose of a field from a rough place: position within about 1 % of the range, angles within about a degree.
+    ///
+    /// The image's arrangement of bright and dark is searched for about the place; what shift is found is taken for one of the
+    /// position and for one of the attitude, and the better of the two fits is the answer.
+    ///
+    /// # Errors
+    /// Those of [`ModelFit::fit`]; [`NoPose::NoTarget`] when the target is not seen about the place.
+    pub fn fit_near(
+        &mut self,
+        field: &Field,
+        camera: &CameraModel,
+        target: &TargetModel,
+        rough: &Pose,
+    ) -> Result<Fitted, NoPose> {
+        let is_finite = to_vector(rough).iter().all(|v| v.is_finite());
+        if !(is_finite && rough.position_m.z > target.cross.height_m) {
+            return Err(NoPose::Inconsistent);
+        }
+        let reach_px = NEAR_REACH * camera.focal_px().0 + SLACK_PX;
+        let by = near::shift(field, camera, target, rough, reach_px).ok_or(NoPose::NoTarget)?;
+        let [moved, turned] = near::shifted(camera, rough, by);
+        let moved = self.fit_from(field, camera, target, &moved, NEAR_SLACK_PX, &NEAR_COARSE);
+        let turned = self.fit_from(field, camera, target, &turned, NEAR_SLACK_PX, &NEAR_COARSE);
+        match (moved, turned) {
+            (Ok(a), Ok(b)) => Ok(if b.noise_dn < a.noise_dn { b } else { a }),
+            (a, b) => a.or(b),
+        }
+    }
+
+    fn fit_from(
+        &mut self,
+        field: &Field,
+        camera: &CameraModel,
+        target: &TargetModel,
+        initial: &Pose,
+        slack_px: f64,
+        coarse: &[(f64, usize)],
+    ) -> Result<Fitted, NoPose> {
         let pose = to_vector(initial);
         if !(pose.iter().all(|v| v.is_finite()) && initial.position_m.z > target.cross.height_m) {
             return Err(NoPose::Inconsistent);
@@ -135,10 +187,10 @@ impl ModelFit {
         let scene = Scene { camera, target, gaussian: &self.gaussian };
         let samples = &mut self.samples;
         let wide = Blur { x: self.blur.x + 0.5, y: self.blur.y + 0.5 };
-        collect(samples, field, &scene, &globals, wide, SLACK_PX)?;
+        collect(samples, field, &scene, &globals, wide, slack_px)?;
         let stride = samples.pixels.len().div_ceil(COARSE_SAMPLES).min(4);
         let mut noise = 4.0;
-        for (extra_blur_px2, held) in COARSE {
+        for (extra_blur_px2, held) in coarse.iter().copied() {
             let search = Search { extra_blur_px2, free: held..POSE, stride, steps: 6, decrement: 1.0 };
             noise = solve(&scene, samples, &mut globals, &search, noise)
                 .ok_or(NoPose::TooFewFeatures)?
@@ -147,6 +199,8 @@ impl ModelFit {
 
         let blur = Blur { x: globals[BLUR], y: globals[BLUR + 1] };
         collect(samples, field, &scene, &globals, blur, 0.0)?;
+        let view = View::new(camera, &to_pose(&globals));
+        samples.shade(&mut self.shadows, field, camera, target, &self.gaussian, &view, blur);
         let search = Search { extra_blur_px2: 0.0, free: 0..GLOBALS, stride: 1, steps: 12, decrement: 1e-3 };
         let mut evaluation =
             solve(&scene, samples, &mut globals, &search, noise).ok_or(NoPose::TooFewFeatures)?;
@@ -201,7 +255,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
         let (mut squares, mut used) = (0.0, 0);
         let all = patch.end - patch.first;
         for pixel in &mut pixels[patch.first..patch.end] {
-            let residual = pixel.dn - predicted(patch, pixel.u, pixel.v, pixel.beyond_rim, pixel.coverage);
+            let residual = residual(patch, pixel);
             let square = residual * residual;
             let is_used = square <= gate;
             is_changed |= is_used != pixel.is_used;
@@ -219,7 +273,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
             Feature::Cross => level > 0.0,
         };
         // Pixels that were rejected make the rest look well: what was rejected once must be clean to come back.
-        let is_used = is_like_the_others && is_seen && (patch.is_used || used == all);
+        let is_used = is_like_the_others && is_seen && !patch.is_shaded && (patch.is_used || used == all);
         is_changed |= is_used != patch.is_used;
         patch.is_used = is_used;
     }

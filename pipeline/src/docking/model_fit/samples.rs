@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use super::edge::{BOX_VARIANCE, Blur};
 use super::gaussian::Gaussian;
+use super::shadow::ShadowFinder;
 use crate::CameraModel;
 use crate::docking::geometry::View;
 
@@ -18,6 +19,8 @@ pub(super) struct Sample {
     pub(super) dn: f64,
     /// Blurred share of what lies beyond the plate's rim.
     pub(super) beyond_rim: f64,
+    /// How much darker a shadow makes the plate, DN.
+    pub(super) shadow_dn: f64,
     /// Coverage at the last evaluation.
     pub(super) coverage: f64,
     pub(super) is_used: bool,
@@ -44,6 +47,8 @@ pub(super) struct Patch {
     pub(super) squares: f64,
     pub(super) used_samples: usize,
     pub(super) is_used: bool,
+    /// A shadow falls on the mark: it is not used again.
+    pub(super) is_shaded: bool,
 }
 
 /// Pixels below which a patch says nothing beyond its own levels.
@@ -57,6 +62,9 @@ const SHORT_ARM_PX: f64 = 15.0;
 
 /// A pixel may lie this far beyond the plate's rim, px: what shines there is a nuisance that few pixels suffice for.
 const BEYOND_RIM_PX: f64 = 0.8;
+
+/// A mark of which a shadow takes more than this part anywhere is in shadow.
+const SHADED: f64 = 0.02;
 
 /// Collects samples; owns its buffers.
 #[derive(Debug, Default)]
@@ -121,6 +129,49 @@ impl Samples {
         }
         self.collect_cross(&search);
         Some(())
+    }
+
+    /// Looks for the shadow of the cross: what it takes from the plate is noted pixel by pixel, and marks on which it falls are
+    /// not used.
+    #[allow(clippy::too_many_arguments, reason = "the scene, and what to look with")]
+    pub(super) fn shade(
+        &mut self,
+        finder: &mut ShadowFinder,
+        field: &Field,
+        camera: &CameraModel,
+        target: &TargetModel,
+        gaussian: &Gaussian,
+        view: &View,
+        blur: Blur,
+    ) {
+        let Some(search) = Search::new(field, camera, target, view, gaussian, blur, 0.0) else { return };
+        let is_clear = |u: f64, v: f64, y1: f64, y2: f64| {
+            let inside_px = (target.plate_radius_m - libm::hypot(y1, y2)) * search.plate_scale;
+            inside_px > search.reach_px
+                && !search.is_on_marks(y1, y2, 0..target.marks.len())
+                && !search.is_near_cross(u, v)
+        };
+        let Some(shadow) = finder.find(field, camera, target, gaussian, view, blur, is_clear) else { return };
+        for pixel in &mut self.pixels {
+            pixel.shadow_dn = shadow.depth_dn * shadow.at(gaussian, pixel.u, pixel.v);
+        }
+        for patch in &mut self.patches {
+            let Feature::Mark(index) = patch.feature else { continue };
+            let corners = &target.marks[index];
+            // Corners, middles of the sides, middle.
+            let weights = [[1.0, 0.0, 0.0, 0.0], [0.5, 0.5, 0.0, 0.0], [0.25; 4]];
+            let is_shaded = (0..4).any(|turn| {
+                weights.iter().any(|weight| {
+                    let along = |axis: usize| -> f64 {
+                        (0..4).map(|k| weight[k] * corners[(k + turn) % 4][axis]).sum()
+                    };
+                    let seen = view.see(&Vector3::new(along(0), along(1), 0.0));
+                    seen.is_some_and(|seen| shadow.at(gaussian, seen.u, seen.v) > SHADED)
+                })
+            });
+            patch.is_shaded = is_shaded;
+            patch.is_used &= !is_shaded;
+        }
     }
 
     fn collect_mark(&mut self, search: &Search, index: usize) -> MarkUse {
@@ -203,6 +254,7 @@ impl Samples {
             squares: 0.0,
             used_samples: 0,
             is_used: true,
+            is_shaded: false,
         });
         true
     }
@@ -256,7 +308,7 @@ impl Samples {
                 let Some(beyond_rim) = admit(u, v) else { continue };
                 *taken = self.collection;
                 let dn = f64::from(dn);
-                self.pixels.push(Sample { u, v, dn, beyond_rim, coverage: 0.0, is_used: true });
+                self.pixels.push(Sample { u, v, dn, beyond_rim, shadow_dn: 0.0, coverage: 0.0, is_used: true });
             }
         }
     }
@@ -369,8 +421,13 @@ impl<'a> Search<'a> {
             return false;
         }
         let Some((y1, y2)) = self.view.on_plane(u, v, 0.0) else { return true };
-        self.crowded.iter().any(|index| {
-            let [a, _, c, _] = self.target.marks[*index];
+        self.is_on_marks(y1, y2, self.crowded.iter().copied())
+    }
+
+    /// Whether a point of the plate lies on one of some marks or within reach of it.
+    fn is_on_marks(&self, y1: f64, y2: f64, mut marks: impl Iterator<Item = usize>) -> bool {
+        marks.any(|index| {
+            let [a, _, c, _] = self.target.marks[index];
             let centre = [0.5 * (a[0] + c[0]), 0.5 * (a[1] + c[1])];
             let half_diagonal = 0.5 * libm::hypot(a[0] - c[0], a[1] - c[1]);
             libm::hypot(y1 - centre[0], y2 - centre[1]) < half_diagonal + self.reach_px / self.plate_scale

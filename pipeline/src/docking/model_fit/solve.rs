@@ -7,7 +7,7 @@ use nalgebra::{SMatrix, SVector};
 use super::coverage::{Coverage, CrossImage, MarkImage};
 use super::edge::{BLUR, Blur, ByGlobals, GLOBALS, POSE, SIDES};
 use super::gaussian::Gaussian;
-use super::samples::{Feature, LOCALS, Patch, Samples};
+use super::samples::{Feature, LOCALS, Patch, Sample, Samples};
 use crate::CameraModel;
 use crate::docking::geometry::{View, to_pose};
 use crate::docking::portions::inverse;
@@ -184,6 +184,7 @@ fn evaluate(
     let Samples { pixels, patches, .. } = samples;
     for patch in patches.iter_mut() {
         let origin = pixels[patch.first].dn;
+        let known = patch.levels[COVERAGE - 1];
         let mut gram = [[0.0; ROW]; ROW];
         patch.used_samples = 0;
         for pixel in pixels[patch.first..patch.end].iter_mut().step_by(search.stride) {
@@ -200,9 +201,14 @@ fn evaluate(
             let [_, one, across, down, rim, covered] =
                 regressors(patch, pixel.u, pixel.v, pixel.beyond_rim, coverage.value);
             let mut row = [0.0; ROW];
-            row[0] = pixel.dn - origin;
+            // A shadow darkens the plate where the feature does not hide it.
+            row[0] = pixel.dn + pixel.shadow_dn * (1.0 - coverage.value) - origin;
             row[1..=LOCALS].copy_from_slice(&[one, across, down, rim, covered]);
-            row[FIRST_GLOBAL..].copy_from_slice(&coverage.by);
+            // The feature stands over the darker plate by so much more, in units of its level over the light one.
+            let over = if known > 0.0 { 1.0 + pixel.shadow_dn / known } else { 1.0 };
+            for (slot, by) in row[FIRST_GLOBAL..].iter_mut().zip(&coverage.by) {
+                *slot = over * by;
+            }
             if row[SHORT_ROW..].iter().all(|by_side| *by_side == 0.0) {
                 accumulate::<SHORT_ROW>(&mut gram, &row);
             } else {
@@ -247,10 +253,11 @@ fn regressors(patch: &Patch, u: f64, v: f64, beyond_rim: f64, coverage: f64) -> 
     [0.0, 1.0, across, down, beyond_rim, coverage]
 }
 
-/// What a pixel should be by the patch's levels and its last coverage, DN.
-pub(super) fn predicted(patch: &Patch, u: f64, v: f64, beyond_rim: f64, coverage: f64) -> f64 {
-    let row = regressors(patch, u, v, beyond_rim, coverage);
-    row[1..].iter().zip(&patch.levels).map(|(x, level)| x * level).sum()
+/// What a pixel is over what it should be by the patch's levels and its last coverage, DN.
+pub(super) fn residual(patch: &Patch, pixel: &Sample) -> f64 {
+    let row = regressors(patch, pixel.u, pixel.v, pixel.beyond_rim, pixel.coverage);
+    let model: f64 = row[1..].iter().zip(&patch.levels).map(|(x, level)| x * level).sum();
+    pixel.dn + pixel.shadow_dn * (1.0 - pixel.coverage) - model
 }
 
 /// Solves a patch's levels and adds what is left of its equations (their Schur complement) to the sum.
