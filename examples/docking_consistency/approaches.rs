@@ -1,4 +1,4 @@
-//! Random approaches through the built-in pipeline. Shared by the program and by `tests/docking_consistency.rs`.
+//! Random approaches through the built-in pipeline.
 
 use std::error::Error;
 use std::path::Path;
@@ -20,7 +20,7 @@ use sim::truth::approach::{
     SegmentedConfig, target_from_camera,
 };
 
-/// The target, and its contact distance, m.
+/// The target.
 const TARGET: &str = "progress";
 /// Standard deviation of the lens's point spread, px.
 const BLUR_PX: f64 = 0.7;
