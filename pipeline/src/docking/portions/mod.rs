@@ -9,6 +9,7 @@
 mod exact;
 mod indicators;
 mod paper;
+mod scatter;
 
 pub use exact::{ExactPortionConfig, ExactPortions};
 pub use indicators::{Indicator, Indicators};
