@@ -38,7 +38,7 @@ fn answers(block_step: u64, block: u64) -> Vec<Answer> {
         let mut digitiser = Digitiser::default();
         for field in first..(first + block).min(simulator.field_count()) {
             let exposure = simulator.expose(&mut workspace, field).unwrap();
-            let digitised = exposure.video.digitise(&digitiser).unwrap();
+            let digitised = exposure.video.digitise(&digitiser);
             let outcome = pipeline.process(&digitised, &exposure.telemetry(digitiser));
             digitiser = outcome.digitiser.unwrap_or(digitiser);
             let truth = &exposure.truth;
