@@ -137,8 +137,7 @@ fn fields(rows: &[Row<'_>], styled: bool) -> String {
 
 /// The range from the outline of the station, marked as such.
 fn outline(row: &Row<'_>) -> String {
-    row.value(names::OUTLINE_RANGE_RMS_M)
-        .map_or("–".to_owned(), |value| format!("outline {}", length(value)))
+    row.value(names::RANGE_ONLY_RMS_M).map_or("–".to_owned(), |value| format!("outline {}", length(value)))
 }
 
 fn portions(rows: &[Row<'_>], styled: bool) -> String {
@@ -274,6 +273,7 @@ mod tests {
             scenario: "docking".to_owned(),
             seed: 1,
             version: "0.1.0".to_owned(),
+            renderer: "fast".to_owned(),
             frames,
             portions: all.portions,
             figures: all.figures,

@@ -26,6 +26,8 @@ pub struct DockingContext {
     pub seed: u64,
     /// Version of Boresight.
     pub version: String,
+    /// What drew the scene: `fast` or `mitsuba`.
+    pub renderer: String,
     /// The true cameras and the target's true dimensions.
     pub setup: DockingSetup,
 }
@@ -158,6 +160,7 @@ impl DockingScorer {
             scenario: self.context.scenario,
             seed: self.context.seed,
             version: self.context.version,
+            renderer: self.context.renderer,
             frames: all.frames,
             portions: all.portions,
             figures: all.figures,

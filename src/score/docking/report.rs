@@ -31,8 +31,10 @@ pub mod names {
     pub const NEES_MEAN: &str = "nees_mean";
     /// Mean of SPEED's pose score.
     pub const SPEED_SCORE_MEAN: &str = "speed_score_mean";
-    /// Root mean square of the error of a range from the outline, m.
-    pub const OUTLINE_RANGE_RMS_M: &str = "outline_range_rms_m";
+    /// Root mean square of the error of a range that is given alone, m.
+    pub const RANGE_ONLY_RMS_M: &str = "range_only_rms_m";
+    /// The same in percent of the true one.
+    pub const RANGE_ONLY_RMS_PERCENT: &str = "range_only_rms_percent";
     /// Fields from the first clear one to the first success.
     pub const LATENCY_FIELDS: &str = "latency_fields";
     /// Fields of a portion, from its first measured one to its report.
@@ -56,6 +58,8 @@ pub struct DockingScore {
     pub seed: u64,
     /// Version of Boresight that made the score.
     pub version: String,
+    /// What drew the scene: `fast` or `mitsuba`.
+    pub renderer: String,
     /// Number of fields, each counted once: succeeded, range alone, wrong, missed.
     pub frames: u64,
     /// Number of reports at the end of a portion.
