@@ -17,12 +17,13 @@ pub fn docking(score: &DockingScore, styled: bool) -> String {
     text.push_str(
         "Pose: all six parameters given and none grossly wrong, percent of the fields with its 95 % interval, and of the clear ones\n\
          (target resolved and wholly in the picture). Range only: from the station's outline, percent of the fields (its error).\n\
-         Errors: root mean squares over the poses, best estimator / formulas of the paper. NEES: 1 when σ says the truth.\n",
+         Errors: root mean squares over the poses, by the best estimator / by the paper's formulas; across: of d1 and d2 together.\n\
+         In 3σ: errors within three of their standard deviations; NEES is 1 in the mean when σ says the truth.\n",
     );
     if score.portions > 0 {
         text.push('\n');
         text.push_str(&portions(&rows, styled));
-        text.push_str("Root mean squares at the end of portions, best estimator / formulas of the paper. Consistency from the second report on.\n");
+        text.push_str("Root mean squares of the errors at the end of portions; in 3σ and NEES from the second report on.\n");
     }
     text.push_str(&latency(score));
     let misses = |row: &Row<'_>| row.misses.clone();
@@ -107,15 +108,15 @@ fn fields(rows: &[Row<'_>], styled: bool) -> String {
     let header = [
         "range, lens",
         "fields",
-        "pose, %",
-        "of clear, %",
-        "range only, %",
-        "wrong, %",
-        "nothing, %",
-        "error of range",
-        "error across",
-        "error of attitude",
-        "within 3σ, %",
+        "pose\n%",
+        "of clear\n%",
+        "range only\n%",
+        "wrong\n%",
+        "nothing\n%",
+        "error of range\nbest / paper",
+        "across\nbest / paper",
+        "attitude\nbest / paper",
+        "in 3σ\n%",
         "NEES",
     ];
     sheet(
@@ -144,14 +145,14 @@ fn portions(rows: &[Row<'_>], styled: bool) -> String {
     let header = [
         "portions",
         "reports",
-        "range ρ",
-        "range rate u",
-        "passive pitch α",
-        "passive yaw β",
-        "pitch φ1",
-        "yaw φ2",
-        "roll φ3",
-        "within 3σ, %",
+        "range ρ\nbest / paper",
+        "range rate u\nbest / paper",
+        "passive pitch α\nbest / paper",
+        "passive yaw β\nbest / paper",
+        "pitch\nφ1",
+        "yaw\nφ2",
+        "roll\nφ3",
+        "in 3σ\n%",
         "NEES",
     ];
     let name = |name: &str| format!("{}{name}", names::MOTION);
@@ -164,8 +165,10 @@ fn portions(rows: &[Row<'_>], styled: bool) -> String {
                 row.beside(&name(names::RANGE_RMS_M), length),
                 row.beside(&name("range_rate_rms_m_s"), speed),
             ];
-            for angle in ["alpha_rms_deg", "beta_rms_deg", "phi1_rms_deg", "phi2_rms_deg", "phi3_rms_deg"] {
-                cells.push(row.beside(&name(angle), degrees));
+            cells.push(row.beside(&name("alpha_rms_deg"), degrees));
+            cells.push(row.beside(&name("beta_rms_deg"), degrees));
+            for angle in ["phi1_rms_deg", "phi2_rms_deg", "phi3_rms_deg"] {
+                cells.push(row.figure(&name(angle), degrees));
             }
             cells.push(row.figure(&name(names::WITHIN_3_SIGMA), percent));
             cells.push(row.figure(&name(names::NEES_MEAN), plain));

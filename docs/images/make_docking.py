@@ -90,7 +90,13 @@ def main(boresight, path):
     for number, picture in enumerate(panels):
         sheet.paste(picture, ((number % 2) * (columns + 6), (number // 2) * (rows + 6)))
     sheet = sheet.resize((1000, round(1000 * sheet.height / sheet.width)), Image.Resampling.LANCZOS)
-    sheet.quantize(128, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
+    # Greys stay grey: a palette of our own, of 56 greys and each colour bright and half as bright.
+    greys = [(grey, grey, grey) for grey in (round(255 * i / 55) for i in range(56))]
+    colours = sorted(set(COLOURS.values()))
+    dim = [tuple(part // 2 for part in colour) for colour in colours]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([part for colour in greys + colours + dim for part in colour])
+    sheet.quantize(palette=palette, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 if __name__ == "__main__":

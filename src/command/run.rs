@@ -27,7 +27,7 @@ pub(super) struct RunArguments {
     #[command(flatten)]
     selection: Selection,
     /// A new or empty directory for the results; default: the next free `runs/SCENARIO-001`
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineOptions,
