@@ -169,6 +169,13 @@ fn a_video_that_does_not_fit_its_table_is_refused() {
 }
 
 #[test]
+fn a_run_that_kept_no_images_cannot_be_processed() {
+    let bench = Bench::new();
+    bench.boresight("run docking --frames 24000..24002 --out run").done();
+    check_refused(&bench, "process run --out m.csv", &["telemetry.csv", "`file`", "--save-frames"]);
+}
+
+#[test]
 fn measurements_of_another_world_or_of_other_fields_are_refused() {
     let bench = video();
     bench.write("far.csv", "frame,status,x_px,y_px\n0,no_target,,\n");

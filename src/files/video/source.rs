@@ -85,6 +85,11 @@ impl FieldSource {
             if let Some(video) = video_of(path, &rows) {
                 return Self::listed_video(&video, table, rows, setup);
             }
+            if rows.iter().all(|(_, row)| row.file.is_none()) {
+                let expected = "the names of images, or fields.avi or fields.y4m beside the table: a run keeps them with \
+                                --save-frames";
+                return Err(FileError::value(&table, Place::Header, "file", "empty in every row", expected));
+            }
             let fields = folder::listed(path, rows, setup)?;
             let setup = setup.clone();
             return Ok(Self::until_error(fields.into_iter().map(move |field| field.read(&setup))));
