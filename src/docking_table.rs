@@ -15,8 +15,8 @@ pub fn docking(score: &DockingScore, styled: bool) -> String {
     let mut text = if score.renderer == "mitsuba" { "Scene drawn by Mitsuba.\n" } else { "" }.to_owned();
     text.push_str(&fields(&rows, styled));
     text.push_str(
-        "Pose: all six parameters given and none grossly wrong, percent of the fields with its 95 % interval, and of the clear ones\n\
-         (target resolved and wholly in the picture). Range only: from the station's outline, percent of the fields (its error).\n\
+        "Pose: all six parameters given and none grossly wrong, percent (95 % interval) of the fields in which the target is resolved or\n\
+         a pose is given, and of the clear ones (resolved and wholly in the picture). Range only: from the station's outline, percent of the fields (its error).\n\
          Errors: root mean squares over the poses, by the best estimator / by the paper's formulas; across: of d1 and d2 together.\n\
          In 3σ: errors within three of their standard deviations; NEES is 1 in the mean when σ says the truth.\n",
     );

@@ -47,7 +47,7 @@ pub(super) fn figures(fields: &Fields<'_>) -> Figures {
     let right = |field: &FieldVerdict| field.paper.filter(|_| !field.paper_is_wrong);
     figures.insert(
         format!("{}{}", names::PAPER, names::SUCCESS_RATE),
-        Figure::rate(&collect(fields, |field| Some(right(field).is_some()))),
+        Figure::rate(&collect(fields, |field| field.is_asked.then(|| right(field).is_some()))),
     );
     errors(fields, names::PAPER, &right, &mut figures);
 
@@ -72,7 +72,7 @@ fn rates(fields: &Fields<'_>, figures: &mut Figures) {
         figures.insert(name.to_owned(), Figure::rate(&collect(fields, holds)));
     };
     let is_success = |field: &FieldVerdict| matches!(field.verdict, Verdict::Success { .. });
-    rate(names::SUCCESS_RATE, &|field| Some(is_success(field)));
+    rate(names::SUCCESS_RATE, &|field| field.is_asked.then(|| is_success(field)));
     rate(names::CLEAR_SUCCESS_RATE, &|field| field.is_clear.then(|| is_success(field)));
     rate(names::MEASURED_RATE, &|field| Some(field.is_measured));
     rate(names::RANGE_ONLY_RATE, &|field| Some(matches!(field.verdict, Verdict::RangeOnly { .. })));

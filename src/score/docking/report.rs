@@ -7,9 +7,10 @@ use crate::score::Figure;
 
 /// Names of the docking figures that something else asks for; `docs/formats.md` lists all of them.
 pub mod names {
-    /// Six parameters given, none grossly wrong, of all fields.
+    /// Six parameters given, none grossly wrong, of the fields in which they can be asked for: the target is resolved, or they
+    /// are given.
     pub const SUCCESS_RATE: &str = "success_rate";
-    /// The same, of the fields in which the target is resolved and wholly in the image.
+    /// The same, of those in which the target is resolved and wholly in the image.
     pub const CLEAR_SUCCESS_RATE: &str = "clear_success_rate";
     /// Six parameters given, rightly or wrongly, of all fields: what the paper calls processed successfully.
     pub const MEASURED_RATE: &str = "measured_rate";

@@ -225,3 +225,15 @@ fn a_pipeline_that_claims_too_much_is_told_by_its_consistency() {
     assert_eq!(value(&score, names::WITHIN_3_SIGMA), 0.0);
     assert!(value(&score, names::NEES_MEAN) > 60.0);
 }
+
+/// At 300 m a bar of 3 cm is 0.3 px wide with the narrow lens.
+#[test]
+fn a_range_alone_where_nothing_else_can_be_had_is_no_failure() {
+    let far = |number| (field(number, 300.0), Some(range_only(306.0, 3.0)));
+    let near = (field(2, 10.0), at([0.0, 0.0, 10.0], [0.0; 3]));
+    let score = score(&[far(0), far(1), near]);
+    assert_eq!(value(&score, names::SUCCESS_RATE), 1.0);
+    assert_eq!(score.figures[names::SUCCESS_RATE].of, 1);
+    assert_eq!(value(&score, names::MISS_RATE), 0.0);
+    assert!((value(&score, names::RANGE_ONLY_RMS_PERCENT) - 2.0).abs() < 1e-12);
+}
