@@ -7,21 +7,14 @@
 use std::ops::Range;
 use std::path::Path;
 
-use contract::docking::{
-    Digitiser, DockingOutcome, DockingPipelineFactory, DockingSetup, DockingSolution, Field, FieldTelemetry,
-    NoPose,
-};
+use contract::docking::{Digitiser, DockingOutcome, DockingPipelineFactory, DockingSetup, NoPose};
 use sim::docking::{DockingSimulator, DockingWorkspace, FieldExposure, FieldTruth};
 
+use crate::docking_renderer::DockingRenderer;
+use crate::docking_writer::{Answers, FieldDataset, FieldImages};
 use crate::failure::Failure;
-use crate::files::docking::{
-    FeatureRow, FieldMeasurementWriter, MotionWriter, SetupFile, outcome_as_filed, read_field_measurements,
-    read_motion, report_as_filed, truth_as_filed,
-};
-use crate::files::{
-    AviCoding, AviWriter, FieldRow, FieldSource, FieldTelemetryWriter, FileError, ImageFormat, PartialFiles,
-    RunDirectory, TableReader, TableWriter, write_field,
-};
+use crate::files::docking::{SetupFile, read_field_measurements, read_motion, truth_as_filed};
+use crate::files::{FieldSource, PartialFiles, RunDirectory, TableReader, Y4mWriter};
 use crate::flight::in_order;
 use crate::run::{FirstFailure, Processed, write_score};
 use crate::run_file::RunFile;
@@ -39,27 +32,6 @@ pub struct DockingFlight {
     pub images: Option<FieldImages>,
 }
 
-/// How images of fields are kept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FieldImages {
-    /// One grey PNG a field.
-    Png,
-    /// One uncompressed AVI of whole frames, two fields each.
-    Avi,
-}
-
-impl std::str::FromStr for FieldImages {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "png" => Ok(Self::Png),
-            "avi" => Ok(Self::Avi),
-            _ => Err(format!("`{text}` is no format of docking fields; expected png or avi")),
-        }
-    }
-}
-
 /// What a docking run gave.
 #[derive(Debug)]
 pub struct DockingRan {
@@ -72,6 +44,8 @@ pub struct DockingRan {
 /// A docking scenario with its simulator, ready to fly.
 pub struct PreparedDocking {
     simulator: DockingSimulator,
+    setup: DockingSetup,
+    renderer: DockingRenderer,
     run_file: RunFile<DockingScenario>,
 }
 
@@ -80,11 +54,12 @@ impl PreparedDocking {
     ///
     /// # Errors
     /// A [`Failure`] with the place of the first value that is not allowed.
-    pub fn new(source: &ScenarioSource) -> Result<Self, Failure> {
+    pub fn new(source: &ScenarioSource, renderer: DockingRenderer) -> Result<Self, Failure> {
         let scenario = source.docking("docking")?;
         let simulator = source.docking_simulator(scenario)?;
-        let run_file = RunFile::new(&source.name, scenario, None, None)?;
-        Ok(Self { simulator, run_file })
+        let mut run_file = RunFile::new(&source.name, scenario, None, None)?;
+        run_file.mitsuba = renderer.record().cloned();
+        Ok(Self { setup: simulator.setup(), simulator, renderer, run_file })
     }
 
     /// Number of fields of the whole approach.
@@ -98,8 +73,18 @@ impl PreparedDocking {
     }
 
     /// What a pipeline is told before the first field.
-    pub fn setup(&self) -> DockingSetup {
-        self.simulator.setup()
+    pub fn setup(&self) -> &DockingSetup {
+        &self.setup
+    }
+
+    /// Draws a field and forgets it: before anything is written, it shows whether the renderer can.
+    ///
+    /// # Errors
+    /// A [`Failure`] when there is no such field, or the renderer gives no image.
+    pub fn probe(&self, field: u64) -> Result<(), Failure> {
+        let mut workspace = self.simulator.workspace()?;
+        self.renderer.expose(&self.simulator, &self.setup, &mut workspace, field)?;
+        Ok(())
     }
 
     /// Makes fields, digitised as they are by default, and writes them as a dataset; `done` is told of each.
@@ -112,7 +97,7 @@ impl PreparedDocking {
         flight: &DockingFlight,
         done: impl Fn(),
     ) -> Result<(), Failure> {
-        let mut dataset = FieldDataset::create(self, directory, flight)?;
+        let mut dataset = FieldDataset::create(&self.run_file, &self.setup, directory, flight.images)?;
         self.fly(flight, |exposure| {
             let telemetry = exposure.telemetry(Digitiser::default());
             dataset.add(&exposure.video.digitise(&telemetry.digitiser), telemetry, exposure.truth)?;
@@ -120,6 +105,22 @@ impl PreparedDocking {
             Ok(())
         })?;
         dataset.finish()
+    }
+
+    /// Makes fields, digitised as they are by default, and writes them to standard output as Y4M; `done` is told of each.
+    ///
+    /// # Errors
+    /// A [`Failure`] when standard output cannot be written.
+    pub fn stream(&self, flight: &DockingFlight, done: impl Fn()) -> Result<(), Failure> {
+        let size = self.setup.cameras.first().map_or((0, 0), |camera| (camera.columns, camera.rows));
+        let rate_hz = self.scenario().television.frame_rate_hz;
+        let mut video = Y4mWriter::standard_output(size, rate_hz)?;
+        self.fly(flight, |exposure| {
+            video.write(&exposure.video.digitise(&Digitiser::default()))?;
+            done();
+            Ok(())
+        })?;
+        Ok(video.finish()?)
     }
 
     /// Makes fields, has the pipeline process them and scores its answers; writes all of it; `done` is told of each field.
@@ -133,12 +134,12 @@ impl PreparedDocking {
         factory: &dyn DockingPipelineFactory,
         done: impl Fn(),
     ) -> Result<DockingRan, Failure> {
-        let setup = self.setup();
-        let mut dataset = FieldDataset::create(self, directory, flight)?;
-        let mut pipeline = factory.build(&setup)?;
+        let setup = &self.setup;
+        let mut dataset = FieldDataset::create(&self.run_file, setup, directory, flight.images)?;
+        let mut pipeline = factory.build(setup)?;
         let mut answers =
             Answers::create(&directory.measurements(), &directory.motion(), &directory.features())?;
-        let mut scorer = DockingScorer::new(context(&self.run_file, &setup));
+        let mut scorer = DockingScorer::new(context(&self.run_file, setup));
         let mut digitiser = Digitiser::default();
         self.fly(flight, |exposure| {
             let telemetry = exposure.telemetry(digitiser);
@@ -148,7 +149,7 @@ impl PreparedDocking {
             digitiser = outcome.digitiser.filter(|wish| wish.check().is_ok()).unwrap_or(digitiser);
             let answered = answers.add(field.number(), &outcome)?;
             let truth = truth_as_filed(exposure.truth);
-            scorer.add(&true_field(&truth, &setup), Some(&answered)).map_err(unscorable)?;
+            scorer.add(&true_field(&truth, setup), Some(&answered)).map_err(unscorable)?;
             dataset.add(&field, telemetry, truth)?;
             done();
             Ok(())
@@ -166,116 +167,10 @@ impl PreparedDocking {
         take: impl FnMut(FieldExposure) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let workspace = || Ok(self.simulator.workspace()?);
-        let make = |workspace: &mut DockingWorkspace, field| Ok(self.simulator.expose(workspace, field)?);
-        in_order(flight.fields.clone(), flight.jobs, workspace, make, take)
-    }
-}
-
-/// What a run and a rendered dataset have in common on disk: everything but answers and score.
-struct FieldDataset<'a> {
-    directory: &'a RunDirectory,
-    telemetry: FieldTelemetryWriter,
-    truth: TableWriter<FieldTruth>,
-    images: Option<FieldImages>,
-    video: Option<AviWriter>,
-}
-
-impl<'a> FieldDataset<'a> {
-    fn create(
-        prepared: &PreparedDocking,
-        directory: &'a RunDirectory,
-        flight: &DockingFlight,
-    ) -> Result<Self, Failure> {
-        prepared.run_file.write(&directory.run())?;
-        let setup = prepared.setup();
-        SetupFile::new(&setup, &prepared.scenario().docking).write(&directory.setup())?;
-        let video = match (flight.images, setup.cameras.first()) {
-            (Some(FieldImages::Avi), Some(camera)) => {
-                let television = &prepared.scenario().television;
-                Some(AviWriter::create(
-                    &directory.video(),
-                    AviCoding::Grey,
-                    (camera.columns, camera.rows),
-                    television.frame_rate_hz,
-                )?)
-            }
-            _ => None,
+        let make = |workspace: &mut DockingWorkspace, field| {
+            self.renderer.expose(&self.simulator, &self.setup, workspace, field)
         };
-        Ok(Self {
-            directory,
-            telemetry: FieldTelemetryWriter::create(&directory.telemetry())?,
-            truth: TableWriter::create(&directory.truth_fields())?,
-            images: flight.images,
-            video,
-        })
-    }
-
-    fn add(&mut self, field: &Field, telemetry: FieldTelemetry, truth: FieldTruth) -> Result<(), FileError> {
-        let number = field.number();
-        let is_png = self.images == Some(FieldImages::Png);
-        if is_png {
-            write_field(&self.directory.frame(number, ImageFormat::Png), field)?;
-        }
-        if let Some(video) = &mut self.video {
-            video.write(field)?;
-        }
-        self.telemetry.write(&FieldRow {
-            field: number,
-            file: is_png.then(|| RunDirectory::frame_name(number, ImageFormat::Png)),
-            lines: field.lines(),
-            telemetry,
-        })?;
-        self.truth.write([truth])
-    }
-
-    fn finish(self) -> Result<(), Failure> {
-        self.telemetry.finish()?;
-        self.truth.finish()?;
-        self.video.map_or(Ok(()), AviWriter::finish)?;
-        Ok(())
-    }
-}
-
-/// The files of a pipeline's answers.
-struct Answers {
-    measurements: FieldMeasurementWriter,
-    motion: MotionWriter,
-    features: TableWriter<FeatureRow>,
-    first_failure: Option<FirstFailure>,
-}
-
-impl Answers {
-    fn create(measurements: &Path, motion: &Path, features: &Path) -> Result<Self, FileError> {
-        Ok(Self {
-            measurements: FieldMeasurementWriter::create(measurements)?,
-            motion: MotionWriter::create(motion)?,
-            features: TableWriter::create(features)?,
-            first_failure: None,
-        })
-    }
-
-    /// Writes an answer; what it gives back is the answer as it stands in the files.
-    fn add(&mut self, field: u64, outcome: &DockingOutcome) -> Result<DockingOutcome, FileError> {
-        if let DockingSolution::NoSolution(NoPose::Failed(reason)) = &outcome.solution
-            && self.first_failure.is_none()
-        {
-            self.first_failure = Some(FirstFailure { frame: field, reason: reason.clone() });
-        }
-        self.measurements.write(field, outcome)?;
-        if let Some(report) = &outcome.motion {
-            self.motion.write(field, report)?;
-        }
-        self.features.write(FeatureRow::of(field, &outcome.features))?;
-        let mut answered = outcome_as_filed(outcome);
-        answered.motion = outcome.motion.as_ref().map(report_as_filed);
-        Ok(answered)
-    }
-
-    fn finish(self) -> Result<Option<FirstFailure>, FileError> {
-        self.measurements.finish()?;
-        self.motion.finish()?;
-        self.features.finish()?;
-        Ok(self.first_failure)
+        in_order(flight.fields.clone(), flight.jobs, workspace, make, take)
     }
 }
 
@@ -307,6 +202,26 @@ pub fn process_fields(
     let first_failure = answers.finish()?;
     partial.complete()?;
     Ok(Processed { frames, first_failure })
+}
+
+/// Has a pipeline process a sequence of fields, and writes its measurements to standard output, each as soon as it is there.
+///
+/// # Errors
+/// A [`Failure`] when a field cannot be read or standard output not be written.
+pub fn stream_fields(
+    fields: FieldSource,
+    setup: &DockingSetup,
+    factory: &dyn DockingPipelineFactory,
+) -> Result<Processed, Failure> {
+    let mut pipeline = factory.build(setup)?;
+    let mut answers = Answers::stream()?;
+    let mut frames = 0;
+    for field in fields {
+        let (field, telemetry) = field?;
+        answers.add(field.number(), &pipeline.process(&field, &telemetry))?;
+        frames += 1;
+    }
+    Ok(Processed { frames, first_failure: answers.finish()? })
 }
 
 /// Scores measurements, somebody's or our own, against the truth in `directory`; `motion` holds what is said at the end of
@@ -375,6 +290,7 @@ fn context(run_file: &RunFile<DockingScenario>, setup: &DockingSetup) -> Docking
         scenario: run_file.name.clone(),
         seed: run_file.scenario.seed,
         version: run_file.version.clone(),
+        renderer: run_file.mitsuba.as_ref().map_or("fast", |_| "mitsuba").to_owned(),
         setup: setup.clone(),
     }
 }

@@ -12,17 +12,18 @@ use crate::table::{finish, percent, plain_table, share};
 /// cause. Ends with a line feed.
 pub fn docking(score: &DockingScore, styled: bool) -> String {
     let rows = rows(score);
-    let mut text = fields(&rows, styled);
+    let mut text = if score.renderer == "mitsuba" { "Scene drawn by Mitsuba.\n" } else { "" }.to_owned();
+    text.push_str(&fields(&rows, styled));
     text.push_str(
-        "Success, wrong and misses in percent of the fields, success with its 95 % interval; clear: of the fields with the target \
-         resolved and\nwholly in the image. RMS over the successes: range, place across (d1, d2), angle of the attitude; \
-         p. by the paper's formulas. 3σ: errors\nwithin three standard deviations, percent. NEES over its dimension: 1 when σ says \
-         the truth.\n",
+        "Pose: all six parameters given and none grossly wrong, percent (95 % interval) of the fields in which the target is resolved or\n\
+         a pose is given, and of the clear ones (resolved and wholly in the picture). Range only: from the station's outline, percent of the fields (its error).\n\
+         Errors: root mean squares over the poses, by the best estimator / by the paper's formulas; across: of d1 and d2 together.\n\
+         In 3σ: errors within three of their standard deviations; NEES is 1 in the mean when σ says the truth.\n",
     );
     if score.portions > 0 {
         text.push('\n');
         text.push_str(&portions(&rows, styled));
-        text.push_str("RMS at the end of portions; p. by the paper's formulas. 3σ and NEES from the second portion on.\n");
+        text.push_str("Root mean squares of the errors at the end of portions; in 3σ and NEES from the second report on.\n");
     }
     text.push_str(&latency(score));
     let misses = |row: &Row<'_>| row.misses.clone();
@@ -59,8 +60,19 @@ impl Row<'_> {
     }
 
     /// The value of the best estimator and, after a stroke, that of the paper's formulas.
-    fn beside(&self, name: &str, format: fn(f64) -> String) -> [String; 2] {
-        [self.figure(name, format), self.figure(&format!("{}{name}", names::PAPER), format)]
+    fn beside(&self, name: &str, format: fn(f64) -> String) -> String {
+        let paper = self.figure(&format!("{}{name}", names::PAPER), format);
+        match (self.figure(name, format).as_str(), paper.as_str()) {
+            ("–", "–") => "–".to_owned(),
+            (best, paper) => format!("{best} / {paper}"),
+        }
+    }
+
+    /// How often there is a range alone, and how far it is off.
+    fn range_only(&self) -> String {
+        let error = self.value(names::RANGE_ONLY_RMS_PERCENT);
+        let share = self.figure(names::RANGE_ONLY_RATE, percent);
+        error.map_or(share.clone(), |error| format!("{share} ({} %)", three_digits(error)))
     }
 
     fn rate_with_interval(&self, name: &str) -> String {
@@ -96,37 +108,31 @@ fn fields(rows: &[Row<'_>], styled: bool) -> String {
     let header = [
         "range, lens",
         "fields",
-        "success",
-        "clear",
-        "wrong",
-        "range",
-        "p.",
-        "across",
-        "p.",
-        "attitude",
-        "p.",
-        "3σ",
+        "pose\n%",
+        "of clear\n%",
+        "range only\n%",
+        "wrong\n%",
+        "nothing\n%",
+        "error of range\nbest / paper",
+        "across\nbest / paper",
+        "attitude\nbest / paper",
+        "in 3σ\n%",
         "NEES",
     ];
     sheet(
         &header,
         rows.iter().map(|row| {
-            let [range, paper_range] = row.beside(names::RANGE_RMS_M, length);
-            let [lateral, paper_lateral] = row.beside(names::LATERAL_RMS_M, length);
-            let [attitude, paper_attitude] = row.beside(names::ATTITUDE_RMS_DEG, degrees);
             vec![
                 row.name.to_owned(),
                 row.frames.to_string(),
                 row.rate_with_interval(names::SUCCESS_RATE),
                 row.figure(names::CLEAR_SUCCESS_RATE, percent),
+                row.range_only(),
                 row.figure(names::WRONG_RATE, percent),
-                // Before the target is resolved there is the range from the outline alone.
-                row.value(names::RANGE_RMS_M).map_or_else(|| outline(row), |_| range),
-                paper_range,
-                lateral,
-                paper_lateral,
-                attitude,
-                paper_attitude,
+                row.figure(names::MISS_RATE, percent),
+                row.beside(names::RANGE_RMS_M, length),
+                row.beside(names::LATERAL_RMS_M, length),
+                row.beside(names::ATTITUDE_RMS_DEG, degrees),
                 row.figure(names::WITHIN_3_SIGMA, percent),
                 row.figure(names::NEES_MEAN, plain),
             ]
@@ -135,26 +141,34 @@ fn fields(rows: &[Row<'_>], styled: bool) -> String {
     )
 }
 
-/// The range from the outline of the station, marked as such.
-fn outline(row: &Row<'_>) -> String {
-    row.value(names::OUTLINE_RANGE_RMS_M)
-        .map_or("–".to_owned(), |value| format!("outline {}", length(value)))
-}
-
 fn portions(rows: &[Row<'_>], styled: bool) -> String {
-    let header =
-        ["portions", "reports", "ρ", "p.", "u", "p.", "α", "p.", "β", "p.", "φ1", "φ2", "φ3", "3σ", "NEES"];
+    let header = [
+        "portions",
+        "reports",
+        "range ρ\nbest / paper",
+        "range rate u\nbest / paper",
+        "passive pitch α\nbest / paper",
+        "passive yaw β\nbest / paper",
+        "pitch\nφ1",
+        "yaw\nφ2",
+        "roll\nφ3",
+        "in 3σ\n%",
+        "NEES",
+    ];
     let name = |name: &str| format!("{}{name}", names::MOTION);
     sheet(
         &header,
         rows.iter().filter(|row| row.portions > 0).map(|row| {
-            let mut cells = vec![row.name.to_owned(), row.portions.to_string()];
-            cells.extend(row.beside(&name(names::RANGE_RMS_M), length));
-            cells.extend(row.beside(&name("range_rate_rms_m_s"), speed));
-            cells.extend(row.beside(&name("alpha_rms_deg"), degrees));
-            cells.extend(row.beside(&name("beta_rms_deg"), degrees));
-            for axis in ["phi1_rms_deg", "phi2_rms_deg", "phi3_rms_deg"] {
-                cells.push(row.figure(&name(axis), degrees));
+            let mut cells = vec![
+                row.name.to_owned(),
+                row.portions.to_string(),
+                row.beside(&name(names::RANGE_RMS_M), length),
+                row.beside(&name("range_rate_rms_m_s"), speed),
+            ];
+            cells.push(row.beside(&name("alpha_rms_deg"), degrees));
+            cells.push(row.beside(&name("beta_rms_deg"), degrees));
+            for angle in ["phi1_rms_deg", "phi2_rms_deg", "phi3_rms_deg"] {
+                cells.push(row.figure(&name(angle), degrees));
             }
             cells.push(row.figure(&name(names::WITHIN_3_SIGMA), percent));
             cells.push(row.figure(&name(names::NEES_MEAN), plain));
@@ -167,20 +181,16 @@ fn portions(rows: &[Row<'_>], styled: bool) -> String {
 /// How long things take, in words.
 fn latency(score: &DockingScore) -> String {
     let value = |name: &str| score.figures.get(name).and_then(|figure| figure.value);
-    let mut text = String::new();
-    if let Some(fields) = value(names::LATENCY_FIELDS) {
-        text += &format!("First success {fields:.0} fields after the target was first clear. ");
-    }
-    if let Some(fields) = value(names::PORTION_LATENCY_FIELDS) {
-        text += &format!("A portion takes {fields:.1} fields from its first measured one. ");
-    }
-    if let Some(rate) = value(names::RENEWED_WITHIN_1S) {
-        text += &format!("{} % of reports come within a second of the one before. ", percent(rate));
-    }
-    if let Some(score) = value(names::SPEED_SCORE_MEAN) {
-        text += &format!("SPEED score {score:.4}.");
-    }
-    if text.is_empty() { text } else { format!("\n{}\n", text.trim_end()) }
+    let latency = value(names::LATENCY_FIELDS)
+        .map(|n| format!("First pose {n:.0} fields after the target was first clear."));
+    let portion = value(names::PORTION_LATENCY_FIELDS)
+        .map(|n| format!("A portion takes {n:.1} fields from its first measured one to its report."));
+    let renewed = value(names::RENEWED_WITHIN_1S)
+        .map(|rate| format!("{} % of the reports come within a second of the one before.", percent(rate)));
+    let speed = value(names::SPEED_SCORE_MEAN)
+        .map(|score| format!("SPEED pose score, mean over the poses: {score:.4}."));
+    let lines: Vec<String> = [latency, portion, renewed, speed].into_iter().flatten().collect();
+    if lines.is_empty() { String::new() } else { format!("\n{}\n", lines.join("\n")) }
 }
 
 /// Counts by cause, a column each, with their share of the row's fields; one line when there is none.
@@ -274,6 +284,7 @@ mod tests {
             scenario: "docking".to_owned(),
             seed: 1,
             version: "0.1.0".to_owned(),
+            renderer: "fast".to_owned(),
             frames,
             portions: all.portions,
             figures: all.figures,
@@ -287,7 +298,7 @@ mod tests {
     fn a_row_a_group_and_the_paper_beside_the_best() {
         let text = docking(&score(&[("50–30 m, 15.0°", 80, 100), ("30–20 m, 15.0°", 100, 100)]), false);
         let line = text.lines().find(|line| line.starts_with("30–20 m")).unwrap();
-        assert!(line.contains("100 (") && line.contains(" mm") && line.contains(" m "), "{line}");
+        assert!(line.contains("100 (") && line.contains(" mm / "), "{line}");
         assert!(text.lines().any(|line| line.starts_with("all")), "{text}");
         assert!(text.contains("too far") && text.ends_with("Wrong answers by error: none\n"), "{text}");
     }

@@ -3,8 +3,10 @@
 
 pub mod command;
 pub mod dataset_writer;
+pub mod docking_renderer;
 pub mod docking_run;
 pub mod docking_table;
+pub mod docking_writer;
 pub mod failure;
 pub mod files;
 pub mod flight;

@@ -6,6 +6,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::dataset_writer::sha256_hex;
+use crate::docking_renderer::MitsubaRecord;
 use crate::failure::Failure;
 use crate::files::FileError;
 use crate::inject::Stage;
@@ -28,6 +29,9 @@ pub struct RunFile<S = FarRangeScenario> {
     /// The stage whose result was replaced by the truth; absent in an honest run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inject: Option<Stage>,
+    /// How the scene was drawn, where the fast renderer did not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mitsuba: Option<MitsubaRecord>,
     /// The scenario.
     pub scenario: S,
 }
@@ -49,6 +53,7 @@ impl<S: Clone + Serialize + DeserializeOwned> RunFile<S> {
             catalog_sha256: catalog_sha256.map(str::to_owned),
             hash: sha256_hex(&to_toml(scenario)?),
             inject,
+            mitsuba: None,
             scenario: scenario.clone(),
         })
     }

@@ -263,7 +263,8 @@ fn the_bare_command_runs_argon_into_a_numbered_directory() {
 
 #[test]
 fn the_schedule_of_argon_is_that_of_table_2() {
-    let simulator = ScenarioSource::read("argon").unwrap().simulator().unwrap();
+    let source = ScenarioSource::read("argon").unwrap();
+    let simulator = source.simulator(source.far_range("argon").unwrap()).unwrap();
     let schedule = simulator.schedule();
     assert_eq!(schedule.frame_count(), 16_077);
     let mut counts: BTreeMap<String, u32> = BTreeMap::new();

@@ -1,7 +1,6 @@
 //! `boresight render` and `boresight process`: datasets for somebody else's pipeline, and from somebody else's camera.
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use clap::Args;
 use contract::Setup;
@@ -9,14 +8,16 @@ use contract::docking::Digitiser;
 use serde_json::json;
 
 use super::Answer;
-use super::options::{PipelineOptions, Selection};
+use super::options::{PipelineOptions, RendererOptions, Selection, format_of};
 use super::output::Output;
-use crate::docking_run::{DockingFlight, FieldImages, PreparedDocking, process_fields};
+use crate::docking_renderer::DockingRenderer;
+use crate::docking_run::{DockingFlight, PreparedDocking, process_fields, stream_fields};
+use crate::docking_writer::FieldImages;
 use crate::failure::Failure;
 use crate::files::docking::SetupFile;
 use crate::files::{
-    Dataset, FieldOrder, FieldSource, FrameSize, ImageFormat, RunDirectory, Scan, SequenceOptions, StarRow,
-    read_stars,
+    Dataset, FieldOrder, FieldSource, FileError, FrameSize, ImageFormat, RunDirectory, Scan, SequenceOptions,
+    StarRow, read_stars,
 };
 use crate::run::{self, Expectation, Flight, Prepared};
 use crate::scenario::{Scenario, ScenarioSource};
@@ -26,15 +27,18 @@ use crate::star_list::star_list;
 pub(super) struct RenderArguments {
     #[command(flatten)]
     selection: Selection,
-    /// A new or empty directory for the dataset
-    #[arg(long, value_name = "DIR")]
+    /// A new or empty directory for the dataset. Docking with --format y4m: `-` writes the video alone to standard output
+    #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
-    /// Format of the images: fits (the default), png or exr; docking: png (the default) or avi
-    #[arg(long, value_name = "fits|png|exr|avi")]
+    /// Format of the images: fits (the default), png or exr; docking: png (the default), avi (uncompressed), mjpeg (AVI) or
+    /// y4m
+    #[arg(long, value_name = "FORMAT")]
     format: Option<String>,
     /// Write the noise-free expectation of every frame too, in electrons, to truth/expected/
     #[arg(long)]
     expected: bool,
+    #[command(flatten)]
+    renderer: RendererOptions,
 }
 
 pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Answer, Failure> {
@@ -50,7 +54,8 @@ fn render_far_range(
     source: &ScenarioSource,
     output: &Output,
 ) -> Result<Answer, Failure> {
-    let format = format_of(arguments, ImageFormat::Fits)?;
+    arguments.renderer.check_far_range()?;
+    let format = format_of("--format", arguments.format.as_deref())?.unwrap_or(ImageFormat::Fits);
     let prepared = Prepared::new(source)?;
     let flight = Flight {
         frames: arguments.selection.frames(prepared.frame_count())?,
@@ -86,61 +91,96 @@ fn render_docking(
             "--expected is given, expected with a far-range scenario alone".to_owned(),
         ));
     }
-    let images = format_of(arguments, FieldImages::Png)?;
-    let prepared = PreparedDocking::new(source)?;
+    let images = format_of("--format", arguments.format.as_deref())?.unwrap_or(FieldImages::Png);
+    let prepared = PreparedDocking::new(source, arguments.renderer.renderer()?)?;
     let fields = arguments.selection.frames(prepared.field_count())?;
     let count = fields.end - fields.start;
-    let flight = DockingFlight { fields, jobs: arguments.selection.jobs(), images: Some(images) };
+    let jobs = arguments.renderer.jobs(&arguments.selection);
+    let flight = DockingFlight { fields, jobs, images: Some(images) };
+    if arguments.out == Path::new("-") {
+        return stream_docking(&prepared, &flight, images, output);
+    }
+    check_size(&prepared, &flight)?;
+    // While nothing has been written.
+    prepared.probe(flight.fields.start)?;
     let directory = RunDirectory::create(&arguments.out)?;
     let progress = output.progress(count, &source.name);
     let rendered = prepared.render(&directory, &flight, || progress.inc(1));
     progress.finish_and_clear();
     rendered?;
     let path = directory.path().display();
-    let (kept, next) = match images {
-        FieldImages::Png => ("frames/", format!("boresight process {path}")),
-        FieldImages::Avi => (
-            "fields.avi",
-            format!("boresight process {path}/fields.avi --scenario {}", arguments.selection.scenario),
-        ),
-    };
+    let kept = images.place();
     output.answer(
         &json!({ "directory": directory.path(), "frames": count }),
         format!(
             "{count} fields in {path}\nfor a pipeline: setup.toml, telemetry.csv, {kept}; the truth is apart in truth/\n\
-             next: {next}, or a pipeline of your own and boresight score {path} MEASUREMENTS"
+             next: boresight process {path}, or a pipeline of your own and boresight score {path} MEASUREMENTS"
         ),
     )?;
     Ok(Answer::Yes)
 }
 
-/// The format asked for, of those of a world.
-fn format_of<F: FromStr<Err = String>>(arguments: &RenderArguments, usual: F) -> Result<F, Failure> {
-    let word = arguments.format.as_deref();
-    word.map_or(Ok(usual), |word| word.parse().map_err(|error| Failure::Usage(format!("--format: {error}"))))
+/// The video alone, for another program to read as it comes.
+fn stream_docking(
+    prepared: &PreparedDocking,
+    flight: &DockingFlight,
+    images: FieldImages,
+    output: &Output,
+) -> Result<Answer, Failure> {
+    if images != FieldImages::Y4m {
+        let message = "--out is -, expected with --format y4m alone: no other format is a stream";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    output.check_free("--out -")?;
+    prepared.stream(flight, || ())?;
+    Ok(Answer::Yes)
+}
+
+/// Refuses more fields than one file of video holds, before hours of work.
+pub(super) fn check_size(prepared: &PreparedDocking, flight: &DockingFlight) -> Result<(), Failure> {
+    let count = flight.fields.end - flight.fields.start;
+    match flight.images.and_then(|images| images.most_fields(prepared.setup())) {
+        Some(most) if count > most => Err(Failure::Usage(format!(
+            "{count} fields are more than the {most} of an uncompressed AVI of 4 GB; expected fewer (--frames), or mjpeg, \
+             png or y4m"
+        ))),
+        _ => Ok(()),
+    }
 }
 
 #[derive(Debug, Args)]
 pub(super) struct ProcessArguments {
     /// A dataset: camera.toml, telemetry.csv and the images it names; stars.csv if it has one. Docking: a dataset with
-    /// setup.toml, a folder of images, an AVI or Y4M file, or `-` for Y4M on standard input
+    /// setup.toml, a folder of images, an AVI or Y4M file, or `-` for Y4M (with --raw: raw frames) on standard input
+    #[arg(value_name = "DIR|FILE|-")]
     directory: PathBuf,
     #[command(flatten)]
     sequence: SequenceArguments,
-    /// The file of measurements to write; the clusters go to `clusters.parquet` beside it. Default:
-    /// `measurements.csv` in the dataset
-    #[arg(long, value_name = "FILE")]
+    /// The file of measurements to write; what else there is goes beside it (clusters.parquet; docking: motion.csv,
+    /// features.parquet). Default: `measurements.csv` in the dataset, of a video in the current directory. Docking: `-` writes
+    /// the measurements to standard output, each as it comes, and nothing beside
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineOptions,
 }
 
 pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<Answer, Failure> {
-    if arguments.sequence.scenario.is_some()
-        || arguments.directory.join("setup.toml").is_file()
-        || !arguments.directory.is_dir()
-    {
+    let path = &arguments.directory;
+    let is_stream = path == Path::new("-");
+    if !is_stream && let Err(source) = path.metadata() {
+        return Err(FileError::Io { path: path.clone(), doing: "open", source }.into());
+    }
+    let is_told = arguments.sequence.scenario.is_some() || arguments.sequence.setup.is_some();
+    if is_told || is_stream || !path.is_dir() || path.join("setup.toml").is_file() {
         return process_sequence(arguments, output);
+    }
+    if !path.join("camera.toml").exists() {
+        return Err(Failure::Usage(format!(
+            "{}: expected camera.toml (far range) or setup.toml (docking) in it, or --scenario SCENARIO for a folder of docking \
+             images",
+            path.display()
+        )));
     }
     let dataset = Dataset::open(&arguments.directory)?;
     let setup = setup(arguments, &dataset)?;
@@ -166,9 +206,13 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Docking sequences")]
 struct SequenceArguments {
-    /// The docking scenario whose cameras, target and pipeline these are; default: `setup.toml` of the dataset
+    /// The docking scenario whose cameras, target and pipeline these are; default: `setup.toml` in the folder, or beside the
+    /// video
     #[arg(long, value_name = "SCENARIO")]
     scenario: Option<String>,
+    /// A file `setup.toml` that names them, in the place of a scenario
+    #[arg(long, value_name = "FILE", conflicts_with = "scenario")]
+    setup: Option<PathBuf>,
     /// Which of its cameras took the images, where no telemetry.csv tells, from 0
     #[arg(long, value_name = "N", default_value_t = 0)]
     camera: usize,
@@ -189,18 +233,18 @@ struct SequenceArguments {
 /// Docking: digitised television, from files or standard input.
 fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Answer, Failure> {
     let (path, sequence) = (&arguments.directory, &arguments.sequence);
-    let (setup, config) = match &sequence.scenario {
-        Some(word) => {
-            let prepared = PreparedDocking::new(&ScenarioSource::read(word)?)?;
-            (prepared.setup(), prepared.scenario().docking.clone())
+    let (setup, config) = match (&sequence.scenario, setup_file(path, sequence)) {
+        (Some(word), _) => {
+            let prepared = PreparedDocking::new(&ScenarioSource::read(word)?, DockingRenderer::Fast)?;
+            (prepared.setup().clone(), prepared.scenario().docking.clone())
         }
-        None if path.is_dir() => {
-            let file = SetupFile::read(&path.join("setup.toml"))?;
+        (None, Some(file)) => {
+            let file = SetupFile::read(&file)?;
             (file.setup(), file.docking)
         }
-        None => {
+        (None, None) => {
             return Err(Failure::Usage(format!(
-                "{}: cameras and target of a video are not known, expected --scenario SCENARIO",
+                "{}: cameras and target are not known, expected --scenario SCENARIO or --setup FILE",
                 path.display()
             )));
         }
@@ -215,6 +259,12 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
     let scratch = super::scratch_directory()?;
     let factory = arguments.pipeline.choice().docking_factory(&config, scratch.path())?;
     let fields = FieldSource::open(path, &setup, &options)?;
+    if arguments.out.as_deref() == Some(Path::new("-")) {
+        output.check_free("--out -")?;
+        let processed = stream_fields(fields, &setup, factory.as_ref())?;
+        output.first_failure(processed.first_failure.as_ref());
+        return Ok(Answer::Yes);
+    }
     let place = if path.is_dir() { path.as_path() } else { Path::new("") };
     let measurements = arguments.out.clone().unwrap_or_else(|| place.join("measurements.csv"));
     let progress = output.counter(&factory.name());
@@ -233,6 +283,12 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
         format!("{fields} fields processed, answers in {}", measurements.display()),
     )?;
     Ok(Answer::Yes)
+}
+
+/// The file that tells cameras and target: the one asked for, or `setup.toml` in a folder or beside a video.
+fn setup_file(path: &Path, sequence: &SequenceArguments) -> Option<PathBuf> {
+    let beside = || if path.is_dir() { path.join("setup.toml") } else { path.with_file_name("setup.toml") };
+    sequence.setup.clone().or_else(|| Some(beside()).filter(|file| path != Path::new("-") && file.is_file()))
 }
 
 /// What the pipeline is told: the dataset's own star list, or the built-in catalogue to its magnitude limit.

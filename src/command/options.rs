@@ -1,11 +1,14 @@
 //! Arguments that several commands share.
 
 use std::ops::Range;
+use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
+use crate::docking_renderer::DockingRenderer;
 use crate::failure::Failure;
+use crate::mitsuba::MitsubaOptions;
 use crate::pipeline_choice::PipelineChoice;
 use crate::scenario::ScenarioSource;
 
@@ -67,6 +70,83 @@ impl Default for PipelineOptions {
     }
 }
 
+/// Who draws a docking scene.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum RendererWord {
+    /// The fast renderer
+    #[default]
+    Fast,
+    /// Mitsuba 3.9.1, its judge; seconds to minutes a field
+    Mitsuba,
+}
+
+/// Who draws a docking scene, and where Mitsuba is.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Docking images")]
+pub(super) struct RendererOptions {
+    /// Who draws the scene of a docking scenario
+    #[arg(long, value_name = "RENDERER", value_enum, default_value_t)]
+    renderer: RendererWord,
+    /// The command of Mitsuba, as a shell would split it; default: that of BORESIGHT_MITSUBA, or `mitsuba`, or `uvx`
+    #[arg(long, value_name = "COMMAND")]
+    mitsuba: Option<String>,
+    /// Folder that keeps Mitsuba's images; default: `boresight/mitsuba` in the user's cache
+    #[arg(long, value_name = "DIR")]
+    mitsuba_cache: Option<PathBuf>,
+    /// Mitsuba's rays a pixel, a square number up to 4096; default: 256
+    #[arg(long, value_name = "N")]
+    mitsuba_rays: Option<u32>,
+}
+
+impl RendererOptions {
+    /// Refuses whatever a far-range scenario has no use for.
+    pub(super) fn check_far_range(&self) -> Result<(), Failure> {
+        match self.renderer {
+            RendererWord::Mitsuba => Err(Failure::Usage(
+                "--renderer is mitsuba, expected with a docking scenario alone".to_owned(),
+            )),
+            RendererWord::Fast => self.check_fast(),
+        }
+    }
+
+    fn check_fast(&self) -> Result<(), Failure> {
+        let given = [
+            ("--mitsuba", self.mitsuba.is_some()),
+            ("--mitsuba-cache", self.mitsuba_cache.is_some()),
+            ("--mitsuba-rays", self.mitsuba_rays.is_some()),
+        ];
+        match given.iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => {
+                Err(Failure::Usage(format!("{option} is given, expected with --renderer mitsuba alone")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// The renderer asked for.
+    pub(super) fn renderer(&self) -> Result<DockingRenderer, Failure> {
+        if self.renderer == RendererWord::Fast {
+            self.check_fast()?;
+            return Ok(DockingRenderer::Fast);
+        }
+        let mut options = MitsubaOptions {
+            command: self.mitsuba.clone(),
+            cache: self.mitsuba_cache.clone(),
+            ..MitsubaOptions::default()
+        };
+        options.settings.samples = self.mitsuba_rays.unwrap_or(options.settings.samples);
+        DockingRenderer::mitsuba(options)
+    }
+
+    /// The number of threads: one where each image has several of its own.
+    pub(super) fn jobs(&self, selection: &Selection) -> usize {
+        match (self.renderer, selection.jobs) {
+            (RendererWord::Mitsuba, None) => 1,
+            _ => selection.jobs(),
+        }
+    }
+}
+
 impl Selection {
     /// A whole scenario as it is.
     pub(super) fn of(scenario: &str) -> Self {
@@ -99,6 +179,15 @@ impl Selection {
         let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         self.jobs.map_or_else(cores, usize::from)
     }
+}
+
+/// The format that an option asks for, of those of a world.
+pub(super) fn format_of<F: FromStr<Err = String>>(
+    option: &str,
+    word: Option<&str>,
+) -> Result<Option<F>, Failure> {
+    let parsed = word.map(str::parse).transpose();
+    parsed.map_err(|error: String| Failure::Usage(format!("{option}: {error}")))
 }
 
 #[cfg(test)]

@@ -32,6 +32,16 @@ impl Output {
         }
     }
 
+    /// Refuses an argument that needs stdout for itself where `--json` has it.
+    pub(super) fn check_free(&self, argument: &str) -> Result<(), Failure> {
+        if self.json {
+            return Err(Failure::Usage(format!(
+                "{argument} is given, expected without --json: both write to stdout"
+            )));
+        }
+        Ok(())
+    }
+
     /// A remark on stderr.
     pub(super) fn note(&self, text: impl Display) {
         // Nobody can be told that stderr is closed.

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::Answer;
-use super::options::{PipelineOptions, Selection};
+use super::dataset::check_size;
+use super::options::{PipelineOptions, RendererOptions, Selection, format_of};
 use super::output::Output;
-use crate::docking_run::{DockingFlight, FieldImages, PreparedDocking};
+use crate::docking_run::{DockingFlight, PreparedDocking};
 use crate::docking_table::docking;
+use crate::docking_writer::FieldImages;
 use crate::failure::Failure;
-use crate::files::{ImageFormat, RunDirectory};
+use crate::files::RunDirectory;
 use crate::inject::Stage;
 use crate::run::{Expectation, Flight, Prepared};
 use crate::scenario::{Scenario, ScenarioSource, World, is_argon};
@@ -25,16 +27,18 @@ pub(super) struct RunArguments {
     #[command(flatten)]
     selection: Selection,
     /// A new or empty directory for the results; default: the next free `runs/SCENARIO-001`
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineOptions,
     /// Give the built-in pipeline the truth in the place of this stage's result, to see what the stage costs
     #[arg(long, value_name = "STAGE")]
     inject: Option<Stage>,
-    /// Keep the images as well (about 1 MB a frame)
-    #[arg(long, value_name = "fits|png|exr")]
-    save_frames: Option<ImageFormat>,
+    /// Keep the images as well: fits, png or exr (about 1 MB a frame); docking: png, avi, mjpeg (AVI) or y4m
+    #[arg(long, value_name = "FORMAT")]
+    save_frames: Option<String>,
+    #[command(flatten)]
+    renderer: RendererOptions,
 }
 
 impl RunArguments {
@@ -46,6 +50,7 @@ impl RunArguments {
             pipeline: PipelineOptions::default(),
             inject: None,
             save_frames: None,
+            renderer: RendererOptions::default(),
         }
     }
 }
@@ -63,6 +68,7 @@ fn run_far_range(
     source: &ScenarioSource,
     output: &Output,
 ) -> Result<Answer, Failure> {
+    arguments.renderer.check_far_range()?;
     if let Some(stage) = arguments.inject
         && !arguments.pipeline.choice().is_built_in(World::FarRange)
     {
@@ -75,7 +81,7 @@ fn run_far_range(
     let flight = Flight {
         frames: arguments.selection.frames(prepared.frame_count())?,
         jobs: arguments.selection.jobs(),
-        images: arguments.save_frames,
+        images: format_of("--save-frames", arguments.save_frames.as_deref())?,
         expectation: Expectation::Dropped,
     };
     let choice = arguments.pipeline.choice();
@@ -114,21 +120,17 @@ fn run_docking(
     if let Some(stage) = arguments.inject {
         return Err(Failure::Usage(format!("--inject is {stage}, expected with a far-range scenario alone")));
     }
-    let images = match arguments.save_frames {
-        None => None,
-        Some(ImageFormat::Png) => Some(FieldImages::Png),
-        Some(format) => {
-            return Err(Failure::Usage(format!(
-                "--save-frames is {format}, expected png: fields of a docking run are kept as PNG"
-            )));
-        }
-    };
-    let prepared = PreparedDocking::new(source)?;
+    let images: Option<FieldImages> = format_of("--save-frames", arguments.save_frames.as_deref())?;
+    let prepared = PreparedDocking::new(source, arguments.renderer.renderer()?)?;
     let fields = arguments.selection.frames(prepared.field_count())?;
-    let flight = DockingFlight { fields, jobs: arguments.selection.jobs(), images };
+    let jobs = arguments.renderer.jobs(&arguments.selection);
+    let flight = DockingFlight { fields, jobs, images };
+    check_size(&prepared, &flight)?;
     let scratch = super::scratch_directory()?;
     let choice = arguments.pipeline.choice();
     let factory = choice.docking_factory(&prepared.scenario().docking, scratch.path())?;
+    // While nothing has been written.
+    prepared.probe(flight.fields.start)?;
     let directory = match &arguments.out {
         Some(path) => RunDirectory::create(path)?,
         None => RunDirectory::create_numbered(Path::new(RUNS), &source.name)?,

@@ -70,18 +70,22 @@ fn list(output: &Output) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for built_in in BUILT_IN {
         let source = ScenarioSource::read(built_in.name)?;
-        let frames = match &source.scenario {
-            Scenario::FarRange(scenario) => scenario.schedule.iter().map(|group| group.count).sum(),
-            Scenario::Docking(scenario) => source.docking_simulator(scenario)?.field_count(),
+        let (frames, unit) = match &source.scenario {
+            Scenario::FarRange(scenario) => {
+                (scenario.schedule.iter().map(|group| group.count).sum(), "frames")
+            }
+            Scenario::Docking(scenario) => (source.docking_simulator(scenario)?.field_count(), "fields"),
         };
-        rows.push((built_in.name, frames, source.scenario.title().to_owned()));
+        rows.push((built_in.name, frames, unit, source.scenario.title().to_owned()));
     }
     let document: Vec<_> = rows
         .iter()
-        .map(|(name, frames, title)| json!({ "name": name, "frames": frames, "title": title }))
+        .map(|(name, frames, _, title)| json!({ "name": name, "frames": frames, "title": title }))
         .collect();
-    let text: Vec<_> =
-        rows.iter().map(|(name, frames, title)| format!("{name:<16}{frames:>7} frames  {title}")).collect();
+    let text: Vec<_> = rows
+        .iter()
+        .map(|(name, frames, unit, title)| format!("{name:<16}{frames:>7} {unit}  {title}"))
+        .collect();
     output.answer(&document, text.join("\n"))
 }
 

@@ -1,6 +1,7 @@
 //! A CSV table whose columns are known by name, and whose errors name line and column.
 
 use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::FileError;
@@ -136,25 +137,41 @@ impl CsvRow<'_> {
 /// A table being written.
 pub(super) struct CsvWriter {
     path: PathBuf,
-    writer: csv::Writer<File>,
+    writer: csv::Writer<Box<dyn Write>>,
+    /// Whether each row goes out at once.
+    is_live: bool,
 }
 
 impl CsvWriter {
     /// Creates the table and writes its header.
     pub(super) fn create(path: &Path, layout: Layout) -> Result<Self, FileError> {
-        let mut writer = Self { path: path.to_owned(), writer: csv::Writer::from_writer(create_new(path)?) };
+        Self::headed(path, Box::new(create_new(path)?), false, layout)
+    }
+
+    /// Writes the table to a stream that goes by `name` in messages, header first, each row as soon as it is there.
+    pub(super) fn stream(name: &str, out: impl Write + 'static, layout: Layout) -> Result<Self, FileError> {
+        Self::headed(Path::new(name), Box::new(out), true, layout)
+    }
+
+    fn headed(path: &Path, out: Box<dyn Write>, is_live: bool, layout: Layout) -> Result<Self, FileError> {
+        let mut writer = Self { path: path.to_owned(), writer: csv::Writer::from_writer(out), is_live };
         writer.write(layout.iter().map(|(name, _)| (*name).to_owned()))?;
         Ok(writer)
     }
 
     /// Writes a row of cells.
     pub(super) fn write(&mut self, cells: impl IntoIterator<Item = String>) -> Result<(), FileError> {
-        self.writer.write_record(cells).map_err(|error| csv_error(&self.path, &error))
+        self.writer.write_record(cells).map_err(|error| csv_error(&self.path, &error))?;
+        if self.is_live { self.flush() } else { Ok(()) }
+    }
+
+    fn flush(&mut self) -> Result<(), FileError> {
+        self.writer.flush().map_err(|source| FileError::io(&self.path, "write", source))
     }
 
     /// Writes what is buffered. Dropping the writer does so too, but cannot tell of an error.
     pub(super) fn finish(mut self) -> Result<(), FileError> {
-        self.writer.flush().map_err(|source| FileError::io(&self.path, "write", source))
+        self.flush()
     }
 }
 

@@ -146,11 +146,6 @@ impl RunDirectory {
         self.path.join("features.parquet")
     }
 
-    /// `fields.avi` of a docking dataset that is kept as video.
-    pub fn video(&self) -> PathBuf {
-        self.path.join("fields.avi")
-    }
-
     /// `score.json`.
     pub fn score(&self) -> PathBuf {
         self.path.join("score.json")

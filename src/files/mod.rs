@@ -43,6 +43,6 @@ pub use stars::{StarRow, read_stars, write_stars};
 pub use telemetry::{TelemetryRow, TelemetryWriter, read_telemetry};
 pub use time::{format_utc, parse_utc};
 pub use video::{
-    AviCoding, AviWriter, FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions, write_field,
+    AviCoding, AviWriter, FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions, Y4mWriter, write_field,
 };
 pub use wcs::{SipTerm, TanSip, WcsError};

@@ -146,7 +146,42 @@ impl ScenarioSource {
     /// A [`Failure`] with the place of the first value that is not allowed.
     pub fn docking_simulator(&self, scenario: &DockingScenario) -> Result<DockingSimulator, Failure> {
         self.check_pipeline("docking", scenario.docking.check())?;
+        self.check_target(&scenario.target)?;
         DockingSimulator::new(&scenario.simulation(), &self.folder).map_err(|error| self.explain(error))
+    }
+
+    /// Checks the target's file, so that a mistake in it is told with its place there.
+    fn check_target(&self, target: &str) -> Result<(), Failure> {
+        if TargetFile::built_in(target).is_some() {
+            return Ok(());
+        }
+        let file = self.folder.join(target);
+        let text = toml_file::read_text(&file).map_err(|error| {
+            let word = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+            let hint = toml_file::nearest(&word, TargetFile::built_in_names()).map_or_else(
+                || {
+                    format!(
+                        "built-in targets: {}",
+                        TargetFile::built_in_names().collect::<Vec<_>>().join(", ")
+                    )
+                },
+                |name| format!("did you mean `{name}`?"),
+            );
+            let problem =
+                format!("is neither a built-in target nor a TOML file that can be read ({error}); {hint}");
+            self.refuse("target", format!("`{}` {problem}", file.display()))
+        })?;
+        let parsed: TargetFile = toml_file::parse(&file, &text)?;
+        let refuse = |path: &str, message| toml_file::refuse(&file, &text, path, message).into();
+        parsed.check().map_err(|error| match &error {
+            SimError::Parameter { field, value, expected } => {
+                refuse(field, format!("is {value}, expected {expected}"))
+            }
+            SimError::Entry { path, value, expected } => {
+                refuse(path, format!("is {value}, expected {expected}"))
+            }
+            _ => refuse("", error.to_string()),
+        })
     }
 
     fn check_pipeline(&self, table: &str, checked: Result<(), PipelineError>) -> Result<(), Failure> {

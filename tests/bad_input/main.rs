@@ -4,6 +4,7 @@
 
 mod cameras;
 mod catalogues;
+mod docking;
 mod images;
 mod measurements;
 mod output;

@@ -1,5 +1,6 @@
 //! `measurements.csv` of a docking run: a pipeline's answer to each field, ours or anybody's.
 
+use std::io::Write;
 use std::path::Path;
 
 use contract::docking::{
@@ -84,6 +85,14 @@ impl FieldMeasurementWriter {
     /// [`FileError::Io`] when the file exists or cannot be created.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         CsvWriter::create(path, COLUMNS).map(Self)
+    }
+
+    /// Writes the table to a stream that goes by `name` in messages, each row as soon as it is there.
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn stream(name: &str, out: impl Write + 'static) -> Result<Self, FileError> {
+        CsvWriter::stream(name, out, COLUMNS).map(Self)
     }
 
     /// Writes the answer to one field. Features and motion have tables of their own.

@@ -4,13 +4,13 @@ use std::fs::File;
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use contract::docking::{Field, Lines};
+use contract::docking::Field;
 use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
 
 use super::super::error::{Place, create_new};
 use super::super::{FileError, PartialFiles};
-use super::whole_frame::weave;
+use super::weaver::Weaver;
 
 /// How frames are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,9 +32,7 @@ pub struct AviWriter {
     coding: AviCoding,
     columns: usize,
     rows: usize,
-    /// Rows that the frame in hand still waits for.
-    waits_for: Option<Lines>,
-    frame: Vec<u8>,
+    weaver: Weaver,
     chunk: Vec<u8>,
     /// Where each frame's chunk stands, from the kind of the list `movi`, and its bytes.
     index: Vec<(u32, u32)>,
@@ -45,6 +43,31 @@ pub struct AviWriter {
 const HEADERS_MOVI_KIND: u64 = 4;
 /// A file stays below this, and with its index below 4 GiB: sizes have 32 bits.
 const MOST_BYTES: u64 = 0xF000_0000;
+
+impl AviCoding {
+    /// Most whole frames of a size that one file holds; `None` for a coding whose frames differ in size.
+    pub fn most_frames(self, (columns, rows): (usize, usize)) -> Option<u64> {
+        let frame = columns.next_multiple_of(4) as u64 * rows as u64 + 1;
+        (self == Self::Grey).then(|| MOST_BYTES / (frame + 32) - 1)
+    }
+}
+
+/// Checks what every writer of video needs.
+///
+/// # Errors
+/// [`FileError::Value`] for a side that is not 1 to [`contract::Camera::MAX_SIDE_PX`], and a rate that is not 0.001 to
+/// 1000 Hz.
+pub(super) fn check_frames(
+    path: &Path,
+    (columns, rows): (usize, usize),
+    frame_rate_hz: f64,
+) -> Result<(), FileError> {
+    super::super::raw_image::checked_size(path, columns as u64, rows as u64)?;
+    if (0.001..=1000.0).contains(&frame_rate_hz) {
+        return Ok(());
+    }
+    Err(FileError::value(path, Place::Header, "frames a second", frame_rate_hz, "0.001 to 1000"))
+}
 
 impl AviWriter {
     /// Creates the file, for images of `columns` × `rows` and `frame_rate_hz` whole frames a second (kept to the
@@ -60,17 +83,11 @@ impl AviWriter {
         (columns, rows): (usize, usize),
         frame_rate_hz: f64,
     ) -> Result<Self, FileError> {
-        super::super::raw_image::checked_size(path, columns as u64, rows as u64)?;
-        let wrong = |field: &str, value: String, expected: &str| {
-            Err(FileError::value(path, Place::Header, field, value, expected))
-        };
-        if !(0.001..=1000.0).contains(&frame_rate_hz) {
-            return wrong("frames a second", frame_rate_hz.to_string(), "0.001 to 1000");
-        }
+        check_frames(path, (columns, rows), frame_rate_hz)?;
         if let AviCoding::MotionJpeg { quality } = coding
             && !(1..=100).contains(&quality)
         {
-            return wrong("quality", quality.to_string(), "1 to 100");
+            return Err(FileError::value(path, Place::Header, "quality", quality, "1 to 100"));
         }
         let files = PartialFiles::of(&[path])?;
         let file = BufWriter::new(create_new(files.path(0))?);
@@ -81,8 +98,7 @@ impl AviWriter {
             coding,
             columns,
             rows,
-            waits_for: None,
-            frame: vec![0; columns * rows],
+            weaver: Weaver::new(path, (columns, rows)),
             chunk: Vec::new(),
             index: Vec::new(),
             position: 0,
@@ -99,37 +115,7 @@ impl AviWriter {
     /// [`FileError::Value`] for a field of another size, for one that is not the other half of the one before, and for
     /// a value above 255; [`FileError::Io`]; [`FileError::Format`] when the file would pass 4 GB.
     pub fn write(&mut self, field: &Field) -> Result<(), FileError> {
-        let number = field.number();
-        let wrong = |path: &Path, what: &str, value: String, expected: &str| {
-            Err(FileError::value(path, Place::Row(number), what, value, expected))
-        };
-        let size = (field.image().columns(), field.camera_rows());
-        if size != (self.columns, self.rows) {
-            let expected = format!("{} × {}, those of the file", self.columns, self.rows);
-            return wrong(
-                &self.path,
-                "size of a field's frame",
-                format!("{} × {}", size.0, size.1),
-                &expected,
-            );
-        }
-        match self.waits_for {
-            Some(lines) if lines != field.lines() => {
-                let expected = format!("{}, the other half of the field before", lines.code());
-                return wrong(&self.path, "lines of a field", field.lines().code().to_owned(), &expected);
-            }
-            _ => {}
-        }
-        if weave(field, &mut self.frame).is_none() {
-            let most = field.image().dn().iter().copied().max().unwrap_or(0);
-            return wrong(&self.path, "DN of a field", most.to_string(), "at most 255: AVI has 8 bits");
-        }
-        self.waits_for = match (field.lines(), self.waits_for) {
-            (Lines::Even, None) => Some(Lines::Odd),
-            (Lines::Odd, None) => Some(Lines::Even),
-            _ => None,
-        };
-        if self.waits_for.is_none() { self.put_frame() } else { Ok(()) }
+        if self.weaver.add(field)? { self.put_frame() } else { Ok(()) }
     }
 
     /// Completes the file and gives it its name. A last field without its other half leaves those rows black.
@@ -137,7 +123,7 @@ impl AviWriter {
     /// # Errors
     /// [`FileError::Io`].
     pub fn finish(mut self) -> Result<(), FileError> {
-        if self.waits_for.take().is_some() {
+        if self.weaver.rest() {
             self.put_frame()?;
         }
         let movi_end = self.position;
@@ -178,18 +164,18 @@ impl AviWriter {
         match self.coding {
             AviCoding::Grey => {
                 let padding = self.columns.next_multiple_of(4) - self.columns;
-                for row in self.frame.chunks_exact(self.columns).rev() {
+                for row in self.weaver.frame().chunks_exact(self.columns).rev() {
                     self.chunk.extend(row);
                     self.chunk.extend(iter_zero(padding));
                 }
             }
             AviCoding::MotionJpeg { quality } => {
                 JpegEncoder::new_with_quality(&mut self.chunk, quality)
-                    .encode(&self.frame, self.columns as u32, self.rows as u32, ExtendedColorType::L8)
+                    .encode(self.weaver.frame(), self.columns as u32, self.rows as u32, ExtendedColorType::L8)
                     .map_err(|error| FileError::format(&self.path, "JPEG", error))?;
             }
         }
-        self.frame.fill(0);
+        self.weaver.next();
         let size = self.chunk.len() as u32;
         if self.position + u64::from(size) + 16 * (self.index.len() as u64 + 2) > MOST_BYTES {
             let reason = format!(

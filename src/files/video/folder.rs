@@ -8,7 +8,7 @@ use contract::docking::{DockingSetup, Field, FieldTelemetry};
 use super::super::FileError;
 use super::super::dataset::locate_image;
 use super::super::error::Place;
-use super::super::field_telemetry::{FieldRow, read_with_lines};
+use super::super::field_telemetry::FieldRow;
 use super::super::frame_file::read_image;
 use super::whole_frame::{Format, WholeFrame};
 
@@ -18,21 +18,16 @@ pub(super) struct ListedField {
     row: FieldRow,
 }
 
-/// The fields that a folder's `telemetry.csv` lists. Every image is looked for; none is read yet.
-pub(super) fn listed(directory: &Path, setup: &DockingSetup) -> Result<Vec<ListedField>, FileError> {
+/// The fields that a folder's table lists. Every image is looked for; none is read yet.
+pub(super) fn listed(
+    directory: &Path,
+    rows: Vec<(u64, FieldRow)>,
+    setup: &DockingSetup,
+) -> Result<Vec<ListedField>, FileError> {
     let table = directory.join("telemetry.csv");
     let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
     let locate = |(line, row): (u64, FieldRow)| {
-        if row.telemetry.camera >= setup.cameras.len() {
-            let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
-            return Err(FileError::value(
-                &table,
-                Place::Line(line),
-                "camera",
-                row.telemetry.camera,
-                expected,
-            ));
-        }
+        check_camera(&table, line, &row, setup)?;
         match locate_image(directory, &root, row.file.as_deref()) {
             Ok(path) => Ok(ListedField { path, row }),
             Err(reason) => Err(FileError::MissingImage {
@@ -44,7 +39,22 @@ pub(super) fn listed(directory: &Path, setup: &DockingSetup) -> Result<Vec<Liste
             }),
         }
     };
-    read_with_lines(&table)?.into_iter().map(locate).collect()
+    rows.into_iter().map(locate).collect()
+}
+
+/// Checks that a row's camera is one of the setup.
+pub(super) fn check_camera(
+    table: &Path,
+    line: u64,
+    row: &FieldRow,
+    setup: &DockingSetup,
+) -> Result<(), FileError> {
+    let camera = row.telemetry.camera;
+    if camera < setup.cameras.len() {
+        return Ok(());
+    }
+    let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
+    Err(FileError::value(table, Place::Line(line), "camera", camera, expected))
 }
 
 impl ListedField {

@@ -1,16 +1,18 @@
 //! Where fields come from.
 
 use std::iter;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use contract::docking::{Digitiser, DockingSetup, Field, FieldTelemetry};
 
 use super::super::FileError;
 use super::super::error::Place;
+use super::super::field_telemetry::{FieldRow, read_with_lines};
 use super::avi::AviReader;
 use super::folder;
 use super::input::Input;
+use super::listed_video::{ListedVideo, video_of};
 use super::stream::StreamReader;
 use super::whole_frame::{Format, Scan, WholeFrame};
 
@@ -63,7 +65,8 @@ pub struct FieldSource(Box<dyn Iterator<Item = Result<(Field, FieldTelemetry), F
 impl FieldSource {
     /// Opens a sequence:
     ///
-    /// - a folder with a `telemetry.csv` ([`super::super::FieldRow`]): the fields that it lists; `options` do not apply;
+    /// - a folder with a `telemetry.csv` ([`super::super::FieldRow`]): the fields that it lists, their images or, where it names
+    ///   none, those of `fields.avi` or `fields.y4m`; `options` do not apply;
     /// - another folder: its images `*.png`, whole frames, in the order of their names;
     /// - `-`: standard input, Y4M or, with `options.raw`, raw frames; live: a field is given as soon as the last byte
     ///   of its frame has arrived, and a pipe that is closed between two frames is the end;
@@ -76,8 +79,18 @@ impl FieldSource {
     /// sequence of 8 bits where the setup's digitiser has other, and for options outside their ranges.
     pub fn open(path: &Path, setup: &DockingSetup, options: &SequenceOptions) -> Result<Self, FileError> {
         let is = |extension: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
-        if path.join("telemetry.csv").exists() {
-            let fields = folder::listed(path, setup)?;
+        let table = path.join("telemetry.csv");
+        if table.exists() {
+            let rows = read_with_lines(&table)?;
+            if let Some(video) = video_of(path, &rows) {
+                return Self::listed_video(&video, table, rows, setup);
+            }
+            if rows.iter().all(|(_, row)| row.file.is_none()) {
+                let expected = "the names of images, or fields.avi or fields.y4m beside the table: a run keeps them with \
+                                --save-frames";
+                return Err(FileError::value(&table, Place::Header, "file", "empty in every row", expected));
+            }
+            let fields = folder::listed(path, rows, setup)?;
             let setup = setup.clone();
             return Ok(Self::until_error(fields.into_iter().map(move |field| field.read(&setup))));
         }
@@ -100,6 +113,28 @@ impl FieldSource {
             let reason = "the extension is none of avi, y4m; raw frames need their size (--raw 768x576)";
             Err(open().err().unwrap_or_else(|| FileError::format(path, "video", reason)))
         }
+    }
+
+    /// The whole frames of a video, fields by the rows of a table.
+    fn listed_video(
+        video: &Path,
+        table: PathBuf,
+        rows: Vec<(u64, FieldRow)>,
+        setup: &DockingSetup,
+    ) -> Result<Self, FileError> {
+        let camera = setup.cameras.first().map_or((0, 0), |camera| (camera.columns, camera.rows));
+        if setup.bit_depth != 8 {
+            let expected = format!("{}, those of the digitiser", setup.bit_depth);
+            return Err(FileError::value(video, Place::Header, "bits of a sample", 8, expected));
+        }
+        let input = Input::file(video)?;
+        let is_avi = video.extension().is_some_and(|extension| extension == "avi");
+        let frames: Box<dyn Iterator<Item = _> + Send> = if is_avi {
+            Box::new(AviReader::open(input, camera)?)
+        } else {
+            Box::new(StreamReader::y4m(input, camera)?)
+        };
+        ListedVideo::new(table, rows, setup, frames).map(Self::until_error)
     }
 
     pub(super) fn avi(

@@ -88,7 +88,7 @@ impl Format {
 }
 
 /// The rows of an image that a field holds.
-fn take_rows(dn: &[u16], columns: usize, lines: Lines) -> Vec<u16> {
+pub(super) fn take_rows(dn: &[u16], columns: usize, lines: Lines) -> Vec<u16> {
     let first = lines.camera_row(0);
     dn.chunks_exact(columns).skip(first).step_by(lines.step()).flatten().copied().collect()
 }

@@ -26,6 +26,8 @@ pub struct DockingContext {
     pub seed: u64,
     /// Version of Boresight.
     pub version: String,
+    /// What drew the scene: `fast` or `mitsuba`.
+    pub renderer: String,
     /// The true cameras and the target's true dimensions.
     pub setup: DockingSetup,
 }
@@ -41,6 +43,8 @@ pub(super) struct FieldVerdict {
     pub(super) is_clear: bool,
     /// Whether all six parameters were given.
     pub(super) is_measured: bool,
+    /// Whether all six can be asked for: the target is resolved, or they were given all the same.
+    pub(super) is_asked: bool,
     pub(super) verdict: Verdict,
     /// Of a success: NEES over its dimension.
     pub(super) nees: Option<f64>,
@@ -101,11 +105,13 @@ impl DockingScorer {
             .map(|pose| PoseErrors::new(&pose, &truth.pose));
         let range_m = truth.pose.position_m.norm();
         let portion = self.portion(truth, outcome);
+        let is_resolved = self.sights.resolves(truth.camera, &truth.pose);
         self.verdicts.push(FieldVerdict {
             group: (bin(range_m), truth.camera),
             range_m,
-            is_clear: truth.view == View::Whole && self.sights.resolves(truth.camera, &truth.pose),
+            is_clear: truth.view == View::Whole && is_resolved,
             is_measured: measurement.is_some(),
+            is_asked: is_resolved || measurement.is_some(),
             verdict,
             nees: error.and_then(|(error, covariance)| nees(&error, covariance)),
             within: error.map(|(error, covariance)| {
@@ -158,6 +164,7 @@ impl DockingScorer {
             scenario: self.context.scenario,
             seed: self.context.seed,
             version: self.context.version,
+            renderer: self.context.renderer,
             frames: all.frames,
             portions: all.portions,
             figures: all.figures,

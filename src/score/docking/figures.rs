@@ -43,11 +43,11 @@ pub(super) fn figures(fields: &Fields<'_>) -> Figures {
     };
     errors(fields, "", &success, &mut figures);
     consistency(fields, &mut figures);
-    outline(fields, &mut figures);
+    range_only(fields, &mut figures);
     let right = |field: &FieldVerdict| field.paper.filter(|_| !field.paper_is_wrong);
     figures.insert(
         format!("{}{}", names::PAPER, names::SUCCESS_RATE),
-        Figure::rate(&collect(fields, |field| Some(right(field).is_some()))),
+        Figure::rate(&collect(fields, |field| field.is_asked.then(|| right(field).is_some()))),
     );
     errors(fields, names::PAPER, &right, &mut figures);
 
@@ -72,7 +72,7 @@ fn rates(fields: &Fields<'_>, figures: &mut Figures) {
         figures.insert(name.to_owned(), Figure::rate(&collect(fields, holds)));
     };
     let is_success = |field: &FieldVerdict| matches!(field.verdict, Verdict::Success { .. });
-    rate(names::SUCCESS_RATE, &|field| Some(is_success(field)));
+    rate(names::SUCCESS_RATE, &|field| field.is_asked.then(|| is_success(field)));
     rate(names::CLEAR_SUCCESS_RATE, &|field| field.is_clear.then(|| is_success(field)));
     rate(names::MEASURED_RATE, &|field| Some(field.is_measured));
     rate(names::RANGE_ONLY_RATE, &|field| Some(matches!(field.verdict, Verdict::RangeOnly { .. })));
@@ -127,18 +127,20 @@ fn consistency(fields: &Fields<'_>, figures: &mut Figures) {
     figures.insert(names::NEES_MEAN.to_owned(), Figure::mean(&collect(fields, |field| field.nees)));
 }
 
-/// Ranges from the outline of the station.
-fn outline(fields: &Fields<'_>, figures: &mut Figures) {
+/// Ranges that are given alone.
+fn range_only(fields: &Fields<'_>, figures: &mut Figures) {
     let told = |field: &FieldVerdict| match field.verdict {
         Verdict::RangeOnly { error_m, sigma_m } => Some((error_m, sigma_m)),
         _ => None,
     };
     let range = collect(fields, |field| told(field).map(|(error_m, _)| error_m));
-    figures.insert(names::OUTLINE_RANGE_RMS_M.to_owned(), Figure::rms(&range));
+    figures.insert(names::RANGE_ONLY_RMS_M.to_owned(), Figure::rms(&range));
+    let percent = collect(fields, |field| told(field).map(|(error_m, _)| 100.0 * error_m / field.range_m));
+    figures.insert(names::RANGE_ONLY_RMS_PERCENT.to_owned(), Figure::rms(&percent));
     let within = collect(fields, |field| {
         told(field).and_then(|(error_m, sigma_m)| super::consistency::within_3_sigma(error_m, sigma_m))
     });
-    figures.insert("outline_within_3_sigma".to_owned(), Figure::rate(&within));
+    figures.insert("range_only_within_3_sigma".to_owned(), Figure::rate(&within));
 }
 
 /// What is said at the end of portions. Consistency is counted from the second portion of a sequence on: the first has no

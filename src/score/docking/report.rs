@@ -7,9 +7,10 @@ use crate::score::Figure;
 
 /// Names of the docking figures that something else asks for; `docs/formats.md` lists all of them.
 pub mod names {
-    /// Six parameters given, none grossly wrong, of all fields.
+    /// Six parameters given, none grossly wrong, of the fields in which they can be asked for: the target is resolved, or they
+    /// are given.
     pub const SUCCESS_RATE: &str = "success_rate";
-    /// The same, of the fields in which the target is resolved and wholly in the image.
+    /// The same, of those in which the target is resolved and wholly in the image.
     pub const CLEAR_SUCCESS_RATE: &str = "clear_success_rate";
     /// Six parameters given, rightly or wrongly, of all fields: what the paper calls processed successfully.
     pub const MEASURED_RATE: &str = "measured_rate";
@@ -31,8 +32,10 @@ pub mod names {
     pub const NEES_MEAN: &str = "nees_mean";
     /// Mean of SPEED's pose score.
     pub const SPEED_SCORE_MEAN: &str = "speed_score_mean";
-    /// Root mean square of the error of a range from the outline, m.
-    pub const OUTLINE_RANGE_RMS_M: &str = "outline_range_rms_m";
+    /// Root mean square of the error of a range that is given alone, m.
+    pub const RANGE_ONLY_RMS_M: &str = "range_only_rms_m";
+    /// The same in percent of the true one.
+    pub const RANGE_ONLY_RMS_PERCENT: &str = "range_only_rms_percent";
     /// Fields from the first clear one to the first success.
     pub const LATENCY_FIELDS: &str = "latency_fields";
     /// Fields of a portion, from its first measured one to its report.
@@ -56,6 +59,8 @@ pub struct DockingScore {
     pub seed: u64,
     /// Version of Boresight that made the score.
     pub version: String,
+    /// What drew the scene: `fast` or `mitsuba`.
+    pub renderer: String,
     /// Number of fields, each counted once: succeeded, range alone, wrong, missed.
     pub frames: u64,
     /// Number of reports at the end of a portion.

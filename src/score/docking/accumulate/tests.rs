@@ -9,6 +9,7 @@ fn score(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScore {
         scenario: "hand-made".to_owned(),
         seed: 42,
         version: "0.1.0".to_owned(),
+        renderer: "fast".to_owned(),
         setup: setup(),
     };
     let mut scorer = DockingScorer::new(context);
@@ -92,8 +93,9 @@ fn errors_of_the_right_fields_have_their_closed_forms() {
         ("phi3_rms_deg", rms(0.02 * 0.02).to_degrees()),
         // Errors over the standard deviation of 0.01 in each: 0; 3 and 4; 3 and 2.
         (names::NEES_MEAN, (0.0 + 25.0 / 6.0 + 13.0 / 6.0) / 3.0),
-        (names::OUTLINE_RANGE_RMS_M, 0.4),
-        ("outline_within_3_sigma", 1.0),
+        (names::RANGE_ONLY_RMS_M, 0.4),
+        (names::RANGE_ONLY_RMS_PERCENT, 4.0),
+        ("range_only_within_3_sigma", 1.0),
     ] {
         assert!((value(&score, name) - expected).abs() < 1e-9, "{name}: {}", value(&score, name));
         assert!(score.figures[name].count > 0);
@@ -192,7 +194,13 @@ fn a_score_of_nothing_and_of_nothing_right_has_no_nan() {
 
 #[test]
 fn a_field_met_twice_is_refused() {
-    let context = DockingContext { scenario: String::new(), seed: 0, version: String::new(), setup: setup() };
+    let context = DockingContext {
+        scenario: String::new(),
+        seed: 0,
+        version: String::new(),
+        renderer: String::new(),
+        setup: setup(),
+    };
     let mut scorer = DockingScorer::new(context);
     scorer.add(&field(3, 10.0), None).unwrap();
     assert_eq!(scorer.add(&field(3, 10.0), None), Err(ScoreError::Order { previous: 3, frame: 3 }));
@@ -216,4 +224,16 @@ fn a_pipeline_that_claims_too_much_is_told_by_its_consistency() {
     assert_eq!(value(&score, names::SUCCESS_RATE), 1.0);
     assert_eq!(value(&score, names::WITHIN_3_SIGMA), 0.0);
     assert!(value(&score, names::NEES_MEAN) > 60.0);
+}
+
+/// At 300 m a bar of 3 cm is 0.3 px wide with the narrow lens.
+#[test]
+fn a_range_alone_where_nothing_else_can_be_had_is_no_failure() {
+    let far = |number| (field(number, 300.0), Some(range_only(306.0, 3.0)));
+    let near = (field(2, 10.0), at([0.0, 0.0, 10.0], [0.0; 3]));
+    let score = score(&[far(0), far(1), near]);
+    assert_eq!(value(&score, names::SUCCESS_RATE), 1.0);
+    assert_eq!(score.figures[names::SUCCESS_RATE].of, 1);
+    assert_eq!(value(&score, names::MISS_RATE), 0.0);
+    assert!((value(&score, names::RANGE_ONLY_RMS_PERCENT) - 2.0).abs() < 1e-12);
 }

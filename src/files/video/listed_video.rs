@@ -1,0 +1,81 @@
+//! The fields of a video with a `telemetry.csv` beside it, as `boresight render --format avi` writes them.
+
+use std::path::{Path, PathBuf};
+
+use contract::Frame;
+use contract::docking::{DockingSetup, Field, FieldTelemetry, Lines};
+
+use super::super::FileError;
+use super::super::error::Place;
+use super::super::field_telemetry::FieldRow;
+use super::whole_frame::{WholeFrame, take_rows};
+
+/// What a video with telemetry may be called, in the order in which they are looked for.
+const NAMES: [&str; 2] = ["fields.avi", "fields.y4m"];
+
+/// The video of a folder whose table names no images.
+pub(super) fn video_of(directory: &Path, rows: &[(u64, FieldRow)]) -> Option<PathBuf> {
+    let named = rows.iter().any(|(_, row)| row.file.is_some());
+    NAMES.iter().map(|name| directory.join(name)).find(|path| !named && path.is_file())
+}
+
+/// The fields of a video's frames, with the numbers, moments, lenses and settings of the table: two rows a frame, or one
+/// where the table says that a field holds all lines.
+pub(super) struct ListedVideo<F> {
+    table: PathBuf,
+    setup: DockingSetup,
+    rows: std::vec::IntoIter<(u64, FieldRow)>,
+    frames: F,
+    /// The frame of which only one field was taken.
+    frame: Option<WholeFrame>,
+}
+
+impl<F: Iterator<Item = Result<WholeFrame, FileError>>> ListedVideo<F> {
+    pub(super) fn new(
+        table: PathBuf,
+        rows: Vec<(u64, FieldRow)>,
+        setup: &DockingSetup,
+        frames: F,
+    ) -> Result<Self, FileError> {
+        for (line, row) in &rows {
+            super::folder::check_camera(&table, *line, row, setup)?;
+        }
+        Ok(Self { table, setup: setup.clone(), rows: rows.into_iter(), frames, frame: None })
+    }
+
+    fn field(&mut self, line: u64, row: &FieldRow) -> Result<(Field, FieldTelemetry), FileError> {
+        let second = self.frame.take();
+        let is_second = second.is_some();
+        let frame = match second.map_or_else(|| self.frames.next(), |frame| Some(Ok(frame))) {
+            Some(frame) => frame?,
+            None => {
+                let expected = "a field of the video, which has ended";
+                return Err(FileError::value(&self.table, Place::Line(line), "field", row.field, expected));
+            }
+        };
+        let camera = &self.setup.cameras[row.telemetry.camera];
+        let (lines, depth) = (row.lines, self.setup.bit_depth);
+        let wrong = |source| FileError::contract(&self.table, source);
+        let dn = take_rows(&frame.dn, camera.columns, lines);
+        let image = Frame::new(row.field, camera.columns, lines.rows(camera.rows), depth, dn, None);
+        let field = Field::new(image.map_err(wrong)?, lines, camera.rows).map_err(wrong)?;
+        self.frame = (lines != Lines::All && !is_second).then_some(frame);
+        Ok((field, row.telemetry))
+    }
+}
+
+impl<F: Iterator<Item = Result<WholeFrame, FileError>>> Iterator for ListedVideo<F> {
+    type Item = Result<(Field, FieldTelemetry), FileError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if let Some((line, row)) = self.rows.next() {
+            return Some(self.field(line, &row));
+        }
+        let more = self.frames.next()?;
+        let unlisted = |frame: WholeFrame| {
+            let expected = "a row for every field of the video";
+            Err(FileError::value(&self.table, Place::Header, "frames without a row", frame.index, expected))
+        };
+        Some(more.and_then(unlisted))
+    }
+}

@@ -1,0 +1,121 @@
+//! YUV4MPEG2 (Y4M), grey: a header line, then a line and the bytes of each frame. Can be a pipe.
+
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use contract::docking::{Field, Lines};
+
+use super::super::error::create_new;
+use super::super::{FileError, PartialFiles};
+use super::avi_writer::check_frames;
+use super::weaver::Weaver;
+
+/// Writes fields as Y4M, two of a frame woven into one image.
+pub struct Y4mWriter {
+    weaver: Weaver,
+    path: PathBuf,
+    /// `None`: standard output.
+    files: Option<PartialFiles>,
+    out: Box<dyn Write>,
+    columns: usize,
+    rows: usize,
+    frame_rate_hz: f64,
+    header_is_written: bool,
+}
+
+impl Y4mWriter {
+    /// Creates a file, which has its name when it is complete, for images of `columns` × `rows` and `frame_rate_hz` whole
+    /// frames a second (kept to the millionth).
+    ///
+    /// # Errors
+    /// [`FileError::OutputTaken`] when it exists; [`FileError::Value`] for a side that is not 1 to
+    /// [`contract::Camera::MAX_SIDE_PX`] or a rate that is not 0.001 to 1000 Hz; [`FileError::Io`].
+    pub fn create(path: &Path, size: (usize, usize), frame_rate_hz: f64) -> Result<Self, FileError> {
+        check_frames(path, size, frame_rate_hz)?;
+        let files = PartialFiles::of(&[path])?;
+        let file = BufWriter::new(create_new(files.path(0))?);
+        Ok(Self::new(path, Some(files), Box::new(file), size, frame_rate_hz))
+    }
+
+    /// Writes to standard output, each frame as soon as it is complete.
+    ///
+    /// # Errors
+    /// As [`Y4mWriter::create`].
+    pub fn standard_output(size: (usize, usize), frame_rate_hz: f64) -> Result<Self, FileError> {
+        let path = Path::new("standard output");
+        check_frames(path, size, frame_rate_hz)?;
+        Ok(Self::new(path, None, Box::new(io::stdout().lock()), size, frame_rate_hz))
+    }
+
+    fn new(
+        path: &Path,
+        files: Option<PartialFiles>,
+        out: Box<dyn Write>,
+        (columns, rows): (usize, usize),
+        frame_rate_hz: f64,
+    ) -> Self {
+        Self {
+            weaver: Weaver::new(path, (columns, rows)),
+            path: path.to_owned(),
+            files,
+            out,
+            columns,
+            rows,
+            frame_rate_hz,
+            header_is_written: false,
+        }
+    }
+
+    /// Writes a field: a progressive frame, or one of two fields that make a frame together. Fields come in pairs of
+    /// an even and an odd one, in either order; the header names that of the first.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for a field of another size, for one that is not the other half of the one before, and for
+    /// a value above 255; [`FileError::Io`].
+    pub fn write(&mut self, field: &Field) -> Result<(), FileError> {
+        if !self.header_is_written {
+            self.header_is_written = true;
+            let interlace = match field.lines() {
+                Lines::All => 'p',
+                Lines::Even => 't',
+                Lines::Odd => 'b',
+            };
+            let rate = (self.frame_rate_hz * 1e6).round() as u64;
+            let (columns, rows) = (self.columns, self.rows);
+            let header = format!("YUV4MPEG2 W{columns} H{rows} F{rate}:1000000 I{interlace} A1:1 Cmono\n");
+            self.put(|out, _| out.write_all(header.as_bytes()))?;
+        }
+        if self.weaver.add(field)? { self.put_frame() } else { Ok(()) }
+    }
+
+    /// Completes the file. A last field without its other half leaves those rows black.
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn finish(mut self) -> Result<(), FileError> {
+        if self.weaver.rest() {
+            self.put_frame()?;
+        }
+        self.put(|out, _| out.flush())?;
+        self.files.take().map_or(Ok(()), PartialFiles::complete)
+    }
+
+    fn put_frame(&mut self) -> Result<(), FileError> {
+        self.put(|out, frame| {
+            out.write_all(b"FRAME\n")?;
+            out.write_all(frame)?;
+            out.flush()
+        })?;
+        self.weaver.next();
+        Ok(())
+    }
+
+    fn put(&mut self, write: impl FnOnce(&mut dyn Write, &[u8]) -> io::Result<()>) -> Result<(), FileError> {
+        write(self.out.as_mut(), self.weaver.frame()).map_err(|source| match source.kind() {
+            ErrorKind::BrokenPipe => {
+                FileError::io(&self.path, "write", io::Error::new(source.kind(), "its reader has gone"))
+            }
+            _ => FileError::io(&self.path, "write", source),
+        })
+    }
+}
