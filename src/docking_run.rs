@@ -7,7 +7,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use contract::docking::{Digitiser, DockingOutcome, DockingPipelineFactory, DockingSetup, NoPose};
+use contract::docking::{Digitiser, DockingPipelineFactory, DockingSetup};
 use sim::docking::{DockingSimulator, DockingWorkspace, FieldExposure, FieldTruth};
 
 use crate::docking_renderer::DockingRenderer;
@@ -247,22 +247,13 @@ pub fn score_docking(
             directory.join("truth/fields.parquet").display()
         ))
     };
-    // A report of a field that has no answer of its own is one of a pipeline that measured nothing in it.
-    let reported = |report| DockingOutcome {
-        motion: Some(report),
-        ..DockingOutcome::none(NoPose::Failed("no row in the measurements".to_owned()))
-    };
     for truth in truths {
         let (number, rows) = truth?;
-        let mut outcome = answers.next_if(|(answered, _)| *answered == number).map(|(_, outcome)| outcome);
-        if let Some((_, report)) = reports.next_if(|(reported, _)| *reported == number) {
-            outcome = Some(match outcome {
-                Some(outcome) => DockingOutcome { motion: Some(report), ..outcome },
-                None => reported(report),
-            });
-        }
+        let outcome = answers.next_if(|(answered, _)| *answered == number).map(|(_, outcome)| outcome);
+        let report = reports.next_if(|(reported, _)| *reported == number).map(|(_, report)| report);
         for truth in &rows {
-            scorer.add(&true_field(truth, &setup), outcome.as_ref()).map_err(unscorable)?;
+            let truth = true_field(truth, &setup);
+            scorer.add_with_report(&truth, outcome.as_ref(), report.as_ref()).map_err(unscorable)?;
         }
         if let Some((earlier, _)) = answers.peek().filter(|(earlier, _)| *earlier <= number) {
             return Err(foreign(measurements, *earlier));

@@ -185,8 +185,9 @@ fn latency(score: &DockingScore) -> String {
         .map(|n| format!("First pose {n:.0} fields after the target was first clear."));
     let portion = value(names::PORTION_LATENCY_FIELDS)
         .map(|n| format!("A portion takes {n:.1} fields from its first measured one to its report."));
-    let renewed = value(names::RENEWED_WITHIN_1S)
-        .map(|rate| format!("{} % of the reports come within a second of the one before.", percent(rate)));
+    let renewed = value(names::RENEWED_WITHIN_1S).map(|rate| {
+        format!("In {} % of the clear fields the last report is at most a second old.", percent(rate))
+    });
     let speed = value(names::SPEED_SCORE_MEAN)
         .map(|score| format!("SPEED pose score, mean over the poses: {score:.4}."));
     let lines: Vec<String> = [latency, portion, renewed, speed].into_iter().flatten().collect();

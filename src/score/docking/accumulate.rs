@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use contract::docking::{DockingOutcome, DockingSetup, DockingSolution};
+use contract::docking::{DockingOutcome, DockingSetup, MotionReport};
 use indexmap::IndexMap;
 
 use super::bins::{bin, group_name, lens_names};
 use super::cause::MissCause;
 use super::consistency::{nees, within_3_sigma};
-use super::errors::PoseErrors;
+use super::errors::{PoseErrors, phi_error};
 use super::figures::figures;
 use super::portions::{MotionVerdict, PortionVerdict};
 use super::report::{DockingGroup, DockingScore, names};
@@ -41,6 +41,8 @@ pub(super) struct FieldVerdict {
     pub(super) range_m: f64,
     /// Whether the target is resolved and wholly in the image.
     pub(super) is_clear: bool,
+    /// Of a clear field, from a second after the first measured one: whether the last report is at most a second old.
+    pub(super) is_renewed: Option<bool>,
     /// Whether all six parameters were given.
     pub(super) is_measured: bool,
     /// Whether all six can be asked for: the target is resolved, or they were given all the same.
@@ -72,7 +74,21 @@ struct PortionClock {
     reports: usize,
     /// Fields since the portion's first measured one, that one included; 0: there is none yet.
     fields: u64,
+    /// When a field was first measured, s.
+    begin_s: Option<f64>,
     last_report_s: Option<f64>,
+}
+
+/// Longest time between two reports, s (docking paper, section 2), and a microsecond for the rounding of times.
+const RENEWAL_S: f64 = 1.0 + 1e-6;
+
+impl PortionClock {
+    /// Whether the last report is at most a second old; `None` until a second after the first measured field.
+    fn is_renewed(&self, time_s: f64) -> Option<bool> {
+        let renewed = |since_s: f64| time_s - since_s <= RENEWAL_S;
+        self.begin_s.filter(|begin_s| !renewed(*begin_s))?;
+        Some(self.last_report_s.is_some_and(renewed))
+    }
 }
 
 impl DockingScorer {
@@ -88,6 +104,19 @@ impl DockingScorer {
     /// # Errors
     /// [`ScoreError::Order`] unless the number is larger than the one before. The field is then not counted.
     pub fn add(&mut self, truth: &TrueField, outcome: Option<&DockingOutcome>) -> Result<(), ScoreError> {
+        self.add_with_report(truth, outcome, outcome.and_then(|outcome| outcome.motion.as_ref()))
+    }
+
+    /// [`DockingScorer::add`] with a report that stands apart from the answer, as in files.
+    ///
+    /// # Errors
+    /// As [`DockingScorer::add`].
+    pub fn add_with_report(
+        &mut self,
+        truth: &TrueField,
+        outcome: Option<&DockingOutcome>,
+        report: Option<&MotionReport>,
+    ) -> Result<(), ScoreError> {
         if let Some(previous) = self.last_field.filter(|previous| *previous >= truth.field) {
             return Err(ScoreError::Order { previous, frame: truth.field });
         }
@@ -97,19 +126,21 @@ impl DockingScorer {
         let success = measurement.filter(|_| matches!(verdict, Verdict::Success { .. }));
         let error = success.map(|measurement| {
             let (best, truth) = (&measurement.best.pose, &truth.pose);
-            let (d, phi) = (best.position_m - truth.position_m, best.phi_rad - truth.phi_rad);
+            let (d, phi) = (best.position_m - truth.position_m, phi_error(best, truth));
             (nalgebra::Vector6::new(d.x, d.y, d.z, phi.x, phi.y, phi.z), &measurement.best.covariance)
         });
         let paper = measurement
             .and_then(|measurement| measurement.paper)
             .map(|pose| PoseErrors::new(&pose, &truth.pose));
         let range_m = truth.pose.position_m.norm();
-        let portion = self.portion(truth, outcome);
+        let portion = self.portion(truth, measurement.is_some(), report);
         let is_resolved = self.sights.resolves(truth.camera, &truth.pose);
+        let is_clear = truth.view == View::Whole && is_resolved;
         self.verdicts.push(FieldVerdict {
             group: (bin(range_m), truth.camera),
             range_m,
-            is_clear: truth.view == View::Whole && is_resolved,
+            is_clear,
+            is_renewed: self.portions.is_renewed(truth.time_s).filter(|_| is_clear),
             is_measured: measurement.is_some(),
             is_asked: is_resolved || measurement.is_some(),
             verdict,
@@ -124,22 +155,33 @@ impl DockingScorer {
         Ok(())
     }
 
-    fn portion(&mut self, truth: &TrueField, outcome: Option<&DockingOutcome>) -> Option<PortionVerdict> {
+    fn portion(
+        &mut self,
+        truth: &TrueField,
+        is_measured: bool,
+        report: Option<&MotionReport>,
+    ) -> Option<PortionVerdict> {
         let clock = &mut self.portions;
-        let is_measured =
-            outcome.is_some_and(|outcome| matches!(outcome.solution, DockingSolution::Measured(_)));
         if clock.fields > 0 || is_measured {
             clock.fields += 1;
         }
-        let report = outcome?.motion.as_ref()?;
+        if is_measured {
+            clock.begin_s.get_or_insert(truth.time_s);
+        }
+        let report = report?;
         let verdict = PortionVerdict {
             number: clock.reports,
             best: MotionVerdict::of(&self.sights, truth, &report.best),
             paper: report.paper.as_ref().map(|motion| MotionVerdict::of(&self.sights, truth, motion)),
             fields: clock.fields,
-            interval_s: clock.last_report_s.map(|last| truth.time_s - last),
         };
-        *clock = PortionClock { reports: clock.reports + 1, fields: 0, last_report_s: Some(truth.time_s) };
+        let begin_s = clock.begin_s;
+        *clock = PortionClock {
+            reports: clock.reports + 1,
+            fields: 0,
+            begin_s,
+            last_report_s: Some(truth.time_s),
+        };
         Some(verdict)
     }
 

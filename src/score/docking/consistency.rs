@@ -6,8 +6,12 @@ use nalgebra::{SMatrix, SVector};
 /// are correlated to 1 − 1e-6 at most (a direction known to 0.1 px, a tilt to a degree); rounding is at 1e-16.
 const SMALLEST_PIVOT: f64 = 1e-10;
 
+/// What a larger NEES counts as.
+const LARGEST: f64 = 1e12;
+
 /// The normalised estimation error squared, eᵀ P⁻¹ e / N: 1 in the mean for a covariance P that says the truth (its N-fold
-/// follows χ² with N degrees of freedom). `None` where P is not positive definite: it then says nothing.
+/// follows χ² with N degrees of freedom). At most
+/// 1e12. `None` where P is not positive definite: it then says nothing.
 pub fn nees<const N: usize>(error: &SVector<f64, N>, covariance: &SMatrix<f64, N, N>) -> Option<f64> {
     // Of unit diagonal, so that metres and radians are alike; factored as L Lᵀ and solved forwards by the same rows.
     let mut sigma = [0.0; N];
@@ -42,7 +46,8 @@ pub fn nees<const N: usize>(error: &SVector<f64, N>, covariance: &SMatrix<f64, N
         solved[i] = rest / lower[(i, i)];
         sum += solved[i] * solved[i];
     }
-    Some(sum / N as f64).filter(|value| value.is_finite())
+    // An error beyond all proportion is counted, and leaves the mean a number.
+    if sum.is_nan() { None } else { Some((sum / N as f64).min(LARGEST)) }
 }
 
 /// Whether an error is at most three standard deviations; `None` for a standard deviation that is not positive: it then
@@ -86,6 +91,8 @@ mod tests {
         ] {
             assert_eq!(nees(&error, &covariance), None, "{covariance}");
         }
+        let absurd = Matrix2::from_diagonal_element(1e-300);
+        assert_eq!(nees(&error, &absurd), Some(LARGEST), "sure beyond all reason");
         assert_eq!(within_3_sigma(0.0, 0.0), None);
         assert_eq!(within_3_sigma(1.0, f64::NAN), None);
     }

@@ -10,7 +10,7 @@ use super::shown::Shown;
 pub struct PoseErrors {
     /// Of d, m, target frame.
     pub position_m: Vector3<f64>,
-    /// Of φ, component by component, rad.
+    /// Of φ, component by component, rad; a φ longer than π counts as the shorter one of the same rotation.
     pub phi_rad: Vector3<f64>,
     /// Of ρ = |d|, m.
     pub range_m: f64,
@@ -42,7 +42,7 @@ impl PoseErrors {
         let r = was.origin_m.norm();
         Self {
             position_m,
-            phi_rad: measured.phi_rad - truth.phi_rad,
+            phi_rad: phi_error(measured, truth),
             range_m: shown[0],
             alpha_rad: shown[2],
             beta_rad: shown[3],
@@ -53,6 +53,18 @@ impl PoseErrors {
             speed_score: if r > 0.0 { (is.origin_m - was.origin_m).norm() / r } else { 0.0 } + attitude_rad,
         }
     }
+}
+
+/// Measured minus true φ, rad, of the shortest rotation vector of each.
+pub(super) fn phi_error(measured: &Pose, truth: &Pose) -> Vector3<f64> {
+    let shortest = |phi: Vector3<f64>| {
+        if phi.norm() <= std::f64::consts::PI {
+            phi
+        } else {
+            UnitQuaternion::from_scaled_axis(phi).scaled_axis()
+        }
+    };
+    shortest(measured.phi_rad) - shortest(truth.phi_rad)
 }
 
 /// The target as seen from a pose, in the camera frame.
@@ -94,6 +106,13 @@ mod tests {
         let errors = PoseErrors::new(&pose, &pose);
         assert_eq!((errors.range_m, errors.lateral_m, errors.place_rad), (0.0, 0.0, 0.0));
         assert!(errors.attitude_rad < 1e-15 && errors.speed_score < 1e-15, "{errors:?}");
+    }
+
+    #[test]
+    fn a_whole_turn_more_is_the_same_attitude() {
+        let truth = pose([0.0, 0.0, 5.0], [0.0, 0.0, 0.2]);
+        let errors = PoseErrors::new(&pose([0.0, 0.0, 5.0], [0.0, 0.0, 0.2 + std::f64::consts::TAU]), &truth);
+        assert!(errors.phi_rad.norm() < 1e-14 && errors.attitude_rad < 1e-14, "{errors:?}");
     }
 
     #[test]

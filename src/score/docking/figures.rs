@@ -60,8 +60,7 @@ pub(super) fn figures(fields: &Fields<'_>) -> Figures {
     let of_portions = |value: &dyn Fn(&PortionVerdict) -> Option<f64>| select(&portions, |p| value(p));
     let latency = Figure::mean(&of_portions(&|portion| Some(portion.fields as f64)));
     figures.insert(names::PORTION_LATENCY_FIELDS.to_owned(), latency);
-    // A microsecond for the rounding of times.
-    let renewed = select(&portions, |portion| portion.interval_s.map(|interval_s| interval_s <= 1.0 + 1e-6));
+    let renewed = collect(fields, |field| field.is_renewed);
     figures.insert(names::RENEWED_WITHIN_1S.to_owned(), Figure::rate(&renewed));
     figures
 }
@@ -125,6 +124,8 @@ fn consistency(fields: &Fields<'_>, figures: &mut Figures) {
         figures.insert(format!("{name}_{}", names::WITHIN_3_SIGMA), Figure::rate(&one));
     }
     figures.insert(names::NEES_MEAN.to_owned(), Figure::mean(&collect(fields, |field| field.nees)));
+    let told = collect(fields, |field| field.within.map(|_| field.nees.is_some()));
+    figures.insert("covariance_rate".to_owned(), Figure::rate(&told));
 }
 
 /// Ranges that are given alone.

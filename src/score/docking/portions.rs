@@ -1,14 +1,17 @@
-//! What is said at the end of a portion, against the truth of that moment.
+//! What is said at the end of a portion, against the truth of the moment that it is said of.
 
 use contract::docking::Motion;
 use nalgebra::{Matrix6, Vector6};
 
 use super::consistency::{nees, within_3_sigma};
-use super::errors::PoseErrors;
+use super::errors::{PoseErrors, phi_error};
 use super::shown::Shown;
 use super::sight::Sights;
 use super::truth::TrueField;
 use super::verdict::gross;
+
+/// A motion of a moment farther than this from the field that reports it is wrong whatever it says, s.
+const MAX_AGE_S: f64 = 1.0;
 
 /// One estimator's motion at the end of a portion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,18 +28,23 @@ pub(super) struct MotionVerdict {
 
 impl MotionVerdict {
     pub(super) fn of(sights: &Sights, truth: &TrueField, motion: &Motion) -> Self {
+        // A portion's last fields may not be measured: its motion is then of an earlier moment than the field that reports
+        // it. A few fields back the true rates carry the truth there to micrometres.
+        let since_s = motion.time_s - truth.time_s;
+        let truth = &TrueField { pose: truth.moved(since_s), ..truth.clone() };
         let shown = Shown::of(&motion.pose, &motion.velocity_m_s);
         let errors = shown.minus(&Shown::of(&truth.pose, &truth.velocity_m_s));
         let sigmas = Shown::sigmas(motion);
         let within = std::array::from_fn(|i| sigmas.and_then(|sigmas| within_3_sigma(errors[i], sigmas[i])));
         let d = motion.pose.position_m - truth.pose.position_m;
-        let phi = motion.pose.phi_rad - truth.pose.phi_rad;
+        let phi = phi_error(&motion.pose, &truth.pose);
         let d_rate = motion.velocity_m_s - truth.velocity_m_s;
         let phi_rate = motion.phi_rate_rad_s - truth.phi_rate_rad_s;
         let both =
             |a: nalgebra::Vector3<f64>, b: nalgebra::Vector3<f64>| Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z);
         Self {
-            is_wrong: gross(sights, truth, &PoseErrors::new(&motion.pose, &truth.pose)).is_some(),
+            is_wrong: since_s.abs() > MAX_AGE_S
+                || gross(sights, truth, &PoseErrors::new(&motion.pose, &truth.pose)).is_some(),
             errors: errors.into(),
             within,
             nees: [
@@ -69,8 +77,6 @@ pub(super) struct PortionVerdict {
     pub(super) paper: Option<MotionVerdict>,
     /// Fields from the portion's first measured one to the report, both counted.
     pub(super) fields: u64,
-    /// Time since the report before, s.
-    pub(super) interval_s: Option<f64>,
 }
 
 #[cfg(test)]
@@ -80,6 +86,26 @@ mod tests {
 
     use super::*;
     use crate::score::docking::hand_made::{field, setup};
+
+    /// The same motion told of a moment 0.1 s earlier, where the camera was 20 mm farther away, is as good.
+    #[test]
+    fn a_motion_is_held_against_the_truth_of_its_own_moment() {
+        let truth = TrueField { time_s: 5.0, velocity_m_s: Vector3::new(0.0, 0.0, -0.2), ..field(0, 10.0) };
+        let sights = Sights::new(&setup());
+        let motion = |time_s: f64, d3_m: f64| Motion {
+            time_s,
+            pose: Pose { position_m: Vector3::new(0.0, 0.0, d3_m), phi_rad: truth.pose.phi_rad },
+            velocity_m_s: truth.velocity_m_s,
+            phi_rate_rad_s: truth.phi_rate_rad_s,
+            position_covariance: Matrix6::from_diagonal_element(1e-4),
+            attitude_covariance: Matrix6::from_diagonal_element(1e-6),
+            cross_covariance: Matrix3::zeros(),
+            fields: 10,
+        };
+        let verdict = MotionVerdict::of(&sights, &truth, &motion(4.9, 10.02));
+        assert!(!verdict.is_wrong && verdict.errors.iter().all(|error| error.abs() < 1e-12), "{verdict:?}");
+        assert!(MotionVerdict::of(&sights, &truth, &motion(3.9, 10.22)).is_wrong, "too old");
+    }
 
     #[test]
     fn errors_and_their_normalised_squares_are_those_of_a_sum_by_hand() {

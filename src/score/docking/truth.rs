@@ -39,6 +39,14 @@ pub struct TrueField {
 }
 
 impl TrueField {
+    /// The pose `since_s` later, or earlier, at the rates of this moment.
+    pub(super) fn moved(&self, since_s: f64) -> Pose {
+        Pose {
+            position_m: self.pose.position_m + self.velocity_m_s * since_s,
+            phi_rad: self.pose.phi_rad + self.phi_rate_rad_s * since_s,
+        }
+    }
+
     /// From the whole truth, of a target with `marks` marks and a camera with `camera_rows` rows.
     pub fn new(truth: &FieldTruth, marks: usize, camera_rows: usize) -> Self {
         let share = |bits: u64| if marks == 0 { 0.0 } else { f64::from(bits.count_ones()) / marks as f64 };

@@ -1,4 +1,4 @@
-use contract::docking::{Motion, MotionReport, NoPose, Pose};
+use contract::docking::{DockingSolution, Motion, MotionReport, NoPose, Pose};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
 use super::*;
@@ -135,9 +135,9 @@ fn groups_go_from_far_to_near_by_lens() {
     );
 }
 
-fn report(range_m: f64) -> MotionReport {
+fn report(time_s: f64, range_m: f64) -> MotionReport {
     let best = Motion {
-        time_s: 0.0,
+        time_s,
         pose: ahead(range_m),
         velocity_m_s: Vector3::new(0.0, 0.0, -0.2),
         phi_rate_rad_s: Vector3::zeros(),
@@ -156,7 +156,8 @@ fn portions_are_timed_from_their_first_measured_field() {
     fields[0].1 = None;
     fields[1].1 = None;
     for (end, range_m) in [(11, 10.05), (21, 10.01), (31, 9.97)] {
-        fields[end].1.as_mut().unwrap().motion = Some(report(range_m));
+        let time_s = fields[end].0.time_s;
+        fields[end].1.as_mut().unwrap().motion = Some(report(time_s, range_m));
     }
     let score = score(&fields);
     assert_eq!(score.portions, 3);
