@@ -10,7 +10,7 @@ use super::glint::{GlintConfig, GlintImage};
 use super::occlusion::Occluders;
 use crate::SimError;
 use crate::optics::Projection;
-use crate::scene::docking::{DockingScene, Sun};
+use crate::scene::docking::{DockingScene, Floodlight, Lighting, Sun};
 use crate::television::SunImage;
 use crate::truth::approach::target_from_camera;
 
@@ -147,19 +147,47 @@ impl TargetGeometry {
             && self.marks.iter().all(|mark| eye.sees_all(pose, mark))
     }
 
-    /// Bit i: some of mark i is not lit by a Sun in this direction.
-    pub(super) fn marks_shadowed(&self, sun: &Vector3<f64>) -> u64 {
-        self.bits(|mark| places(mark).any(|place| !self.is_lit(&place, sun)))
+    /// Bit i: some of mark i lacks the light of a source that shines on the target's side.
+    pub(super) fn marks_shadowed(&self, lighting: &Lighting) -> u64 {
+        let (sun, lamp) = in_front(lighting);
+        self.bits(|mark| {
+            places(mark).any(|place| {
+                sun.is_some_and(|sun| !self.is_sunlit(&place, &sun))
+                    || lamp.is_some_and(|lamp| !self.is_lamplit(&place, &lamp))
+            })
+        })
     }
 
-    /// Share of the plate that a Sun in this direction shines on.
-    pub(super) fn plate_lit(&self, sun: &Vector3<f64>) -> f64 {
-        let lit = self.plate_places.iter().filter(|place| self.is_lit(place, sun)).count();
+    /// Bit i: neither the Sun nor the lamp shines on any of mark i.
+    pub(super) fn marks_dark(&self, lighting: &Lighting) -> u64 {
+        self.bits(|mark| !places(mark).any(|place| self.is_lit(&place, lighting)))
+    }
+
+    /// Bit i: something stands between the camera and some of mark i.
+    pub(super) fn marks_hidden(&self, pose: &Pose) -> u64 {
+        self.bits(|mark| places(mark).any(|place| self.hiding.separate(&place, &pose.position_m)))
+    }
+
+    /// Share of the plate that the Sun or the lamp shines on.
+    pub(super) fn plate_lit(&self, lighting: &Lighting) -> f64 {
+        let lit = self.plate_places.iter().filter(|place| self.is_lit(place, lighting)).count();
         lit as f64 / self.plate_places.len().max(1) as f64
     }
 
-    fn is_lit(&self, place: &Vector3<f64>, sun: &Vector3<f64>) -> bool {
-        sun.z > 0.0 && !self.shading.hide(place, sun)
+    fn is_lit(&self, place: &Vector3<f64>, lighting: &Lighting) -> bool {
+        let (sun, lamp) = in_front(lighting);
+        sun.is_some_and(|sun| self.is_sunlit(place, &sun))
+            || lamp.is_some_and(|lamp| self.is_lamplit(place, &lamp))
+    }
+
+    fn is_sunlit(&self, place: &Vector3<f64>, sun: &Vector3<f64>) -> bool {
+        !self.shading.hide(place, sun)
+    }
+
+    fn is_lamplit(&self, place: &Vector3<f64>, lamp: &Floodlight) -> bool {
+        let from_lamp = place - lamp.position_m;
+        let in_beam = from_lamp.dot(&lamp.axis) > from_lamp.norm() * libm::cos(lamp.outer_half_angle_rad);
+        in_beam && !self.shading.separate(place, &lamp.position_m)
     }
 
     fn bits(&self, holds: impl Fn(&[Vector3<f64>; 4]) -> bool) -> u64 {
@@ -189,6 +217,12 @@ impl TargetGeometry {
         let visible = f64::from(seen) / f64::from(places);
         (seen > 0).then_some(SunImage { centre, ghost, radius_px, focal_px: eye.focal_px, visible })
     }
+}
+
+/// The direction of the Sun and the lamp, where they shine on the plate's front.
+fn in_front(lighting: &Lighting) -> (Option<Vector3<f64>>, Option<Floodlight>) {
+    let sun = lighting.sun.map(|sun| sun.towards).filter(|towards| towards.z > 0.0);
+    (sun, lighting.floodlight.filter(|lamp| lamp.position_m.z > 0.0 && lamp.intensity > 0.0))
 }
 
 fn circle(radius_m: f64, points: u32) -> Vec<Vector3<f64>> {

@@ -33,7 +33,14 @@ impl Occluders {
 
     /// Whether the ray from `from` along the unit vector `towards` meets one of them.
     pub(super) fn hide(&self, from: &Vector3<f64>, towards: &Vector3<f64>) -> bool {
-        self.plates.iter().any(|plate| plate.meets(from, towards))
+        self.plates.iter().any(|plate| plate.meets(from, towards, f64::INFINITY))
+    }
+
+    /// Whether one of them stands between two points.
+    pub(super) fn separate(&self, from: &Vector3<f64>, to: &Vector3<f64>) -> bool {
+        let way = to - from;
+        let length = way.norm();
+        length > 0.0 && self.plates.iter().any(|plate| plate.meets(from, &(way / length), length))
     }
 }
 
@@ -61,11 +68,12 @@ impl Plate {
         })
     }
 
-    fn meets(&self, from: &Vector3<f64>, towards: &Vector3<f64>) -> bool {
+    /// Whether the ray from `from` along the unit vector `towards` meets the facet nearer than `reach_m`.
+    fn meets(&self, from: &Vector3<f64>, towards: &Vector3<f64>, reach_m: f64) -> bool {
         let along = self.normal.dot(towards);
         let distance = (self.distance_m - self.normal.dot(from)) / along;
         // An infinite or undefined distance is a ray in the plane: it meets nothing.
-        if !(distance.is_finite() && distance > CLEARANCE_M) {
+        if !(distance.is_finite() && distance > CLEARANCE_M && distance < reach_m - CLEARANCE_M) {
             return false;
         }
         let (a, b) = self.axes;
@@ -116,6 +124,12 @@ mod tests {
             assert!(!frame.hide(&Vector3::new(x, y, 1.0), &up), "from itself");
         }
         let slanting = Vector3::new(0.6, 0.0, 0.8);
+        assert!(frame.separate(&Vector3::new(0.75, 0.0, 0.0), &Vector3::new(0.75, 0.0, 1.5)));
+        assert!(
+            !frame.separate(&Vector3::new(0.75, 0.0, 0.0), &Vector3::new(0.75, 0.0, 0.9)),
+            "it lies beyond"
+        );
+        assert!(!frame.separate(&Vector3::zeros(), &Vector3::zeros()), "no way at all");
         // At y3 = 1 it is 0.75 farther along y1.
         assert!(frame.hide(&Vector3::zeros(), &slanting));
         assert!(!frame.hide(&Vector3::new(-0.5, 0.0, 0.0), &slanting));

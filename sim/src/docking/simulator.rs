@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use contract::docking::{Digitiser, DockingSetup, FieldTelemetry, Lines, TargetModel};
-use hifitime::{Epoch, Unit};
+use hifitime::{Duration, Epoch};
 
 use super::DockingSimulation;
 use super::config::CameraConfig;
@@ -201,7 +201,8 @@ impl DockingSimulator {
         Ok(FieldMoment {
             field,
             time_s,
-            time: self.start + time_s * Unit::Second,
+            // Through whole nanoseconds: the product of hifitime cuts them.
+            time: self.start + Duration::from_total_nanoseconds((time_s * 1e9).round() as i128),
             lines: self.television.interlace.lines(field),
             camera,
             lighting: self.lighting.at(time_s, &state.pose),
@@ -292,12 +293,15 @@ impl DockingSimulator {
             disk_centre,
             circle_radius_px,
             marks_in_field: self.geometry.marks_in_field(eye, pose),
-            marks_shadowed: sun.map_or(0, |sun| self.geometry.marks_shadowed(&sun)),
-            plate_lit: sun.map_or(0.0, |sun| self.geometry.plate_lit(&sun)),
+            marks_shadowed: self.geometry.marks_shadowed(&moment.lighting),
+            marks_dark: self.geometry.marks_dark(&moment.lighting),
+            marks_hidden: self.geometry.marks_hidden(pose),
+            plate_lit: self.geometry.plate_lit(&moment.lighting),
             cross_in_field: self.geometry.cross_in_field(eye, pose),
             target_in_field: self.geometry.target_in_field(eye, pose),
             sun_image: sun_image.map(|sun| sun.centre),
             sun_visible: sun_image.map_or(0.0, |sun| sun.visible),
+            glints_shining: glints.iter().fold(0, |bits, glint| bits | 1 << glint.index),
             glint: glints.into_iter().max_by(|a, b| a.light.total_cmp(&b.light)),
             video: video_truth,
         };

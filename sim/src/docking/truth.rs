@@ -49,10 +49,14 @@ pub struct FieldTruth {
     pub circle_radius_px: Option<f64>,
     /// Bit i: every corner of mark i is in the picture.
     pub marks_in_field: u64,
-    /// Bit i: some of mark i lies in the shadow of something, or turned away from the Sun (sampled at 5 × 5 places); 0 on
-    /// the night side.
+    /// Bit i: some of mark i lacks the light of a source that shines on the target's front, the Sun's or the lamp's (sampled
+    /// at 5 × 5 places, its border included); 0 when no source does.
     pub marks_shadowed: u64,
-    /// Share of the plate that the Sun shines on (sampled at 96 places); 0 on the night side.
+    /// Bit i: neither Sun nor lamp shines on any of mark i (same places).
+    pub marks_dark: u64,
+    /// Bit i: something, the cross most often, stands between the camera and some of mark i (same places).
+    pub marks_hidden: u64,
+    /// Share of the plate that the Sun or the lamp shines on (sampled at 96 places).
     pub plate_lit: f64,
     /// Whether the whole cross is in the picture.
     pub cross_in_field: bool,
@@ -62,6 +66,8 @@ pub struct FieldTruth {
     pub sun_image: Option<PixelPoint>,
     /// Share of the Sun's disk that nothing hides; 0 where it is not in the picture.
     pub sun_visible: f64,
+    /// Bit i: glint i of the scenario shines into the picture.
+    pub glints_shining: u64,
     /// The brightest glint in the picture, if any.
     pub glint: Option<GlintImage>,
     /// What the television chain did.

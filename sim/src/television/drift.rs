@@ -39,6 +39,13 @@ impl DriftConfig {
         require("television.drift.periods_s (how many)", self.periods_s.len() as f64, "1 to 16", |n| {
             (1.0..=MAX_PERIODS as f64).contains(&n)
         })?;
+        // The sinusoids may meet: then they change contrast by √(2 n) times the root mean square.
+        require(
+            "television.drift.contrast_rms",
+            self.contrast_rms,
+            "less than 1/√(2 × number of periods), so that contrast stays positive",
+            |rms| rms * libm::sqrt(2.0 * self.periods_s.len() as f64) < 1.0,
+        )?;
         self.periods_s.iter().try_for_each(|&period| {
             require("television.drift.periods_s", period, "0.1 to 1e5", |p| (0.1..=1e5).contains(&p))
         })

@@ -77,6 +77,9 @@ impl Row for FieldTruth {
             optional_numbers(rows, "circle_radius_px", |row| row.circle_radius_px),
             bits("marks_in_field", |row| row.marks_in_field),
             bits("marks_shadowed", |row| row.marks_shadowed),
+            bits("marks_dark", |row| row.marks_dark),
+            bits("marks_hidden", |row| row.marks_hidden),
+            bits("glints_shining", |row| row.glints_shining),
             numbers(rows, "plate_lit", |row| row.plate_lit),
             flags(rows, "cross_in_field", |row| row.cross_in_field),
             flags(rows, "target_in_field", |row| row.target_in_field),
@@ -122,6 +125,8 @@ impl Row for FieldTruth {
         let glint = optional(columns, GLINT)?;
         let circle = columns.optional_f64("circle_radius_px")?;
         let (in_field, shadowed) = (columns.u64("marks_in_field")?, columns.u64("marks_shadowed")?);
+        let (marks_dark, marks_hidden) = (columns.u64("marks_dark")?, columns.u64("marks_hidden")?);
+        let glints_shining = columns.u64("glints_shining")?;
         let floodlight: &BooleanArray = columns.every("floodlight")?;
         let cross_in_field: &BooleanArray = columns.every("cross_in_field")?;
         let target_in_field: &BooleanArray = columns.every("target_in_field")?;
@@ -154,6 +159,9 @@ impl Row for FieldTruth {
                     circle_radius_px: circle.is_valid(row).then(|| circle.value(row)),
                     marks_in_field: in_field[row],
                     marks_shadowed: shadowed[row],
+                    marks_dark: marks_dark[row],
+                    marks_hidden: marks_hidden[row],
+                    glints_shining: glints_shining[row],
                     plate_lit: plate_lit[row],
                     cross_in_field: cross_in_field.value(row),
                     target_in_field: target_in_field.value(row),

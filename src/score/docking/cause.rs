@@ -16,7 +16,7 @@ pub enum MissCause {
     OutsideField,
     /// At least [`MissCause::LOST_LINES`] of the image's lines were lost.
     LostLines,
-    /// At least half of the marks' area is lit by nothing.
+    /// Neither Sun nor lamp shines on any of half of the marks or more.
     InShadow,
     /// The pipeline failed.
     PipelineFailed,

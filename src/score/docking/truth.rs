@@ -34,7 +34,7 @@ pub struct TrueField {
     pub view: View,
     /// Fraction of the image's lines that were lost on the way, 0 to 1.
     pub lost_lines: f64,
-    /// Fraction of the marks that lie in a shadow, wholly or in part, 0 to 1; 1 when neither Sun nor lamp shines.
+    /// Fraction of the marks on which neither Sun nor lamp shines, 0 to 1.
     pub marks_in_shadow: f64,
 }
 
@@ -51,7 +51,6 @@ impl TrueField {
     pub fn new(truth: &FieldTruth, marks: usize, camera_rows: usize) -> Self {
         let share = |bits: u64| if marks == 0 { 0.0 } else { f64::from(bits.count_ones()) / marks as f64 };
         let rows = truth.lines.rows(camera_rows).max(1) as f64;
-        let dark = truth.sun.is_none() && !truth.floodlight;
         Self {
             field: truth.field,
             time_s: truth.time_s,
@@ -67,7 +66,7 @@ impl TrueField {
                 View::Outside
             },
             lost_lines: f64::from(truth.video.lost_lines) / rows,
-            marks_in_shadow: if dark { 1.0 } else { share(truth.marks_shadowed) },
+            marks_in_shadow: share(truth.marks_dark),
         }
     }
 }

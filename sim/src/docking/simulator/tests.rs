@@ -335,6 +335,32 @@ fn built_in() -> DockingSimulation {
     table.try_into().unwrap()
 }
 
+/// A lamp far from the axis casts the cross's shadow as the Sun does; without either all marks are dark.
+#[test]
+fn at_night_the_lamp_says_which_marks_are_dark() {
+    let truth = |floodlight| {
+        let lighting = LightingConfig { floodlight, ..LightingConfig::default() };
+        exposed(&DockingSimulation { lighting, ..simulation() }, 0).truth
+    };
+    let night = truth(None);
+    assert_eq!((night.marks_shadowed, night.marks_dark, night.plate_lit), (0, 0xfff, 0.0));
+    let lit = truth(Some(FloodlightConfig::default()));
+    assert_eq!(lit.marks_dark, 0);
+    assert!(lit.plate_lit > 0.8, "{}", lit.plate_lit);
+}
+
+/// At d3 the camera sees the bars, at b = 0.30 m, cover the circle of the marks, r = 0.25 m, out to 0.15 d3/(d3 − b):
+/// beyond r − 0.02 m for d3 < 0.86 m.
+#[test]
+fn near_the_target_the_cross_hides_four_marks() {
+    let hidden = |d3| {
+        let approach = at_rest([0.0, 0.0, d3], [0.0; 3]);
+        exposed(&DockingSimulation { approach, ..simulation() }, 0).truth.marks_hidden
+    };
+    assert_eq!(hidden(0.95), 0);
+    assert_eq!(hidden(0.80).count_ones(), 4);
+}
+
 #[test]
 fn the_built_in_approach_goes_from_500_m_to_contact_in_eight_to_ten_minutes() {
     let simulation = built_in();

@@ -11,8 +11,9 @@ use super::shapes::{COARSE_SAGITTA_M, Circle, FINE_SAGITTA_M, flat};
 use crate::SimError;
 use crate::error::require;
 
-/// Marks on a plate, at most: each is a hole in it and is held against each.
-const MAX_MARKS: usize = 96;
+/// Marks on a plate, at most: each is a hole in it, is held against each, and has
+/// a bit in the truth of a field.
+const MAX_MARKS: usize = 64;
 
 /// `[plate]`: the dark disk, centred on the target frame's origin, in the plane y3 = 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -49,7 +50,7 @@ pub struct MarksTable {
 pub struct MarkRing {
     /// Radius of the circle through the marks' centres, m, positive.
     pub circle_radius_m: f64,
-    /// How many, 1 to 96.
+    /// How many, 1 to 64.
     pub count: usize,
     /// Length of a mark along the radius, m, positive.
     pub length_m: f64,
@@ -94,7 +95,7 @@ impl MarksTable {
             ring.check(plate)?;
         }
         let count = self.ring.map_or(0, |ring| ring.count) + self.quad.len();
-        require("number of marks", count as f64, "1 to 96, of marks.ring and marks.quad together", |n| {
+        require("number of marks", count as f64, "1 to 64, of marks.ring and marks.quad together", |n| {
             (1.0..=MAX_MARKS as f64).contains(&n)
         })?;
         let quads = self.quads();
@@ -156,7 +157,7 @@ impl MarkRing {
         require(
             "marks.ring.count",
             self.count as f64,
-            "1 to 96, as many as have room side by side on the circle",
+            "1 to 64, as many as have room side by side on the circle",
             |n| (1.0..=MAX_MARKS as f64).contains(&n) && n * angle < 2.0 * PI,
         )
     }

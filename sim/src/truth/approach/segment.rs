@@ -143,6 +143,7 @@ impl AxialMotion {
             motion
                 .append(segment, contact_distance_m, ramp_s)
                 .and_then(|()| check_d3("approach.segments[].to_d3_m", motion.end_d3_m))
+                .and_then(|()| motion.check_nearest(contact_distance_m.min(start_d3_m)))
                 .map_err(|error| error.in_entry(index))?;
         }
         require("approach.segments (duration, s)", motion.end_s, "at most 1e5", |t| t <= MAX_DURATION_S)?;
@@ -190,6 +191,23 @@ impl AxialMotion {
         self.end_d3_m = to_d3_m;
         self.end_rate_m_s = rates_m_s[1];
         Ok(())
+    }
+
+    /// Checks that no change of speed takes the camera nearer than `least_d3_m`, or farther than d3 may be.
+    fn check_nearest(&self, least_d3_m: f64) -> Result<(), SimError> {
+        let ends = self.stretches.iter().skip(1).map(|next| next.begin_s).chain([self.end_s]);
+        self.stretches.iter().zip(ends).try_for_each(|(stretch, end_s)| {
+            let turn_s = stretch.begin_s - stretch.rate_m_s / stretch.acceleration_m_s2;
+            if !(turn_s > stretch.begin_s && turn_s < end_s) {
+                return Ok(());
+            }
+            require(
+                "approach.segments[] (d3 where the motion turns, m)",
+                stretch.at(turn_s).0,
+                "not nearer than contact and at most 20000: begin the change of speed farther out, or make ramp_s shorter",
+                |d3_m| (least_d3_m..=*D3_M.end()).contains(&d3_m),
+            )
+        })
     }
 
     fn ramp_to(&mut self, rate_m_s: f64, ramp_s: f64) {

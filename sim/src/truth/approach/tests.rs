@@ -162,4 +162,13 @@ fn bad_values_are_refused_with_their_path() {
     refused(&|c| c.segments[4] = away.clone(), "approach.segments[4].to_d3_m");
     let still = SegmentConfig::Glide { to_d3_m: None, speed_m_s: 0.0, end_speed_m_s: None };
     refused(&|c| c.segments[4] = still.clone(), "approach.segments[4].to_d3_m");
+    // From 1 m at 10 m/s it would turn after 1.5 s, 6.5 m behind the target.
+    let rush = [
+        SegmentConfig::Glide { to_d3_m: Some(1.0), speed_m_s: 10.0, end_speed_m_s: None },
+        SegmentConfig::Retreat { to_d3_m: 40.0, speed_m_s: 10.0, end_speed_m_s: None },
+    ];
+    refused(
+        &|c| (c.ramp_s, c.segments) = (3.0, rush.to_vec()),
+        "approach.segments[1] (d3 where the motion turns",
+    );
 }
