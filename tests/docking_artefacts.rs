@@ -1,5 +1,7 @@
 //! The docking pipeline against one artefact at a time, each at its default size, on fields of the simulator.
 
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::path::Path;

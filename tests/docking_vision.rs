@@ -1,5 +1,7 @@
 //! The docking pipeline on the simulator's fields: every artefact of the docking scenario on, from acquisition on.
 
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
 use std::path::Path;
 
 use boresight::scenario::DOCKING;

@@ -46,7 +46,7 @@ impl Blur {
 fn sampled_step(taps: &[f64; TAPS], distance: f64) -> (f64, f64) {
     let x = distance.abs();
     let place = x + 0.5;
-    if !(place < TAPS as f64) {
+    if place.is_nan() || place >= TAPS as f64 {
         return (if distance > 0.0 { 1.0 } else { 0.0 }, 0.0);
     }
     let k = place as usize;
