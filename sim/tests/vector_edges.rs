@@ -9,7 +9,6 @@ mod vector_scene;
 
 use boresight_sim::vector::RadianceImage;
 use contract::Camera;
-use contract::docking::Pose;
 use nalgebra::Vector3;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
