@@ -107,7 +107,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments = arguments()?;
     println!("Root mean squares: range, % of it; lateral, mm (per axis); φ1, φ2, degrees (per axis).");
     println!("difference: Mitsuba's answer less ours, where both are answered.");
-    println!("{:<11} {:<10} {:>8} {:>8} {:>11} {:>8}", "row", "images", "answered", "range %", "lateral mm", "φ1,2 °");
+    println!(
+        "{:<11} {:<10} {:>8} {:>8} {:>11} {:>8}",
+        "row", "images", "answered", "range %", "lateral mm", "φ1,2 °"
+    );
     for row in Row::ALL {
         if arguments.rows.as_ref().is_some_and(|names| !names.iter().any(|name| name == row.name)) {
             continue;

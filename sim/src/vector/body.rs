@@ -36,11 +36,7 @@ impl Body {
             // What lies between two runs is kept with them.
             [columns.start.min(kept.start)..kept.start, kept.end..columns.end.max(kept.end)]
         };
-        *kept = if is_new {
-            columns
-        } else {
-            columns.start.min(kept.start)..columns.end.max(kept.end)
-        };
+        *kept = if is_new { columns } else { columns.start.min(kept.start)..columns.end.max(kept.end) };
         for Range { start, end } in new {
             let pixels = row * self.columns + start..row * self.columns + end;
             self.behind[pixels.clone()].copy_from_slice(&image[pixels.clone()]);

@@ -32,7 +32,9 @@ impl KeptLight {
 
     /// Keeps the second sums of a run.
     pub(super) fn keep(&mut self, row: usize, column: usize, run: &Run<'_>) {
-        let Some(window) = self.window.filter(|window| (window.top..window.bottom).contains(&row)) else { return };
+        let Some(window) = self.window.filter(|window| (window.top..window.bottom).contains(&row)) else {
+            return;
+        };
         let kept = &mut self.light[(row - window.top) * self.columns + column..];
         match run {
             Run::Each(sums) => {

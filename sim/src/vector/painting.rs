@@ -161,7 +161,13 @@ impl Painting {
     }
 
     /// Takes the Sun's light away where the part lies in shadow; after [`Painting::expect_shade`].
-    pub(super) fn shade(&mut self, part: &Part, lighting: &Lighting, shadows: &mut Shadows, canvas: &mut Canvas<'_>) {
+    pub(super) fn shade(
+        &mut self,
+        part: &Part,
+        lighting: &Lighting,
+        shadows: &mut Shadows,
+        canvas: &mut Canvas<'_>,
+    ) {
         let Some(sun) = &lighting.sun else { return };
         if let [seen] = &self.planes[..] {
             let light = sunlight(sun, &canvas.prepared.planes[seen.plane].normal);

@@ -46,16 +46,23 @@ impl Source {
         (facet.normal.dot(&self.from(corner)) <= 0.0) == dark_side
     }
 
-    /// Whether all of an outline stands between a plane and the light.
-    fn is_between(&self, outline: &Silhouette, plane: &Plane) -> bool {
+    /// Where the outline of what casts is, seen from a plane.
+    fn place(&self, outline: &Silhouette, plane: &Plane) -> Place {
+        let heights = outline.polygons().flatten().map(|point| plane.height(point));
+        let nothing = (f64::INFINITY, f64::NEG_INFINITY);
+        let (lowest, greatest) =
+            heights.fold(nothing, |(low, high), height| (height.min(low), height.max(high)));
         let highest = match self {
             Self::Parallel(_) => f64::INFINITY,
             Self::Point(position) => Shadows::BELOW_LIGHT * plane.height(position),
         };
-        outline.polygons().flatten().all(|point| {
-            let height = plane.height(point);
-            height >= Shadows::TOUCHING_M && height <= highest
-        })
+        if greatest <= Shadows::TOUCHING_M {
+            Place::Behind
+        } else if lowest >= -Shadows::TOUCHING_M && greatest <= highest {
+            Place::Between
+        } else {
+            Place::Across
+        }
     }
 
     /// Whether one sphere may stand between another and the light.
@@ -73,6 +80,16 @@ impl Source {
         let along = (from_receiver.dot(&way) / length).clamp(0.0, longest);
         (from_receiver - way * (along / length)).norm_squared() <= reach * reach
     }
+}
+
+/// Where something is, seen from a plane.
+enum Place {
+    /// Nothing of it is over the plane.
+    Behind,
+    /// All of it is between plane and light; it may stand on the plane.
+    Between,
+    /// Some of it is.
+    Across,
 }
 
 /// What a part casts in one light.
@@ -175,16 +192,21 @@ impl Shadows {
             {
                 continue;
             }
-            if source.is_between(&casting.silhouette, plane) {
-                for outline in casting.silhouette.polygons() {
-                    self.cut.clear();
-                    self.cut.extend_from_slice(outline);
-                    self.cast(plane, source, casting.dark_side);
+            match source.place(&casting.silhouette, plane) {
+                Place::Behind => continue,
+                Place::Between => {
+                    for outline in casting.silhouette.polygons() {
+                        self.cut.clear();
+                        self.cut.extend_from_slice(outline);
+                        self.cast(plane, source, casting.dark_side);
+                    }
+                    continue;
                 }
-                continue;
+                Place::Across => {}
             }
             for (facet, caster) in part.facets.iter().zip(&ready.casters) {
-                if !source.casts(facet, casting.dark_side) || !source.may_shade(&caster.sphere, &plane.sphere) {
+                if !source.casts(facet, casting.dark_side) || !source.may_shade(&caster.sphere, &plane.sphere)
+                {
                     continue;
                 }
                 for polygon in std::iter::once(&facet.outer).chain(&facet.holes) {
