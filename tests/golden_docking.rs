@@ -287,6 +287,14 @@ fn edges_shades_and_shadows_are_where_mitsuba_has_them() {
             let worst = own.iter().fold(0.0_f64, |a, b| a.max(*b));
             let off = own.iter().filter(|difference| **difference > 0.02).count();
             print!(" {place} {count} {most:.4}/{worst:.3}, over 2 %: {off}");
+            // What the fast image leaves out (shadows of and on the structure behind the station's end, the cone's own) is in the
+            // field from far away only: 3.4 % of the pixels at 200 m, 0.4 % at 20 m.
+            let most_off = if case.pose().position_m.z > 15.0 { 0.05 * count as f64 } else { 0.0 };
+            assert!(
+                off as f64 <= most_off,
+                "{}, {place} the disk: {off} pixels of {count} over 2 %",
+                case.name
+            );
             all.extend(own);
         }
         println!();
@@ -310,6 +318,7 @@ fn edges_shades_and_shadows_are_where_mitsuba_has_them() {
     }
     let (count, rms, most) = figures(&exact_shadows, 0.99);
     println!("  Shadow without Mitsuba's lift {count} {rms:.4} {most:.4}");
+    assert!(rms <= 0.02, "shadows without Mitsuba's lift: {rms} px rms");
     println!("shades: number, 99.9 % within, worst, of full scale");
     for (place, all) in ["on the disk", "off the disk"].iter().zip(&shades) {
         let (count, _, most) = figures(all, 0.999);
