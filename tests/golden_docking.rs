@@ -26,6 +26,9 @@ const LEAST_STEP: f64 = 0.02;
 /// worth 0.02 px a pixel at most.
 const FLAT: f64 = 0.01;
 
+/// How far over a surface Mitsuba starts its rays at the origin, m: 1500 × 2⁻²⁴ (`RayEpsilon` of its float variants).
+const RAY_EPSILON: f64 = 8.940_697e-5;
+
 /// What an edge is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
@@ -43,6 +46,8 @@ enum Kind {
 struct Edge {
     kind: Kind,
     shift_px: Option<f64>,
+    /// The same, if Mitsuba started its shadow rays on the disk and not over it: see [`Pair::lifted_px`].
+    exact_px: Option<f64>,
 }
 
 /// Both images of a case.
@@ -51,6 +56,11 @@ struct Pair<'a> {
     fast: RadianceImage,
     mitsuba: RadianceImage,
     outlines: Vec<(Kind, Vec<PixelPoint>)>,
+    focal_px: f64,
+    /// In px of the crop.
+    principal: PixelPoint,
+    /// Towards the Sun, where there is one.
+    sun: Option<Vector3<f64>>,
 }
 
 impl<'a> Pair<'a> {
@@ -93,7 +103,28 @@ impl<'a> Pair<'a> {
                 outlines.push((Kind::Cross, corners.map(|(y1, y2)| project(y1, y2, y3)).to_vec()));
             }
         }
-        Self { case, fast, mitsuba, outlines }
+        let principal =
+            PixelPoint::new(camera.principal_x_px - crop.x as f64, camera.principal_y_px - crop.y as f64);
+        let sun = case.lighting(cases).sun.map(|sun| sun.towards);
+        Self { case, fast, mitsuba, outlines, focal_px, principal, sun }
+    }
+
+    /// By how much Mitsuba has a shadow on the disk elsewhere, px: in single precision it starts shadow rays (1 + |p|∞) ε over the
+    /// surface, so that a shadow falls as on a plane that is so much higher.
+    fn lifted_px(&self, point: PixelPoint) -> [f64; 2] {
+        let Some(sun) = self.sun else { return [0.0; 2] };
+        let (pose, axes) = (self.case.pose(), target_from_camera(&self.case.pose()));
+        let [x, y] =
+            [(point.x - self.principal.x), (point.y - self.principal.y)].map(|px| px / self.focal_px);
+        let ray = axes * Vector3::new(x, y, 1.0);
+        let on_disk = pose.position_m - ray * (pose.position_m.z / ray.z);
+        let lift_m = (1.0 + on_disk.amax()) * RAY_EPSILON;
+        let seen = |point: Vector3<f64>| {
+            let x = axes.transpose() * (point - pose.position_m);
+            [self.focal_px * x.x / x.z, self.focal_px * x.y / x.z]
+        };
+        let (from, to) = (seen(on_disk), seen(on_disk + Vector3::new(sun.x, sun.y, 0.0) * (lift_m / sun.z)));
+        [to[0] - from[0], to[1] - from[1]]
     }
 
     fn edges(&self) -> Vec<Edge> {
@@ -144,7 +175,15 @@ impl<'a> Pair<'a> {
         let shift_px = same.then(|| (place_of_edge(&drawn, (fast_low, fast_high)) - place) * cosine);
         let off = place - HALF as f64;
         let point = if step == 1 { PixelPoint::new(x + off, y) } else { PixelPoint::new(x, y + off) };
-        Some(Edge { kind: self.kind(point), shift_px })
+        let kind = self.kind(point);
+        let exact_px = shift_px.map(|shift| {
+            let [dx, dy] = if kind == Kind::Shadow { self.lifted_px(point) } else { [0.0; 2] };
+            // Across the edge; the slopes along and aside are the gradient's components.
+            let (gx, gy) = if step == 1 { (along, aside) } else { (aside, along) };
+            let across = (dx * gx + dy * gy) / libm::hypot(along, aside) * along.signum();
+            shift + across
+        });
+        Some(Edge { kind, shift_px, exact_px })
     }
 
     fn kind(&self, point: PixelPoint) -> Kind {
@@ -226,9 +265,12 @@ fn edges_shades_and_shadows_are_where_mitsuba_has_them() {
     let mut shifts: Vec<Vec<f64>> = vec![Vec::new(); kinds.len()];
     let mut others = vec![0; kinds.len()];
     let mut shades = [Vec::new(), Vec::new()];
+    let mut exact_shadows = Vec::new();
     for case in &cases.case {
         let pair = Pair::of(case, &cases, &scene, &model);
         let edges = pair.edges();
+        let of_shadows = edges.iter().filter(|edge| edge.kind == Kind::Shadow);
+        let own_shadows: Vec<f64> = of_shadows.filter_map(|edge| edge.exact_px).collect();
         print!("{:20}", pair.case.name);
         for ((kind, all), others) in kinds.iter().zip(&mut shifts).zip(&mut others) {
             let of_kind = || edges.iter().filter(|edge| edge.kind == *kind);
@@ -238,10 +280,21 @@ fn edges_shades_and_shadows_are_where_mitsuba_has_them() {
             print!(" {kind:?} {count} {rms:.4}/{most:.3}");
             all.extend(own);
         }
+        print!(" without the lift {:.4}", figures(&own_shadows, 0.99).1);
+        exact_shadows.extend(own_shadows);
         for (place, (own, all)) in ["on", "off"].iter().zip(pair.shades().iter().zip(&mut shades)) {
             let (count, _, most) = figures(own, 0.999);
             let worst = own.iter().fold(0.0_f64, |a, b| a.max(*b));
-            print!(" {place} {count} {most:.4}/{worst:.3}");
+            let off = own.iter().filter(|difference| **difference > 0.02).count();
+            print!(" {place} {count} {most:.4}/{worst:.3}, over 2 %: {off}");
+            // What the fast image leaves out (shadows of and on the structure behind the station's end, the cone's own) is in the
+            // field from far away only: 3.4 % of the pixels at 200 m, 0.4 % at 20 m.
+            let most_off = if case.pose().position_m.z > 15.0 { 0.05 * count as f64 } else { 0.0 };
+            assert!(
+                off as f64 <= most_off,
+                "{}, {place} the disk: {off} pixels of {count} over 2 %",
+                case.name
+            );
             all.extend(own);
         }
         println!();
@@ -263,6 +316,9 @@ fn edges_shades_and_shadows_are_where_mitsuba_has_them() {
             Kind::Elsewhere => {}
         }
     }
+    let (count, rms, most) = figures(&exact_shadows, 0.99);
+    println!("  Shadow without Mitsuba's lift {count} {rms:.4} {most:.4}");
+    assert!(rms <= 0.02, "shadows without Mitsuba's lift: {rms} px rms");
     println!("shades: number, 99.9 % within, worst, of full scale");
     for (place, all) in ["on the disk", "off the disk"].iter().zip(&shades) {
         let (count, _, most) = figures(all, 0.999);

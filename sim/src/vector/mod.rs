@@ -8,10 +8,12 @@
 mod body;
 mod clip;
 mod coverage;
+mod kept_light;
 mod lamp;
 mod painting;
 mod planes;
 mod shadow;
+mod silhouette;
 mod view;
 
 use contract::Camera;
@@ -99,7 +101,7 @@ impl Drawer {
         }
         let mut canvas = Canvas {
             view: View::new(&self.lens, pose),
-            planes: &self.prepared.planes,
+            prepared: &self.prepared,
             coverage: &mut self.coverage,
             radiance: &mut image.radiance,
             columns: self.columns,
@@ -111,15 +113,16 @@ impl Drawer {
             let goes_on = ready.get(index + 1).is_some_and(|next| next.joins_previous);
             canvas.in_body = goes_on || ready_part.joins_previous;
             if goes_on && !ready_part.joins_previous {
-                canvas.body.begin(canvas.radiance);
+                canvas.body.begin(canvas.columns, canvas.radiance.len());
             }
             self.painting.outline(part, ready_part, &canvas);
-            self.painting.lay(part, lighting, &mut canvas);
             if let Some(sun) = &lighting.sun {
-                self.painting.shade(part, sun, &self.sun_shadows, &mut canvas);
+                self.painting.expect_shade(sun, &mut self.sun_shadows, &canvas);
             }
+            self.painting.lay(part, lighting, &mut canvas);
+            self.painting.shade(part, lighting, &mut self.sun_shadows, &mut canvas);
             if let Some(lamp) = &lighting.floodlight {
-                self.painting.illuminate(part, lamp, &self.lamp_shadows, &mut canvas);
+                self.painting.illuminate(part, lamp, &mut self.lamp_shadows, &mut canvas);
             }
         }
     }

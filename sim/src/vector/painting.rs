@@ -7,8 +7,9 @@ use nalgebra::Vector3;
 
 use super::body::Body;
 use super::coverage::{Coverage, Run, Window};
+use super::kept_light::KeptLight;
 use super::lamp::{LampGrid, LampOnPlane};
-use super::planes::{Plane, PreparedPart};
+use super::planes::{Prepared, PreparedPart};
 use super::shadow::Shadows;
 use super::view::{Bounds, Outlines, View};
 use crate::scene::docking::{Floodlight, Lighting, Part, Sun};
@@ -16,7 +17,7 @@ use crate::scene::docking::{Floodlight, Lighting, Part, Sun};
 /// What a part is painted on.
 pub(super) struct Canvas<'a> {
     pub(super) view: View<'a>,
-    pub(super) planes: &'a [Plane],
+    pub(super) prepared: &'a Prepared,
     pub(super) coverage: &'a mut Coverage,
     pub(super) radiance: &'a mut [f32],
     pub(super) columns: usize,
@@ -52,6 +53,7 @@ pub(super) struct Painting {
     facets: Vec<SeenFacet>,
     planes: Vec<SeenPlane>,
     shadow: Outlines,
+    kept: KeptLight,
     lamp_grid: LampGrid,
 }
 
@@ -66,7 +68,7 @@ impl Painting {
             return;
         }
         for index in ready.planes.clone() {
-            let plane = &canvas.planes[index];
+            let plane = &canvas.prepared.planes[index];
             // Said this way round, a height that is no number sees nothing either.
             let shows_front = plane.height(&view.position) > 0.0;
             if !shows_front {
@@ -94,16 +96,28 @@ impl Painting {
         }
     }
 
+    /// Finds the Sun's shadows on a part that shows one plane alone, and has [`Painting::lay`] keep its light there.
+    pub(super) fn expect_shade(&mut self, sun: &Sun, shadows: &mut Shadows, canvas: &Canvas<'_>) {
+        let window = match &self.planes[..] {
+            [seen] if sunlight(sun, &canvas.prepared.planes[seen.plane].normal) > 0.0 => {
+                let (plane, within) = (seen.plane, seen.bounds.window(canvas.coverage.whole()));
+                within.and_then(|within| self.outline_shadows(shadows, plane, within, canvas))
+            }
+            _ => None,
+        };
+        self.kept.open(window, canvas.columns);
+    }
+
     /// Lays the part over the image, lit by the Sun and from everywhere, as if nothing cast shadows on it.
     ///
     /// Here and below what rounding leaves under zero is zero: light is never negative.
-    pub(super) fn lay(&self, part: &Part, lighting: &Lighting, canvas: &mut Canvas<'_>) {
+    pub(super) fn lay(&mut self, part: &Part, lighting: &Lighting, canvas: &mut Canvas<'_>) {
         if self.planes.is_empty() {
             return;
         }
         canvas.coverage.open(canvas.coverage.whole());
         for seen in &self.planes {
-            let plane = &canvas.planes[seen.plane];
+            let plane = &canvas.prepared.planes[seen.plane];
             let light =
                 lighting.fill_radiance + lighting.sun.map_or(0.0, |sun| sunlight(&sun, &plane.normal));
             for facet in &self.facets[seen.facets.clone()] {
@@ -113,18 +127,22 @@ impl Painting {
         }
         let columns = canvas.columns;
         let image = &mut *canvas.radiance;
+        let kept = &mut self.kept;
         if canvas.in_body {
             let body = &mut *canvas.body;
             canvas.coverage.sweep(|row, column, run| {
-                let start = row * columns + column;
+                kept.keep(row, column, &run);
                 match run {
-                    Run::Each(sums) => body.join(image, start, sums.iter().copied()),
-                    Run::Same(sums, length) => body.join(image, start, std::iter::repeat_n(sums, length)),
+                    Run::Each(sums) => body.join(image, row, column, sums.iter().copied()),
+                    Run::Same(sums, length) => {
+                        body.join(image, row, column, std::iter::repeat_n(sums, length));
+                    }
                 }
             });
             return;
         }
         canvas.coverage.sweep(|row, column, run| {
+            kept.keep(row, column, &run);
             let start = row * columns + column;
             match run {
                 Run::Each(sums) => {
@@ -142,11 +160,23 @@ impl Painting {
         });
     }
 
-    /// Takes the Sun's light away where the part lies in shadow.
-    pub(super) fn shade(&mut self, part: &Part, sun: &Sun, shadows: &Shadows, canvas: &mut Canvas<'_>) {
+    /// Takes the Sun's light away where the part lies in shadow; after [`Painting::expect_shade`].
+    pub(super) fn shade(
+        &mut self,
+        part: &Part,
+        lighting: &Lighting,
+        shadows: &mut Shadows,
+        canvas: &mut Canvas<'_>,
+    ) {
+        let Some(sun) = &lighting.sun else { return };
+        if let [seen] = &self.planes[..] {
+            let light = sunlight(sun, &canvas.prepared.planes[seen.plane].normal);
+            self.shade_plane(light / (lighting.fill_radiance + light), canvas);
+            return;
+        }
         for index in 0..self.planes.len() {
             let seen = self.planes[index].clone();
-            let light = sunlight(sun, &canvas.planes[seen.plane].normal);
+            let light = sunlight(sun, &canvas.prepared.planes[seen.plane].normal);
             if light <= 0.0 {
                 continue;
             }
@@ -182,17 +212,42 @@ impl Painting {
         }
     }
 
+    /// Takes a share of the light that was kept away in the shadows that were expected.
+    fn shade_plane(&self, share: f64, canvas: &mut Canvas<'_>) {
+        let Some(window) = self.kept.window() else { return };
+        canvas.coverage.open(window);
+        for polygon in 0..self.shadow.len() {
+            canvas.coverage.add(self.shadow.polygon(polygon), [1.0, 0.0]);
+        }
+        let (columns, image, kept) = (canvas.columns, &mut *canvas.radiance, &self.kept);
+        let share = share as f32;
+        canvas.coverage.sweep(|row, column, run| {
+            let pixels = image[row * columns + column..].iter_mut().zip(kept.row(row, column));
+            match run {
+                Run::Each(sums) => {
+                    for ((pixel, light), [shaded, _]) in pixels.zip(sums) {
+                        *pixel = (*pixel - share * light * shaded.clamp(0.0, 1.0)).max(0.0);
+                    }
+                }
+                Run::Same([shaded, _], length) => {
+                    let share = share * shaded.clamp(0.0, 1.0);
+                    pixels.take(length).for_each(|(pixel, light)| *pixel = (*pixel - share * light).max(0.0));
+                }
+            }
+        });
+    }
+
     /// Adds the lamp's light where it reaches the part.
     pub(super) fn illuminate(
         &mut self,
         part: &Part,
         lamp: &Floodlight,
-        shadows: &Shadows,
+        shadows: &mut Shadows,
         canvas: &mut Canvas<'_>,
     ) {
         for index in 0..self.planes.len() {
             let seen = self.planes[index].clone();
-            let plane = &canvas.planes[seen.plane];
+            let plane = &canvas.prepared.planes[seen.plane];
             let is_lit = plane.height(&lamp.position_m) > 0.0;
             if !is_lit {
                 continue;
@@ -241,13 +296,14 @@ impl Painting {
     /// Projects the shadows on a plane; the pixels of a window that they may touch.
     fn outline_shadows(
         &mut self,
-        shadows: &Shadows,
+        shadows: &mut Shadows,
         plane: usize,
         within: Window,
         canvas: &Canvas<'_>,
     ) -> Option<Window> {
         self.shadow.clear();
         let mut bounds = Bounds::EMPTY;
+        shadows.find(plane, canvas.prepared);
         for polygon in shadows.on(plane) {
             let start = self.shadow.len();
             let bounds_of_polygon = self.shadow.push(&canvas.view, polygon);

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::silhouette::FacetEdges;
 use crate::scene::docking::{DockingScene, Facet, Part};
 
 /// The smallest box along the target's axes about some points.
@@ -50,6 +51,8 @@ impl Sphere {
 /// Facets of one part in one plane.
 #[derive(Debug, Clone)]
 pub(super) struct Plane {
+    /// Place of its part in the scene.
+    pub(super) part: usize,
     pub(super) normal: Vector3<f64>,
     /// normal · y of its points, m.
     pub(super) offset: f64,
@@ -82,6 +85,8 @@ pub(super) struct PreparedPart {
     pub(super) sphere: Sphere,
     /// One a facet; empty when the part casts no shadow.
     pub(super) casters: Vec<Caster>,
+    /// The edges of its facets; none when the part casts no shadow.
+    pub(super) outlines: FacetEdges,
     /// Whether corners of it touch the part before it: both are surfaces of one body.
     pub(super) joins_previous: bool,
 }
@@ -100,10 +105,11 @@ impl Prepared {
         let before = std::iter::once(None).chain(scene.parts.iter().map(Some));
         let parts = before
             .zip(&scene.parts)
-            .map(|(before, part)| {
+            .enumerate()
+            .map(|(index, (before, part))| {
                 let start = planes.len();
                 if part.visible {
-                    planes.extend(planes_of(part));
+                    planes.extend(planes_of(part, index));
                 }
                 PreparedPart {
                     planes: start..planes.len(),
@@ -113,6 +119,7 @@ impl Prepared {
                     } else {
                         Vec::new()
                     },
+                    outlines: if part.casts_shadow { FacetEdges::of(part) } else { FacetEdges::default() },
                     joins_previous: before.is_some_and(|before| touch(before, part)),
                 }
             })
@@ -140,7 +147,7 @@ fn touch(one: &Part, other: &Part) -> bool {
     one.visible && other.visible && corners(one).any(near)
 }
 
-fn planes_of(part: &Part) -> Vec<Plane> {
+fn planes_of(part: &Part, index_of_part: usize) -> Vec<Plane> {
     let mut planes: Vec<Plane> = Vec::new();
     for (index, facet) in part.facets.iter().enumerate() {
         let Some(point) = facet.outer.first() else { continue };
@@ -151,6 +158,7 @@ fn planes_of(part: &Part) -> Vec<Plane> {
         match planes.iter_mut().find(same) {
             Some(plane) => plane.facets.push(index),
             None => planes.push(Plane {
+                part: index_of_part,
                 normal: facet.normal,
                 offset,
                 facets: vec![index],

@@ -1,8 +1,9 @@
 //! Cast shadows: the outlines of what casts, projected along the light onto the planes that it falls on.
 //!
-//! They lie in the target's frame and know no camera, so that they stay while the light stays. A body's shadow is that of
-//! its lit side, or of its dark side where that is the larger (a sheet seen by the light from behind): of a closed body
-//! both are the same, and both together would count its outline twice.
+//! They lie in the target's frame and know no camera, so that they stay while the light stays; they are found for a plane
+//! when it is first seen. A body's shadow is that of its lit side, or of its dark side where that is the larger (a sheet
+//! seen by the light from behind): of a closed body both are the same, and both together would count its outline twice.
+//! Where all of it stands over the plane its [`silhouette`](super::silhouette) casts it, else each facet, cut at the plane.
 
 use std::ops::Range;
 
@@ -10,6 +11,7 @@ use nalgebra::Vector3;
 
 use super::clip::keep_above;
 use super::planes::{Extent, Plane, Prepared, Sphere};
+use super::silhouette::Silhouette;
 use crate::scene::docking::Facet;
 
 /// Where light comes from.
@@ -38,6 +40,31 @@ impl Source {
         }
     }
 
+    /// Whether a facet is on the side of its part that casts.
+    fn casts(&self, facet: &Facet, dark_side: bool) -> bool {
+        let Some(corner) = facet.outer.first() else { return false };
+        (facet.normal.dot(&self.from(corner)) <= 0.0) == dark_side
+    }
+
+    /// Where the outline of what casts is, seen from a plane.
+    fn place(&self, outline: &Silhouette, plane: &Plane) -> Place {
+        let heights = outline.polygons().flatten().map(|point| plane.height(point));
+        let nothing = (f64::INFINITY, f64::NEG_INFINITY);
+        let (lowest, greatest) =
+            heights.fold(nothing, |(low, high), height| (height.min(low), height.max(high)));
+        let highest = match self {
+            Self::Parallel(_) => f64::INFINITY,
+            Self::Point(position) => Shadows::BELOW_LIGHT * plane.height(position),
+        };
+        if greatest <= Shadows::TOUCHING_M {
+            Place::Behind
+        } else if lowest >= -Shadows::TOUCHING_M && greatest <= highest {
+            Place::Between
+        } else {
+            Place::Across
+        }
+    }
+
     /// Whether one sphere may stand between another and the light.
     fn may_shade(&self, caster: &Sphere, receiver: &Sphere) -> bool {
         let reach = caster.radius + receiver.radius;
@@ -55,17 +82,35 @@ impl Source {
     }
 }
 
-/// The shadows on every plane of a scene from one light.
+/// Where something is, seen from a plane.
+enum Place {
+    /// Nothing of it is over the plane.
+    Behind,
+    /// All of it is between plane and light; it may stand on the plane.
+    Between,
+    /// Some of it is.
+    Across,
+}
+
+/// What a part casts in one light.
+#[derive(Debug, Clone, Default)]
+struct Casting {
+    /// Whether its dark side does.
+    dark_side: bool,
+    silhouette: Silhouette,
+}
+
+/// The shadows on the planes of a scene from one light.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shadows {
     source: Option<Source>,
     points: Vec<Vector3<f64>>,
     /// Where each polygon ends among the points.
     ends: Vec<usize>,
-    /// Of each plane, its polygons.
-    of_plane: Vec<Range<usize>>,
-    /// Of each part, whether its dark side casts.
-    dark_side: Vec<bool>,
+    /// Of each plane, its polygons; `None` where they have not been asked for.
+    of_plane: Vec<Option<Range<usize>>>,
+    /// Of each part.
+    casting: Vec<Casting>,
     cut: Vec<Vector3<f64>>,
 }
 
@@ -82,16 +127,16 @@ impl Shadows {
         self.source = None;
     }
 
-    /// The polygons of the shadows on a plane, anticlockwise as seen from its front.
+    /// The polygons of the shadows on a plane that were found, anticlockwise as seen from its front.
     pub(super) fn on(&self, plane: usize) -> impl Iterator<Item = &[Vector3<f64>]> {
-        let range = self.of_plane.get(plane).cloned().unwrap_or(0..0);
+        let range = self.of_plane.get(plane).cloned().flatten().unwrap_or(0..0);
         range.map(|index| {
             let start = if index == 0 { 0 } else { self.ends[index - 1] };
             &self.points[start..self.ends[index]]
         })
     }
 
-    /// Finds the shadows from a light, unless they are those of the last one.
+    /// Turns to a light, unless it is the last one: then what was found stays.
     pub(super) fn update(&mut self, prepared: &Prepared, source: Source) {
         if self.source == Some(source) {
             return;
@@ -100,8 +145,10 @@ impl Shadows {
         self.points.clear();
         self.ends.clear();
         self.of_plane.clear();
-        self.dark_side.clear();
-        for (part, ready) in prepared.scene.parts.iter().zip(&prepared.parts) {
+        self.of_plane.resize(prepared.planes.len(), None);
+        self.casting.resize_with(prepared.parts.len(), Casting::default);
+        let parts = prepared.scene.parts.iter().zip(&prepared.parts);
+        for ((part, ready), casting) in parts.zip(&mut self.casting) {
             let (mut lit, mut dark) = (0.0, 0.0);
             for (facet, caster) in part.facets.iter().zip(&ready.casters) {
                 let towards = source.from(&caster.sphere.centre);
@@ -114,67 +161,91 @@ impl Shadows {
                 };
                 if seen > 0.0 { lit += seen } else { dark -= seen }
             }
-            self.dark_side.push(dark > lit * Self::LARGER);
-        }
-        for (receiver, ready) in prepared.parts.iter().enumerate() {
-            for plane in &prepared.planes[ready.planes.clone()] {
-                let start = self.ends.len();
-                if source.lights(plane) {
-                    self.cast_on(plane, receiver, prepared, source);
-                }
-                self.of_plane.push(start..self.ends.len());
-            }
+            casting.dark_side = dark > lit * Self::LARGER;
+            let casts = |index: usize| source.casts(&part.facets[index], casting.dark_side);
+            casting.silhouette.find(&ready.outlines, casts);
         }
     }
 
-    fn cast_on(&mut self, plane: &Plane, receiver: usize, prepared: &Prepared, source: Source) {
-        for (index, ready) in prepared.parts.iter().enumerate() {
-            if index == receiver
+    /// Finds the shadows on a plane, unless that is done.
+    pub(super) fn find(&mut self, index: usize, prepared: &Prepared) {
+        let Some(source) = self.source else { return };
+        if self.of_plane.get(index).is_none_or(Option::is_some) {
+            return;
+        }
+        let (plane, start) = (&prepared.planes[index], self.ends.len());
+        if source.lights(plane) {
+            // Taken out, so that the rest can be written to meanwhile.
+            let casting = std::mem::take(&mut self.casting);
+            self.cast_on(plane, &casting, prepared, source);
+            self.casting = casting;
+        }
+        self.of_plane[index] = Some(start..self.ends.len());
+    }
+
+    fn cast_on(&mut self, plane: &Plane, casting: &[Casting], prepared: &Prepared, source: Source) {
+        let parts = prepared.scene.parts.iter().zip(&prepared.parts).zip(casting);
+        for (index, ((part, ready), casting)) in parts.enumerate() {
+            if index == plane.part
                 || ready.casters.is_empty()
                 || !source.may_shade(&ready.sphere, &plane.sphere)
             {
                 continue;
             }
-            let dark_side = self.dark_side[index];
-            for (facet, caster) in prepared.scene.parts[index].facets.iter().zip(&ready.casters) {
-                let Some(corner) = facet.outer.first() else { continue };
-                let is_dark = facet.normal.dot(&source.from(corner)) <= 0.0;
-                if is_dark == dark_side && source.may_shade(&caster.sphere, &plane.sphere) {
-                    self.cast(facet, plane, source, dark_side);
+            match source.place(&casting.silhouette, plane) {
+                Place::Behind => continue,
+                Place::Between => {
+                    for outline in casting.silhouette.polygons() {
+                        self.cut.clear();
+                        self.cut.extend_from_slice(outline);
+                        self.cast(plane, source, casting.dark_side);
+                    }
+                    continue;
+                }
+                Place::Across => {}
+            }
+            for (facet, caster) in part.facets.iter().zip(&ready.casters) {
+                if !source.casts(facet, casting.dark_side) || !source.may_shade(&caster.sphere, &plane.sphere)
+                {
+                    continue;
+                }
+                for polygon in std::iter::once(&facet.outer).chain(&facet.holes) {
+                    keep_above(polygon, &mut self.cut, |point| plane.height(point) - Self::TOUCHING_M);
+                    if let Source::Point(position) = source {
+                        let highest = Self::BELOW_LIGHT * plane.height(&position);
+                        let upper = std::mem::take(&mut self.cut);
+                        keep_above(&upper, &mut self.cut, |point| highest - plane.height(point));
+                    }
+                    self.cast(plane, source, casting.dark_side);
                 }
             }
         }
     }
 
-    fn cast(&mut self, facet: &Facet, plane: &Plane, source: Source, dark_side: bool) {
-        for polygon in std::iter::once(&facet.outer).chain(&facet.holes) {
-            let start = self.points.len();
-            keep_above(polygon, &mut self.cut, |point| plane.height(point) - Self::TOUCHING_M);
-            match source {
-                Source::Parallel(towards) => {
-                    let climb = plane.normal.dot(&towards);
-                    let shadow = |point: &Vector3<f64>| point - towards * (plane.height(point) / climb);
-                    self.points.extend(self.cut.iter().map(shadow));
-                }
-                Source::Point(position) => {
-                    let height = plane.height(&position);
-                    let highest = Self::BELOW_LIGHT * height;
-                    let upper = std::mem::take(&mut self.cut);
-                    keep_above(&upper, &mut self.cut, |point| highest - plane.height(point));
-                    let shadow = |point: &Vector3<f64>| {
-                        position + (point - position) * (height / (height - plane.height(point)))
-                    };
-                    self.points.extend(self.cut.iter().map(shadow));
-                }
+    /// Adds the shadow of the polygon in `cut`, which lies between plane and light.
+    fn cast(&mut self, plane: &Plane, source: Source, dark_side: bool) {
+        let start = self.points.len();
+        match source {
+            Source::Parallel(towards) => {
+                let climb = plane.normal.dot(&towards);
+                let shadow = |point: &Vector3<f64>| point - towards * (plane.height(point) / climb);
+                self.points.extend(self.cut.iter().map(shadow));
             }
-            if !plane.extent.meets(&Extent::of(&self.points[start..])) {
-                self.points.truncate(start);
-                continue;
+            Source::Point(position) => {
+                let height = plane.height(&position);
+                let shadow = |point: &Vector3<f64>| {
+                    position + (point - position) * (height / (height - plane.height(point)))
+                };
+                self.points.extend(self.cut.iter().map(shadow));
             }
-            if dark_side {
-                self.points[start..].reverse();
-            }
-            self.ends.push(self.points.len());
         }
+        if !plane.extent.meets(&Extent::of(&self.points[start..])) {
+            self.points.truncate(start);
+            return;
+        }
+        if dark_side {
+            self.points[start..].reverse();
+        }
+        self.ends.push(self.points.len());
     }
 }

@@ -1,0 +1,153 @@
+//! The outline of the side of a body that a light sees, or does not see.
+//!
+//! Where two facets of that side meet, their shared edge runs once each way: both together cover nothing, and both are
+//! left out. What is left closes to polygons, however it is put together where more than two edges meet.
+
+use std::ops::Range;
+
+use nalgebra::Vector3;
+
+use crate::scene::docking::Part;
+
+/// The edges of a part's facets, by the places of their ends in a list of its corners.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FacetEdges {
+    corners: Vec<Vector3<f64>>,
+    /// Holes run round the other way than outer boundaries.
+    edges: Vec<[u32; 2]>,
+    /// Of each edge, the one that runs the other way along it.
+    opposite: Vec<Option<u32>>,
+    /// Of each facet, its edges.
+    of_facet: Vec<Range<usize>>,
+}
+
+impl FacetEdges {
+    /// Of a part; corners are the same when their coordinates are the same bits.
+    pub(super) fn of(part: &Part) -> Self {
+        let mut outlines = Self::default();
+        let key = |corner: &Vector3<f64>| [corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()];
+        let mut places = std::collections::BTreeMap::new();
+        for facet in &part.facets {
+            let start = outlines.edges.len();
+            for polygon in std::iter::once(&facet.outer).chain(&facet.holes) {
+                for (from, to) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+                    let edge = [from, to].map(|corner| {
+                        *places.entry(key(corner)).or_insert_with(|| {
+                            outlines.corners.push(*corner);
+                            (outlines.corners.len() - 1) as u32
+                        })
+                    });
+                    outlines.edges.push(edge);
+                }
+            }
+            outlines.of_facet.push(start..outlines.edges.len());
+        }
+        // Of several edges between two corners each finds a partner of its own.
+        let mut single = std::collections::BTreeMap::<[u32; 2], Vec<u32>>::new();
+        outlines.opposite = vec![None; outlines.edges.len()];
+        for (index, [from, to]) in outlines.edges.iter().enumerate() {
+            if let Some(other) = single.get_mut(&[*to, *from]).and_then(Vec::pop) {
+                outlines.opposite[index] = Some(other);
+                outlines.opposite[other as usize] = Some(index as u32);
+            } else {
+                single.entry([*from, *to]).or_default().push(index as u32);
+            }
+        }
+        outlines
+    }
+}
+
+/// The outline of some facets of a part: closed polygons, not flat in general, that run as the facets' boundaries do.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Silhouette {
+    points: Vec<Vector3<f64>>,
+    /// Where each polygon ends among the points.
+    ends: Vec<usize>,
+    chosen: Vec<bool>,
+    /// Of each corner, the edges of the outline that leave it, and have not been gone along.
+    leaving: Vec<Vec<u32>>,
+}
+
+impl Silhouette {
+    /// Finds the outline of the facets that `is_chosen` names by their places in the part.
+    pub(super) fn find(&mut self, facets: &FacetEdges, is_chosen: impl Fn(usize) -> bool) {
+        self.points.clear();
+        self.ends.clear();
+        self.chosen.clear();
+        self.chosen.resize(facets.edges.len(), false);
+        for (index, edges) in facets.of_facet.iter().enumerate() {
+            self.chosen[edges.clone()].fill(is_chosen(index));
+        }
+        self.leaving.resize_with(facets.corners.len(), Vec::new);
+        self.leaving.iter_mut().for_each(Vec::clear);
+        // Backwards, so that the first of a corner is the last of its list.
+        for (index, [from, _]) in facets.edges.iter().enumerate().rev() {
+            let shared = facets.opposite[index].is_some_and(|other| self.chosen[other as usize]);
+            if self.chosen[index] && !shared {
+                self.leaving[*from as usize].push(index as u32);
+            }
+        }
+        for start in 0..facets.corners.len() {
+            while let Some(first) = self.leaving[start].pop() {
+                let mut next = Some(first);
+                // As many edges leave a corner as come to it, so that the way ends where it began.
+                while let Some(edge) = next {
+                    let [from, to] = facets.edges[edge as usize].map(|corner| corner as usize);
+                    self.points.push(facets.corners[from]);
+                    next = if to == start { None } else { self.leaving[to].pop() };
+                }
+                self.ends.push(self.points.len());
+            }
+        }
+    }
+
+    /// The polygons.
+    pub(super) fn polygons(&self) -> impl Iterator<Item = &[Vector3<f64>]> {
+        self.ends.iter().enumerate().map(|(index, end)| {
+            let start = if index == 0 { 0 } else { self.ends[index - 1] };
+            &self.points[start..*end]
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::docking::TargetFile;
+
+    fn area(polygon: &[Vector3<f64>]) -> Vector3<f64> {
+        let origin = polygon[0];
+        let next = polygon.iter().cycle().skip(1);
+        polygon.iter().zip(next).map(|(a, b)| 0.5 * (a - origin).cross(&(b - origin))).sum()
+    }
+
+    #[test]
+    fn a_silhouette_has_the_projected_area_of_the_facets_and_fewer_edges() {
+        let scene = TargetFile::built_in("progress").unwrap().scene();
+        let light = Vector3::new(0.3, 0.5, 0.8).normalize();
+        let (mut all, mut left) = (0, 0);
+        for part in &scene.parts {
+            let lit = |facet: &crate::scene::docking::Facet| facet.normal.dot(&light) > 0.0;
+            let mut silhouette = Silhouette::default();
+            silhouette.find(&FacetEdges::of(part), |index| lit(&part.facets[index]));
+            let facets = part.facets.iter().filter(|facet| lit(facet));
+            let polygons = facets.flat_map(|facet| std::iter::once(&facet.outer).chain(&facet.holes));
+            let whole: f64 = polygons
+                .map(|polygon| {
+                    all += polygon.len();
+                    area(polygon).dot(&light)
+                })
+                .sum();
+            let outline: f64 = silhouette
+                .polygons()
+                .map(|polygon| {
+                    left += polygon.len();
+                    area(polygon).dot(&light)
+                })
+                .sum();
+            // Areas of up to 10³ m² from corners at up to 60 m: rounding.
+            assert!((whole - outline).abs() < 1e-10 * (1.0 + whole), "{}: {whole} {outline}", part.name);
+        }
+        assert!(left < all, "{left} of {all}");
+    }
+}
