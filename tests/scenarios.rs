@@ -69,7 +69,12 @@ struct Schema(Value);
 
 impl Schema {
     fn read() -> Self {
-        Self(Bench::new().boresight("scenario schema").done().json())
+        Self::of("far_range")
+    }
+
+    /// Of one world.
+    fn of(world: &str) -> Self {
+        Self(Bench::new().boresight(&format!("scenario schema --world {world}")).done().json())
     }
 
     /// All alternatives that a schema stands for, its references followed.
@@ -121,8 +126,8 @@ impl Schema {
 
 #[test]
 fn every_key_of_the_built_in_scenarios_is_in_the_schema() {
-    let schema = Schema::read();
     for scenario in BUILT_IN {
+        let schema = Schema::of(if scenario.name == "docking" { "docking" } else { "far_range" });
         let keys = schema.check_keys(
             scenario.name,
             &scenario.text.parse::<toml::Table>().unwrap().into(),

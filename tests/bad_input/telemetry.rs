@@ -91,5 +91,5 @@ fn a_table_without_rows_and_no_table_are_refused() {
     let bench = dataset();
     fs::remove_file(bench.path("set/telemetry.csv")).unwrap();
     check_refused(&bench, "process set", &["set/telemetry.csv", "No such file"]);
-    check_refused(&bench, "process nowhere", &["nowhere/camera.toml", "No such file"]);
+    check_refused(&bench, "process nowhere", &["nowhere", "No such file"]);
 }

@@ -31,7 +31,9 @@ impl MotionVerdict {
         // A portion's last fields may not be measured: its motion is then of an earlier moment than the field that reports
         // it. A few fields back the true rates carry the truth there to micrometres.
         let since_s = motion.time_s - truth.time_s;
-        let truth = &TrueField { pose: truth.moved(since_s), ..truth.clone() };
+        let moved = TrueField { pose: truth.moved(since_s), ..truth.clone() };
+        // Times of files are rounded: what is nearer than a microsecond is the same moment.
+        let truth = if since_s.abs() < 1e-6 { truth } else { &moved };
         let shown = Shown::of(&motion.pose, &motion.velocity_m_s);
         let errors = shown.minus(&Shown::of(&truth.pose, &truth.velocity_m_s));
         let sigmas = Shown::sigmas(motion);
