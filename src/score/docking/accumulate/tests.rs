@@ -158,7 +158,7 @@ fn silence_after_a_report_is_told() {
         .collect();
     let time_s = fields[9].0.time_s;
     fields[9].1.as_mut().unwrap().motion = Some(report(time_s, 10.0));
-    let figure = score(&fields).figures[names::RENEWED_WITHIN_1S].clone();
+    let figure = score(&fields).figures[names::RENEWED_WITHIN_1S];
     assert_eq!((figure.count, figure.of), (9, 29));
 }
 
