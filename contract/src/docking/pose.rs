@@ -7,7 +7,7 @@ use nalgebra::{Matrix6, Vector3};
 /// Target frame: origin at the disk's centre, y3 along the disk's normal away from the station, y2 "up" on the target,
 /// y1 completing the right-handed frame. Camera frame: x1 along columns, x2 along rows (down), x3 the optical axis.
 /// A point x of the camera frame is y = d + A x in the target frame, with the exact
-/// A = diag(1, −1, −1) · exp([φ]×); to first order it is the matrix of the paper (3.1).
+/// A = diag(1, −1, −1) · exp(\[φ\]×); to first order it is the matrix of the paper (3.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// d: the camera's position in the target frame, m.

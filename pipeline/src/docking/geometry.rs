@@ -13,12 +13,12 @@ pub(crate) type ByPose = SMatrix<f64, 2, 6>;
 /// Below this angle the series of exp stand in for sin and cos: the neglected terms are under 1e-16.
 const SMALL_RAD: f64 = 1e-4;
 
-/// [v]×, the matrix of the cross product: \[v\]× w = v × w.
+/// \[v\]×, the matrix of the cross product: \[v\]× w = v × w.
 pub fn cross_matrix(v: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -v.z, v.y, v.z, 0.0, -v.x, -v.y, v.x, 0.0)
 }
 
-/// exp([φ]×): the rotation about φ by its length (Rodrigues).
+/// exp(\[φ\]×): the rotation about φ by its length (Rodrigues).
 pub fn exponential(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
     let angle = phi_rad.norm();
     let k = cross_matrix(phi_rad);
@@ -32,7 +32,7 @@ pub fn exponential(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + k * sine + k * k * cosine
 }
 
-/// The right Jacobian of exp: exp([φ + δ]×) = exp([φ]×) exp([J δ]×) to first order in δ.
+/// The right Jacobian of exp: exp([φ + δ]×) = exp(\[φ\]×) exp([J δ]×) to first order in δ.
 fn right_jacobian(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
     let angle = phi_rad.norm();
     let k = cross_matrix(phi_rad);
@@ -45,7 +45,7 @@ fn right_jacobian(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() - k * first + k * k * second
 }
 
-/// A = diag(1, −1, −1) exp([φ]×): camera axes in the target frame, y = d + A x. To first order the matrix of the paper.
+/// A = diag(1, −1, −1) exp(\[φ\]×): camera axes in the target frame, y = d + A x. To first order the matrix of the paper.
 pub fn target_from_camera(phi_rad: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * exponential(phi_rad)
 }

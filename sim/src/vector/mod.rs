@@ -1,9 +1,9 @@
 //! The fast renderer of docking scenes: facets in, linear radiance out.
 //!
-//! Every facet is drawn by the exact area that it covers of every pixel ([`coverage`]), and parts are laid over each other from
+//! Every facet is drawn by the exact area that it covers of every pixel (`coverage`), and parts are laid over each other from
 //! the back. Within a part facets are disjoint, so that their light and their coverage add up before the part is laid over
 //! what lies behind: neighbours leave no seam. Light is Lambert's: ρ (fill + E cos θ/π), where the light's part is weakened
-//! by the share of the pixel that lies in the [`shadow`] of other parts.
+//! by the share of the pixel that lies in the shadow (`shadow`) of other parts.
 
 mod body;
 mod clip;

@@ -118,7 +118,7 @@ pub(crate) fn draw(camera: &Camera, scene: &DockingScene, lighting: &Lighting, p
 }
 
 /// Where a point is seen by the camera without its distortion, px, centre of the first pixel at 0: x = Aᵀ (y − d) with
-/// A = diag(1, −1, −1) exp([φ]×) by Rodrigues' formula.
+/// A = diag(1, −1, −1) exp(\[φ\]×) by Rodrigues' formula.
 pub(crate) fn seen(camera: &Camera, pose: &Pose, point: &Point) -> [f64; 2] {
     let ideal = point - pose.position_m;
     // exp(−[φ]×) diag(1, −1, −1) (y − d).

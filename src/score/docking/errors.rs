@@ -69,7 +69,7 @@ pub(super) fn phi_error(measured: &Pose, truth: &Pose) -> Vector3<f64> {
 
 /// The target as seen from a pose, in the camera frame.
 struct Seen {
-    /// exp([φ]×).
+    /// exp(\[φ\]×).
     ideal_from_camera: UnitQuaternion<f64>,
     /// The target's origin, m.
     origin_m: Vector3<f64>,

@@ -2,7 +2,7 @@
 //!
 //! Every field is counted exactly once and gets one [`Verdict`]: measured and right, measured and grossly wrong, the
 //! range alone, or missed for one cause. How large the errors are is counted over the right ones, whether they are as
-//! large as the pipeline says ([`consistency`]) as well; what is said at the end of a portion ([`portions`]) and how
+//! large as the pipeline says ([`consistency`]) as well; what is said at the end of a portion (`portions`) and how
 //! long it takes has figures of its own. `docs/score.md` has the definitions in full.
 
 mod accumulate;

@@ -174,7 +174,7 @@ impl ApproachState {
     }
 }
 
-/// A = diag(1, −1, −1) exp([φ]×): y = d + A x takes a point of the camera frame into the target frame.
+/// A = diag(1, −1, −1) exp(\[φ\]×): y = d + A x takes a point of the camera frame into the target frame.
 pub fn target_from_camera(pose: &Pose) -> Matrix3<f64> {
     let turned = Rotation3::from_scaled_axis(pose.phi_rad);
     Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0)) * turned.matrix()
