@@ -15,9 +15,11 @@ use sim::docking::{
 use sim::randomness::{Effect, Seed, Stream, normal, uniform};
 use sim::scene::docking::TargetFile;
 use sim::television::{Interlace, TelevisionConfig, VideoNoiseConfig};
-use sim::truth::approach::{ApproachConfig, ConstantVelocityConfig, target_from_camera};
+use sim::truth::approach::{ApproachConfig, ConstantVelocityConfig};
 
 use crate::bound::{self, Bound};
+use crate::docking_random::{camera, random_sun};
+use crate::in_field::{are_inside, corners};
 
 /// The target.
 const TARGET: &str = "progress";
@@ -28,8 +30,6 @@ pub(crate) const BLUR_PX: f64 = 0.7;
 /// Lateral offset at most, as a part of d3, and angles at most, degrees.
 const OFFSET: f64 = 0.03;
 const ANGLE_DEG: f64 = 3.0;
-/// The Sun stands within this angle of the face's normal, degrees.
-const SUN_DEG: f64 = 60.0;
 /// How far the outermost corners of marks and cross stay from the border, px.
 const MARGIN_PX: f64 = 1.0;
 /// Error of the prior that OpenCV is given, as a part of the range, a direction at random.
@@ -51,20 +51,6 @@ impl Row {
         Self { name: "narrow-20m", focal_px: 2917.0, range_m: 20.0 },
         Self { name: "narrow-5m", focal_px: 2917.0, range_m: 5.0 },
     ];
-
-    fn camera(&self) -> Camera {
-        Camera {
-            columns: 768,
-            rows: 576,
-            focal_length_mm: self.focal_px * 0.0083,
-            pixel_width_um: 8.3,
-            pixel_height_um: 8.3,
-            principal_x_px: 383.5,
-            principal_y_px: 287.5,
-            radial: [0.0; 3],
-            tangential: [0.0; 2],
-        }
-    }
 }
 
 /// One frame: a pose, a Sun, noise of its own.
@@ -83,7 +69,7 @@ impl Case {
     pub(crate) fn random(row: &Row, seed: u64, number: u64, noise_dn: f64) -> Result<Self, SimError> {
         let case = Seed { seed, case: row.focal_px as u64 * 1000 + row.range_m as u64 };
         let mut stream = case.stream(number, Effect::AttitudeControl, 0);
-        let camera = row.camera();
+        let camera = camera(row.focal_px);
         let target = TargetFile::built_in(TARGET).ok_or(SimError::Parameter {
             field: "target",
             value: TARGET.to_owned(),
@@ -97,22 +83,16 @@ impl Case {
                 Vector3::new(OFFSET * d * symmetric(&mut stream), OFFSET * d * symmetric(&mut stream), d);
             let phi_rad = Vector3::from_fn(|_, _| ANGLE_DEG.to_radians() * symmetric(&mut stream));
             let pose = Pose { position_m, phi_rad };
-            if corners.iter().all(|corner| is_inside(&camera, row.focal_px, &pose, corner)) {
+            if are_inside(&camera, &pose, &corners, MARGIN_PX) {
                 break pose;
             }
         };
-        // Uniform over the cap: uniform in the cosine.
-        let least = libm::cos(SUN_DEG.to_radians());
-        let cosine = least + (1.0 - least) * uniform(&mut stream);
-        let around = 2.0 * std::f64::consts::PI * uniform(&mut stream);
-        let sine = (1.0 - cosine * cosine).sqrt();
-        let sun = Vector3::new(sine * libm::cos(around), sine * libm::sin(around), cosine);
-        let angles = [libm::atan2(sun.x, sun.z).to_degrees(), libm::asin(sun.y).to_degrees()];
+        let sun = random_sun(&mut stream);
         let direction = Vector3::from_fn(|_, _| normal(&mut stream)).normalize();
         let prior = Pose { position_m: pose.position_m + PRIOR * row.range_m * direction, ..pose };
         // The noise of a field is addressed by seed and number of the field, which is 0 in every case: so seeds differ.
         let noise_seed = (seed << 32) ^ (case.case << 16) ^ number;
-        let simulator = simulator(row, &camera, &pose, angles, noise_dn, noise_seed)?;
+        let simulator = simulator(row, &camera, &pose, sun, noise_dn, noise_seed)?;
         Ok(Self { number, camera, pose, prior, simulator })
     }
 
@@ -152,7 +132,7 @@ fn simulator(
     row: &Row,
     camera: &Camera,
     pose: &Pose,
-    [azimuth_deg, elevation_deg]: [f64; 2],
+    sun: SunConfig,
     noise_dn: f64,
     seed: u64,
 ) -> Result<DockingSimulator, SimError> {
@@ -173,17 +153,7 @@ fn simulator(
             camera: camera.clone(),
         }],
         lens: LensConfig { blur_sigma_px: BLUR_PX },
-        lighting: LightingConfig {
-            sun: Some(SunConfig {
-                azimuth_deg,
-                elevation_deg,
-                rate_deg_s: 0.0,
-                rate_axis: [0.0, 1.0, 0.0],
-                irradiance: std::f64::consts::PI,
-            }),
-            fill_radiance: 0.12,
-            ..LightingConfig::default()
-        },
+        lighting: LightingConfig { sun: Some(sun), fill_radiance: 0.12, ..LightingConfig::default() },
         television: TelevisionConfig {
             interlace: Interlace::Off,
             noise: VideoNoiseConfig { sigma_dn8: noise_dn },
@@ -191,22 +161,6 @@ fn simulator(
         },
     };
     DockingSimulator::new(&simulation, Path::new("."))
-}
-
-/// Corners of the marks and ends of the cross.
-fn corners(target: &contract::docking::TargetModel) -> Vec<Vector3<f64>> {
-    let marks = target.marks.iter().flatten().map(|[x, y]| Vector3::new(*x, *y, 0.0));
-    let (l, w, b) = (target.cross.half_length_m, 0.5 * target.cross.width_m, target.cross.height_m);
-    let cross = [(l, w), (l, -w), (-l, w), (-l, -w), (w, l), (-w, l), (w, -l), (-w, -l)];
-    marks.chain(cross.into_iter().map(|(x, y)| Vector3::new(x, y, b))).collect()
-}
-
-fn is_inside(camera: &Camera, focal_px: f64, pose: &Pose, corner: &Vector3<f64>) -> bool {
-    let x = target_from_camera(pose).transpose() * (corner - pose.position_m);
-    let (column, row) =
-        (camera.principal_x_px + focal_px * x.x / x.z, camera.principal_y_px + focal_px * x.y / x.z);
-    let inside = |v: f64, n: usize| (MARGIN_PX - 0.5..=n as f64 - 0.5 - MARGIN_PX).contains(&v);
-    x.z > 0.0 && inside(column, camera.columns) && inside(row, camera.rows)
 }
 
 /// Writes `poses.csv` (truth and prior) and `setup.json` (camera and target) for the script.

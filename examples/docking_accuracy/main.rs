@@ -7,7 +7,11 @@
 //! of tests/python/docking_requirements.txt) `tests/python/docking_pnp.py` measures the same frames with OpenCV.
 
 mod bound;
+#[path = "../docking_random/mod.rs"]
+mod docking_random;
 mod frames;
+#[path = "../docking_random/in_field.rs"]
+mod in_field;
 mod table;
 
 use std::error::Error;

@@ -3,11 +3,9 @@
 use std::error::Error;
 use std::path::Path;
 
-use contract::Camera;
 use contract::docking::{
-    Digitiser, DockingPipelineFactory, DockingSolution, Motion, MotionReport, Pose, PoseEstimate,
+    Digitiser, DockingPipelineFactory, DockingSolution, Motion, MotionReport, PoseEstimate,
 };
-use nalgebra::Vector3;
 use pipeline::docking::{DockingConfig, DockingFactory};
 use sim::SimError;
 use sim::docking::{
@@ -17,8 +15,11 @@ use sim::randomness::{Effect, Seed, Stream, uniform};
 use sim::television::{TelevisionConfig, VideoNoiseConfig};
 use sim::truth::approach::{
     Approach, ApproachConfig, ApproachState, ConstantVelocityConfig, OscillationConfig, SegmentConfig,
-    SegmentedConfig, target_from_camera,
+    SegmentedConfig,
 };
+
+use crate::docking_random::{camera, random_sun};
+use crate::in_field::{are_inside, corners};
 
 /// The target.
 const TARGET: &str = "progress";
@@ -33,8 +34,6 @@ const ANGLE_DEG: f64 = 3.0;
 /// Lateral velocity at most, m/s; angular rates at most, degrees a second.
 const LATERAL_M_S: f64 = 0.03;
 const RATE_DEG_S: f64 = 0.2;
-/// The Sun stands within this angle of the face's normal, degrees.
-const SUN_DEG: f64 = 60.0;
 /// How far the corners of marks and cross stay from the border, px.
 const MARGIN_PX: f64 = 4.0;
 
@@ -51,20 +50,6 @@ impl Lens {
         Self { name: "narrow", focal_px: 2917.0, start_m: (4.0, 30.0) },
         Self { name: "wide", focal_px: 1055.0, start_m: (2.0, 10.0) },
     ];
-
-    fn camera(&self) -> Camera {
-        Camera {
-            columns: 768,
-            rows: 576,
-            focal_length_mm: self.focal_px * 0.0083,
-            pixel_width_um: 8.3,
-            pixel_height_um: 8.3,
-            principal_x_px: 383.5,
-            principal_y_px: 287.5,
-            radial: [0.0; 3],
-            tangential: [0.0; 2],
-        }
-    }
 }
 
 /// How the camera moves.
@@ -148,7 +133,11 @@ pub(crate) fn fly(plan: &Plan, number: u64) -> Result<Flown, Box<dyn Error + Sen
         start_utc: "2004-01-31T13:04:00Z".to_owned(),
         target: TARGET.to_owned(),
         approach,
-        cameras: vec![CameraConfig { name: "TV-1".to_owned(), until_range_m: 0.0, camera: lens.camera() }],
+        cameras: vec![CameraConfig {
+            name: "TV-1".to_owned(),
+            until_range_m: 0.0,
+            camera: camera(lens.focal_px),
+        }],
         lens: LensConfig { blur_sigma_px: BLUR_PX },
         lighting: LightingConfig { sun: Some(sun), fill_radiance: 0.12, ..LightingConfig::default() },
         television: plan.television.clone(),
@@ -184,35 +173,19 @@ fn draw(plan: &Plan, lens: &Lens, number: u64) -> Result<(ApproachConfig, SunCon
         .ok_or(SimError::Parameter { field: "target", value: TARGET.to_owned(), expected: "a built-in one" })?
         .model();
     let corners = corners(&model);
-    let camera = lens.camera();
+    let camera = camera(lens.focal_px);
     let approach = loop {
         let config = match plan.course {
             Course::Steady => steady(plan, lens, &mut stream),
             Course::Swinging => swinging(lens, &mut stream),
         };
         let Ok(approach) = Approach::new(&config, 0.0) else { continue };
-        let is_in_field = |at_s: f64| {
-            let pose = approach.at(at_s).pose;
-            corners.iter().all(|corner| is_inside(&camera, lens.focal_px, &pose, corner))
-        };
+        let is_in_field = |at_s: f64| are_inside(&camera, &approach.at(at_s).pose, &corners, MARGIN_PX);
         if [0.0, 0.5, 1.0].iter().all(|part| is_in_field(part * plan.duration_s())) {
             break config;
         }
     };
-    // Uniform over the cap: uniform in the cosine.
-    let least = libm::cos(SUN_DEG.to_radians());
-    let cosine = least + (1.0 - least) * uniform(&mut stream);
-    let around = 2.0 * std::f64::consts::PI * uniform(&mut stream);
-    let sine = (1.0 - cosine * cosine).sqrt();
-    let sun = Vector3::new(sine * libm::cos(around), sine * libm::sin(around), cosine);
-    let sun = SunConfig {
-        azimuth_deg: libm::atan2(sun.x, sun.z).to_degrees(),
-        elevation_deg: libm::asin(sun.y).to_degrees(),
-        rate_deg_s: 0.0,
-        rate_axis: [0.0, 1.0, 0.0],
-        irradiance: std::f64::consts::PI,
-    };
-    Ok((approach, sun))
+    Ok((approach, random_sun(&mut stream)))
 }
 
 fn within((low, high): (f64, f64), stream: &mut Stream) -> f64 {
@@ -263,20 +236,4 @@ fn swinging(lens: &Lens, stream: &mut Stream) -> ApproachConfig {
         limit_cycle,
         segments: vec![SegmentConfig::Glide { to_d3_m: None, speed_m_s, end_speed_m_s: None }],
     })
-}
-
-/// Corners of the marks and ends of the cross.
-fn corners(target: &contract::docking::TargetModel) -> Vec<Vector3<f64>> {
-    let marks = target.marks.iter().flatten().map(|[x, y]| Vector3::new(*x, *y, 0.0));
-    let (l, w, b) = (target.cross.half_length_m, 0.5 * target.cross.width_m, target.cross.height_m);
-    let cross = [(l, w), (l, -w), (-l, w), (-l, -w), (w, l), (-w, l), (w, -l), (-w, -l)];
-    marks.chain(cross.into_iter().map(|(x, y)| Vector3::new(x, y, b))).collect()
-}
-
-fn is_inside(camera: &Camera, focal_px: f64, pose: &Pose, corner: &Vector3<f64>) -> bool {
-    let x = target_from_camera(pose).transpose() * (corner - pose.position_m);
-    let (column, row) =
-        (camera.principal_x_px + focal_px * x.x / x.z, camera.principal_y_px + focal_px * x.y / x.z);
-    let inside = |v: f64, n: usize| (MARGIN_PX - 0.5..=n as f64 - 0.5 - MARGIN_PX).contains(&v);
-    x.z > 0.0 && inside(column, camera.columns) && inside(row, camera.rows)
 }

@@ -8,6 +8,10 @@
 //! paper), what doubled noise does to σ, and the time between reports.
 
 mod approaches;
+#[path = "../docking_random/mod.rs"]
+mod docking_random;
+#[path = "../docking_random/in_field.rs"]
+mod in_field;
 mod tally;
 
 use std::error::Error;

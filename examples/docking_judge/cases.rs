@@ -6,19 +6,17 @@ use contract::Camera;
 use contract::docking::Pose;
 use nalgebra::Vector3;
 use sim::SimError;
-use sim::docking::{
-    CameraConfig, DockingSimulation, DockingSimulator, LensConfig, LightingConfig, SunConfig,
-};
+use sim::docking::{CameraConfig, DockingSimulation, DockingSimulator, LensConfig, LightingConfig};
 use sim::mitsuba::Crop;
 use sim::randomness::{Effect, Seed, Stream, uniform};
 use sim::television::{Interlace, TelevisionConfig};
 use sim::truth::approach::{ApproachConfig, ConstantVelocityConfig, target_from_camera};
 
+use crate::docking_random::{camera, random_sun};
+
 /// Lateral offset at most, as a part of d3, and angles at most, degrees.
 const OFFSET: f64 = 0.02;
 const ANGLE_DEG: f64 = 2.0;
-/// The Sun stands within this angle of the face's normal, degrees.
-const SUN_DEG: f64 = 60.0;
 /// Half the side of the square about the disk's centre that Mitsuba renders, m: the disk's radius is 0.3 m, and the cross, which
 /// stands off by as much, is seen before it.
 const HALF_SIDE_M: f64 = 0.36;
@@ -61,23 +59,8 @@ impl Case {
             Vector3::new(OFFSET * d * symmetric(&mut stream), OFFSET * d * symmetric(&mut stream), d);
         let phi_rad = Vector3::from_fn(|_, _| ANGLE_DEG.to_radians() * symmetric(&mut stream));
         let pose = Pose { position_m, phi_rad };
-        // Uniform over the cap: uniform in the cosine.
-        let least = libm::cos(SUN_DEG.to_radians());
-        let cosine = least + (1.0 - least) * uniform(&mut stream);
-        let around = 2.0 * std::f64::consts::PI * uniform(&mut stream);
-        let sine = (1.0 - cosine * cosine).sqrt();
-        let sun = Vector3::new(sine * libm::cos(around), sine * libm::sin(around), cosine);
-        let camera = Camera {
-            columns: 768,
-            rows: 576,
-            focal_length_mm: row.focal_px / 100.0,
-            pixel_width_um: 10.0,
-            pixel_height_um: 10.0,
-            principal_x_px: 383.5,
-            principal_y_px: 287.5,
-            radial: [0.0; 3],
-            tangential: [0.0; 2],
-        };
+        let sun = random_sun(&mut stream);
+        let camera = camera(row.focal_px);
         let simulation = DockingSimulation {
             // The field's number is 0 in every case: so seeds differ.
             seed: (seed << 32) ^ (own.case << 16) ^ number,
@@ -92,17 +75,7 @@ impl Case {
             }),
             cameras: vec![CameraConfig { name: "TV".to_owned(), until_range_m: 0.0, camera: camera.clone() }],
             lens: LensConfig { blur_sigma_px: 0.7 },
-            lighting: LightingConfig {
-                sun: Some(SunConfig {
-                    azimuth_deg: libm::atan2(sun.x, sun.z).to_degrees(),
-                    elevation_deg: libm::asin(sun.y).to_degrees(),
-                    rate_deg_s: 0.0,
-                    rate_axis: [0.0, 1.0, 0.0],
-                    irradiance: std::f64::consts::PI,
-                }),
-                fill_radiance: 0.12,
-                ..LightingConfig::default()
-            },
+            lighting: LightingConfig { sun: Some(sun), fill_radiance: 0.12, ..LightingConfig::default() },
             television: TelevisionConfig { interlace: Interlace::Off, ..TelevisionConfig::default() },
         };
         let simulator = DockingSimulator::new(&simulation, Path::new("."))?;

@@ -8,6 +8,8 @@
 //! cache (docs/mitsuba.md) and is not rendered again.
 
 mod cases;
+#[path = "../docking_random/mod.rs"]
+mod docking_random;
 
 use std::error::Error;
 
