@@ -148,9 +148,10 @@ impl PreparedDocking {
             // A wish that no digitiser has leaves it as it is.
             digitiser = outcome.digitiser.filter(|wish| wish.check().is_ok()).unwrap_or(digitiser);
             let answered = answers.add(field.number(), &outcome)?;
-            let truth = truth_as_filed(exposure.truth);
+            // The file gets the truth itself, and the score what comes back from the file.
+            let truth = truth_as_filed(exposure.truth.clone());
             scorer.add(&true_field(&truth, setup), Some(&answered)).map_err(unscorable)?;
-            dataset.add(&field, telemetry, truth)?;
+            dataset.add(&field, telemetry, exposure.truth)?;
             done();
             Ok(())
         })?;
