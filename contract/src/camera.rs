@@ -20,20 +20,20 @@ pub struct Camera {
     pub columns: usize,
     /// Rows of the detector, 1 to 16384.
     pub rows: usize,
-    /// Focal length, mm, positive.
+    /// Focal length, mm, 0.01 to 1e6.
     pub focal_length_mm: f64,
-    /// Width of a pixel (along columns), µm, positive.
+    /// Width of a pixel (along columns), µm, 0.01 to 1e4.
     pub pixel_width_um: f64,
-    /// Height of a pixel (along rows), µm, positive.
+    /// Height of a pixel (along rows), µm, 0.01 to 1e4.
     pub pixel_height_um: f64,
-    /// Principal point along columns, px; the centre of the first pixel is 0.
+    /// Principal point along columns, px, -1e5 to 1e5; the centre of the first pixel is 0.
     pub principal_x_px: f64,
-    /// Principal point along rows, px; the centre of the first pixel is 0.
+    /// Principal point along rows, px, -1e5 to 1e5; the centre of the first pixel is 0.
     pub principal_y_px: f64,
-    /// Radial distortion (k1, k2, k3) in px⁻², px⁻⁴, px⁻⁶.
+    /// Radial distortion (k1, k2, k3) in px⁻², px⁻⁴, px⁻⁶, each -1 to 1.
     #[serde(default)]
     pub radial: [f64; 3],
-    /// Tangential distortion (p1, p2) in px⁻¹.
+    /// Tangential distortion (p1, p2) in px⁻¹, each -1 to 1.
     #[serde(default)]
     pub tangential: [f64; 2],
 }
@@ -50,17 +50,23 @@ impl Camera {
         let side = |v: f64| (1.0..=Self::MAX_SIDE_PX as f64).contains(&v);
         require("camera.columns", self.columns as f64, "1 to 16384", side)?;
         require("camera.rows", self.rows as f64, "1 to 16384", side)?;
-        let positive = |v: f64| v > 0.0;
-        require("camera.focal_length_mm", self.focal_length_mm, "greater than 0", positive)?;
-        require("camera.pixel_width_um", self.pixel_width_um, "greater than 0", positive)?;
-        require("camera.pixel_height_um", self.pixel_height_um, "greater than 0", positive)?;
-        require("camera.principal_x_px", self.principal_x_px, "a finite number", |_| true)?;
-        require("camera.principal_y_px", self.principal_y_px, "a finite number", |_| true)?;
+        require("camera.focal_length_mm", self.focal_length_mm, "0.01 to 1e6", |v| {
+            (0.01..=1e6).contains(&v)
+        })?;
+        // From a hundredth of a micrometre to a centimetre: beyond, the unit is wrong.
+        let pixel = |v: f64| (0.01..=1e4).contains(&v);
+        require("camera.pixel_width_um", self.pixel_width_um, "0.01 to 1e4", pixel)?;
+        require("camera.pixel_height_um", self.pixel_height_um, "0.01 to 1e4", pixel)?;
+        // A detector may be a part of a larger image circle.
+        let place = |v: f64| v.abs() <= 1e5;
+        require("camera.principal_x_px", self.principal_x_px, "-1e5 to 1e5", place)?;
+        require("camera.principal_y_px", self.principal_y_px, "-1e5 to 1e5", place)?;
+        let small = |v: f64| v.abs() <= 1.0;
         for k in self.radial {
-            require("camera.radial", k, "finite numbers", |_| true)?;
+            require("camera.radial", k, "numbers of -1 to 1", small)?;
         }
         for p in self.tangential {
-            require("camera.tangential", p, "finite numbers", |_| true)?;
+            require("camera.tangential", p, "numbers of -1 to 1", small)?;
         }
         Ok(())
     }
@@ -102,5 +108,47 @@ impl Mounting {
             Angle::from_degrees(self.theta_deg),
             Angle::from_degrees(self.psi_deg),
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera() -> Camera {
+        Camera {
+            columns: 768,
+            rows: 576,
+            focal_length_mm: 24.2,
+            pixel_width_um: 8.3,
+            pixel_height_um: 8.3,
+            principal_x_px: 383.5,
+            principal_y_px: 287.5,
+            radial: [1e-8, 0.0, 0.0],
+            tangential: [0.0; 2],
+        }
+    }
+
+    #[test]
+    fn each_number_outside_its_range_is_named() {
+        camera().check().unwrap();
+        let refused = |field: &str, change: fn(&mut Camera)| {
+            let mut wrong = camera();
+            change(&mut wrong);
+            match wrong.check() {
+                Err(ContractError::OutOfRange { field: named, .. }) => assert_eq!(named, field),
+                other => panic!("{field}: {other:?}"),
+            }
+        };
+        refused("camera.columns", |c| c.columns = 0);
+        refused("camera.rows", |c| c.rows = Camera::MAX_SIDE_PX + 1);
+        refused("camera.focal_length_mm", |c| c.focal_length_mm = 1e300);
+        refused("camera.focal_length_mm", |c| c.focal_length_mm = 0.0);
+        refused("camera.pixel_width_um", |c| c.pixel_width_um = 1e-300);
+        refused("camera.pixel_height_um", |c| c.pixel_height_um = f64::NAN);
+        refused("camera.principal_x_px", |c| c.principal_x_px = -1e6);
+        refused("camera.principal_y_px", |c| c.principal_y_px = f64::INFINITY);
+        refused("camera.radial", |c| c.radial[2] = 1e300);
+        refused("camera.tangential", |c| c.tangential[1] = -2.0);
     }
 }

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use crate::docking::{
     Digitiser, DockingOutcome, DockingPipelineFactory, DockingSetup, DockingSolution, Field, FieldTelemetry,
-    Lines, Motion,
+    Lines, Motion, MotionReport,
 };
 use crate::{Frame, Outcome, PipelineFactory, Rotation, Setup, Solution, Telemetry};
 
@@ -182,8 +182,11 @@ fn docking_not_sound(outcome: &DockingOutcome) -> Option<String> {
         }
         DockingSolution::NoSolution(_) => {}
     }
-    let motions = outcome.motion.iter().flat_map(|report| [Some(&report.best), report.paper.as_ref()]);
-    if let Some(motion) = motions.flatten().find(|motion| !is_finite_motion(motion)) {
+    if outcome.motion.as_ref().is_some_and(|report| report.motions().next().is_none()) {
+        return Some("a report of a motion has no motion".to_owned());
+    }
+    let mut motions = outcome.motion.iter().flat_map(MotionReport::motions);
+    if let Some(motion) = motions.find(|motion| !is_finite_motion(motion)) {
         return Some(format!("a motion is not finite: {motion:?}"));
     }
     let wish = outcome.digitiser.as_ref().and_then(|wish| wish.check().err());

@@ -101,7 +101,7 @@ pub(crate) struct Portion {
 impl Portion {
     pub(crate) fn of(&self, estimator: Estimator) -> Option<&Motion> {
         match estimator {
-            Estimator::Exact => Some(&self.report.best),
+            Estimator::Exact => self.report.best.as_ref(),
             Estimator::Paper => self.report.paper.as_ref(),
         }
     }

@@ -54,6 +54,22 @@ impl CsvReader {
         Ok(Self { path: path.to_owned(), layout, positions, reader, record: csv::StringRecord::new() })
     }
 
+    /// All rows, each with its line in the file; `parse` is given the row before too. A table without rows is an error.
+    pub(super) fn read_all<T>(
+        mut self,
+        parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
+    ) -> Result<Vec<(u64, T)>, FileError> {
+        let mut rows: Vec<(u64, T)> = Vec::new();
+        while let Some(row) = self.next_row()? {
+            let parsed = parse(&row, rows.last().map(|(_, row)| row))?;
+            rows.push((row.line, parsed));
+        }
+        if rows.is_empty() {
+            return Err(FileError::value(&self.path, Place::Header, "number of rows", 0, "at least 1"));
+        }
+        Ok(rows)
+    }
+
     /// The next row; `None` at the end.
     pub(super) fn next_row(&mut self) -> Result<Option<CsvRow<'_>>, FileError> {
         let more =

@@ -6,16 +6,15 @@ use std::path::{Component, Path, PathBuf};
 
 use contract::{Camera, Frame, Mounting, Readout, Telemetry};
 use hifitime::Epoch;
-use pipeline::PipelineError;
 use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Place, create_new};
+use super::error::Place;
 use super::frame_file::read_image;
 use super::telemetry::read_with_lines;
+use super::toml_table::{self, Refused, TomlTable, check_bit_depth};
 use super::{FileError, TelemetryRow, parse_utc};
-use crate::toml_file;
 
 /// `camera.toml`: what a pipeline knows before the first frame, except the stars themselves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -52,51 +51,38 @@ impl CameraFile {
     /// Reads and checks the file.
     ///
     /// # Errors
-    /// [`FileError::Format`] with line and column for what is not TOML or has a wrong, unknown or missing field;
-    /// [`FileError::Contract`] or [`FileError::Value`] for a number outside its range.
+    /// [`FileError::Io`]; [`FileError::Toml`] with line and column for what is not TOML, for a wrong, unknown or missing
+    /// field, and for a value outside its range.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        let text = toml_file::read_text(path).map_err(|source| FileError::io(path, "read", source))?;
-        let file: Self = toml_file::parse(path, &text).map_err(FileError::Toml)?;
-        file.check(path)?;
-        Ok(file)
+        toml_table::read(path)
     }
 
     /// Writes the file.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it exists or cannot be written; as [`CameraFile::read`] for what could not be read
-    /// back.
+    /// [`FileError::Io`] when it exists or cannot be written; [`FileError::Value`] for what could not be read back.
     pub fn write(&self, path: &Path) -> Result<(), FileError> {
-        self.check(path)?;
-        let text = toml::to_string(self).map_err(|error| FileError::format(path, "TOML", error))?;
-        let mut file = create_new(path)?;
-        std::io::Write::write_all(&mut file, text.as_bytes())
-            .map_err(|source| FileError::io(path, "write", source))
+        toml_table::write(self, path)
     }
+}
 
-    fn check(&self, path: &Path) -> Result<(), FileError> {
-        self.camera.check().map_err(|source| FileError::contract(path, source))?;
-        self.mounting.check().map_err(|source| FileError::contract(path, source))?;
+impl TomlTable for CameraFile {
+    fn check(&self) -> Result<(), Refused> {
+        self.camera.check().map_err(|error| Refused::by_contract("camera", &error))?;
+        self.mounting.check().map_err(|error| Refused::by_contract("mounting", &error))?;
         if let Some(readout) = &self.readout {
-            readout.check().map_err(|source| FileError::contract(path, source))?;
+            readout.check().map_err(|error| Refused::by_contract("readout", &error))?;
         }
-        let error = |field: &str, value: String, expected: &str| {
-            Err(FileError::value(path, Place::Header, field, value, expected))
-        };
-        if !(1..=16).contains(&self.bit_depth) {
-            return error("bit_depth", self.bit_depth.to_string(), "1 to 16");
-        }
+        check_bit_depth(self.bit_depth)?;
         if !(-2.0..=15.0).contains(&self.magnitude_limit) {
-            return error("magnitude_limit", self.magnitude_limit.to_string(), "-2 to 15");
+            return Err(Refused::new("magnitude_limit", self.magnitude_limit, "-2 to 15"));
         }
-        if let Err(PipelineError::Parameter { field, value, expected }) = self.far_range.check() {
-            return error(&format!("far_range.{field}"), value, expected);
-        }
-        match self.star_epoch_utc.as_deref().map(parse_utc) {
-            Some(Err(expected)) => {
-                error("star_epoch_utc", self.star_epoch_utc.clone().unwrap_or_default(), expected)
-            }
-            _ => Ok(()),
+        self.far_range.check().map_err(|error| Refused::by_pipeline("far_range", &error))?;
+        match &self.star_epoch_utc {
+            Some(text) => parse_utc(text)
+                .map(|_| ())
+                .map_err(|expected| Refused::new("star_epoch_utc", format!("`{text}`"), expected)),
+            None => Ok(()),
         }
     }
 }

@@ -7,7 +7,6 @@ use contract::docking::{Digitiser, FieldTelemetry, Lines};
 use super::FileError;
 use super::csv_table::Presence::{Optional, Required};
 use super::csv_table::{CsvReader, CsvRow, CsvWriter, Layout, cell};
-use super::error::Place;
 
 const LAYOUT: Layout = &[
     ("field", Required),
@@ -76,16 +75,7 @@ impl FieldTelemetryWriter {
 /// A [`FileError`] that names line and column of the first cell that is not as it should be; an empty table is one
 /// too.
 pub(super) fn read_with_lines(path: &Path) -> Result<Vec<(u64, FieldRow)>, FileError> {
-    let mut table = CsvReader::open(path, LAYOUT)?;
-    let mut rows: Vec<(u64, FieldRow)> = Vec::new();
-    while let Some(row) = table.next_row()? {
-        let parsed = parse(&row, rows.last().map(|(_, row)| row))?;
-        rows.push((row.line, parsed));
-    }
-    if rows.is_empty() {
-        return Err(FileError::value(path, Place::Header, "number of rows", 0, "at least 1"));
-    }
-    Ok(rows)
+    CsvReader::open(path, LAYOUT)?.read_all(parse)
 }
 
 /// Reads the table: see [`FieldRow`].
@@ -98,12 +88,7 @@ pub fn read_field_telemetry(path: &Path) -> Result<Vec<FieldRow>, FileError> {
 }
 
 fn parse(row: &CsvRow<'_>, previous: Option<&FieldRow>) -> Result<FieldRow, FileError> {
-    let field: u64 = row.count("field")?;
-    if let Some(previous) = previous.filter(|previous| field <= previous.field) {
-        let expected =
-            format!("more than {}, that of the row before (each field once, ascending)", previous.field);
-        return Err(row.error("field", expected));
-    }
+    let field = row.number_after("field", previous.map(|previous| previous.field))?;
     let time_s = row.number("time_s")?;
     if let Some(previous) = previous.filter(|previous| time_s <= previous.telemetry.time_s) {
         return Err(

@@ -23,6 +23,7 @@ mod raw_image;
 mod stars;
 mod telemetry;
 mod time;
+mod toml_table;
 mod truth;
 mod unit;
 mod video;

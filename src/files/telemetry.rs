@@ -7,7 +7,6 @@ use nalgebra::Vector3;
 
 use super::csv_table::Presence::{Optional, Required};
 use super::csv_table::{CsvReader, CsvRow, CsvWriter, Layout, cell, cells};
-use super::error::Place;
 use super::time::{format_utc, parse_utc};
 use super::{FileError, windows};
 
@@ -92,16 +91,7 @@ pub fn read_telemetry(path: &Path) -> Result<Vec<TelemetryRow>, FileError> {
 
 /// As [`read_telemetry`], each row with its line in the file.
 pub(super) fn read_with_lines(path: &Path) -> Result<Vec<(u64, TelemetryRow)>, FileError> {
-    let mut table = CsvReader::open(path, LAYOUT)?;
-    let mut rows: Vec<(u64, TelemetryRow)> = Vec::new();
-    while let Some(row) = table.next_row()? {
-        let parsed = parse(&row, rows.last().map(|(_, row)| row))?;
-        rows.push((row.line, parsed));
-    }
-    if rows.is_empty() {
-        return Err(FileError::value(path, Place::Header, "number of rows", 0, "at least 1"));
-    }
-    Ok(rows)
+    CsvReader::open(path, LAYOUT)?.read_all(parse)
 }
 
 fn parse(row: &CsvRow<'_>, previous: Option<&TelemetryRow>) -> Result<TelemetryRow, FileError> {

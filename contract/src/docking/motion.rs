@@ -25,11 +25,23 @@ pub struct Motion {
     pub fields: u32,
 }
 
-/// What a pipeline says at the end of a portion.
+/// What a pipeline says at the end of a portion: at least one of the two, or there is no report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionReport {
-    /// By the pipeline's own best estimator.
-    pub best: Motion,
-    /// By the paper's formulas, where the pipeline has them too.
+    /// By the pipeline's own best estimator; `None` where its fields do not determine a motion, or contradict each other.
+    pub best: Option<Motion>,
+    /// By the paper's formulas, where the pipeline has them and they give one.
     pub paper: Option<Motion>,
+}
+
+impl MotionReport {
+    /// The report of these two; `None` when neither gave a motion.
+    pub fn of(best: Option<Motion>, paper: Option<Motion>) -> Option<Self> {
+        (best.is_some() || paper.is_some()).then_some(Self { best, paper })
+    }
+
+    /// Both motions, as far as there are any.
+    pub fn motions(&self) -> impl Iterator<Item = &Motion> {
+        self.best.iter().chain(&self.paper)
+    }
 }

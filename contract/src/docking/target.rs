@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::ContractError;
+use crate::error::require;
+
 /// The stand-off cross: two perpendicular bars along y1 and y2, their front face at y3 = height.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -14,6 +17,8 @@ pub struct StandOffCross {
     pub width_m: f64,
     /// Thickness of a bar, along y3, m.
     pub thickness_m: f64,
+    /// Width of the post that carries the bars, seen from any side, m.
+    pub post_width_m: f64,
 }
 
 /// A circular outline parallel to the disk.
@@ -46,4 +51,112 @@ pub struct TargetModel {
     pub docking_unit: Outline,
     /// The outline of the station's end, what is seen before the target is resolved.
     pub station: Outline,
+}
+
+/// Nothing of a target is larger or farther away than this, m: beyond it the unit is wrong.
+const FARTHEST_M: f64 = 1000.0;
+
+impl TargetModel {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`ContractError::OutOfRange`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), ContractError> {
+        length("target.plate_radius_m", self.plate_radius_m)?;
+        length("target.mark_circle_radius_m", self.mark_circle_radius_m)?;
+        for corner in self.marks.iter().flatten().flatten() {
+            coordinate("target.marks", *corner)?;
+        }
+        self.cross.check()?;
+        let [x, y] = self.docking_unit.centre_m;
+        length("target.docking_unit.radius_m", self.docking_unit.radius_m)?;
+        coordinate("target.docking_unit.centre_m", x)?;
+        coordinate("target.docking_unit.centre_m", y)?;
+        coordinate("target.docking_unit.depth_m", self.docking_unit.depth_m)?;
+        let [x, y] = self.station.centre_m;
+        length("target.station.radius_m", self.station.radius_m)?;
+        coordinate("target.station.centre_m", x)?;
+        coordinate("target.station.centre_m", y)?;
+        coordinate("target.station.depth_m", self.station.depth_m)
+    }
+}
+
+impl StandOffCross {
+    fn check(&self) -> Result<(), ContractError> {
+        length("target.cross.height_m", self.height_m)?;
+        length("target.cross.half_length_m", self.half_length_m)?;
+        let part_of = |whole: f64| move |v: f64| v > 0.0 && v < whole;
+        let width = "greater than 0, less than half_length_m";
+        require("target.cross.width_m", self.width_m, width, part_of(self.half_length_m))?;
+        let thickness = "greater than 0, less than height_m";
+        require("target.cross.thickness_m", self.thickness_m, thickness, part_of(self.height_m))?;
+        require("target.cross.post_width_m", self.post_width_m, "greater than 0, at most width_m", |v| {
+            v > 0.0 && v <= self.width_m
+        })
+    }
+}
+
+fn length(field: &'static str, value: f64) -> Result<(), ContractError> {
+    require(field, value, "greater than 0, at most 1000", |v| v > 0.0 && v <= FARTHEST_M)
+}
+
+fn coordinate(field: &'static str, value: f64) -> Result<(), ContractError> {
+    require(field, value, "-1000 to 1000", |v| v.abs() <= FARTHEST_M)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn target() -> TargetModel {
+        TargetModel {
+            name: "progress".to_owned(),
+            plate_radius_m: 0.3,
+            mark_circle_radius_m: 0.25,
+            marks: vec![[[0.24, -0.01], [0.26, -0.01], [0.26, 0.01], [0.24, 0.01]]],
+            cross: StandOffCross {
+                height_m: 0.3,
+                half_length_m: 0.15,
+                width_m: 0.03,
+                thickness_m: 0.01,
+                post_width_m: 0.02,
+            },
+            docking_unit: Outline { centre_m: [0.0, 0.9], radius_m: 0.6, depth_m: -0.1 },
+            station: Outline { centre_m: [0.0, 0.9], radius_m: 2.0, depth_m: 0.5 },
+        }
+    }
+
+    #[test]
+    fn each_number_outside_its_range_is_named() {
+        target().check().unwrap();
+        let refused = |field: &str, change: fn(&mut TargetModel)| {
+            let mut wrong = target();
+            change(&mut wrong);
+            match wrong.check() {
+                Err(ContractError::OutOfRange { field: named, .. }) => assert_eq!(named, field),
+                other => panic!("{field}: {other:?}"),
+            }
+        };
+        refused("target.plate_radius_m", |t| t.plate_radius_m = 0.0);
+        refused("target.mark_circle_radius_m", |t| t.mark_circle_radius_m = 1e300);
+        refused("target.marks", |t| t.marks[0][2][1] = f64::NAN);
+        refused("target.cross.height_m", |t| t.cross.height_m = -0.3);
+        refused("target.cross.half_length_m", |t| t.cross.half_length_m = f64::INFINITY);
+        refused("target.cross.width_m", |t| t.cross.width_m = 0.15);
+        refused("target.cross.thickness_m", |t| t.cross.thickness_m = 0.0);
+        refused("target.cross.thickness_m", |t| t.cross.thickness_m = 0.3);
+        refused("target.cross.post_width_m", |t| t.cross.post_width_m = 0.031);
+        refused("target.docking_unit.radius_m", |t| t.docking_unit.radius_m = 0.0);
+        refused("target.docking_unit.centre_m", |t| t.docking_unit.centre_m[1] = 1001.0);
+        refused("target.docking_unit.depth_m", |t| t.docking_unit.depth_m = f64::NAN);
+        refused("target.station.radius_m", |t| t.station.radius_m = -2.0);
+        refused("target.station.centre_m", |t| t.station.centre_m[0] = f64::NEG_INFINITY);
+        refused("target.station.depth_m", |t| t.station.depth_m = 1e9);
+    }
+
+    /// A target may have none: whether a pipeline can do without is the pipeline's to say.
+    #[test]
+    fn a_target_without_marks_is_one() {
+        TargetModel { marks: Vec::new(), ..target() }.check().unwrap();
+    }
 }

@@ -20,6 +20,7 @@ use super::region::{Prediction, Rectangle, Sighting, Track};
 use super::self_check;
 use super::view::{Lens, View};
 use crate::PipelineError;
+use crate::error::require;
 
 /// Recognises and measures field after field; remembers where the target was.
 #[derive(Debug)]
@@ -74,7 +75,9 @@ impl Observer {
             .iter()
             .map(|camera| Ok((camera.clone(), Lens::new(camera)?)))
             .collect::<Result<Vec<_>, ContractError>>()?;
-        check_target(&setup.target)?;
+        setup.target.check()?;
+        let marks = setup.target.marks.len() as f64;
+        require("target.marks (their number)", marks, "5 to 1000", |n| (5.0..=1000.0).contains(&n))?;
         Ok(Self {
             shapes: marks::shapes(&setup.target),
             target: setup.target.clone(),
@@ -230,31 +233,3 @@ const MAX_SATURATED_SHARE: f64 = 0.6;
 
 /// No approach is faster than this, m/s.
 const MAX_SPEED_M_S: f64 = 10.0;
-
-fn check_target(target: &TargetModel) -> Result<(), PipelineError> {
-    use crate::error::require;
-    let positive = |v: f64| v > 0.0;
-    require("target.plate_radius_m", target.plate_radius_m, "greater than 0", positive)?;
-    require("target.mark_circle_radius_m", target.mark_circle_radius_m, "greater than 0", positive)?;
-    require("target.cross.height_m", target.cross.height_m, "greater than 0", positive)?;
-    require("target.cross.half_length_m", target.cross.half_length_m, "greater than 0", positive)?;
-    require(
-        "target.cross.width_m",
-        target.cross.width_m,
-        "greater than 0, less than the half length",
-        |v| v > 0.0 && v < target.cross.half_length_m,
-    )?;
-    require("target.marks (their number)", target.marks.len() as f64, "5 to 1000", |v| {
-        (5.0..=1000.0).contains(&v)
-    })?;
-    for corner in target.marks.iter().flatten().flatten() {
-        require("target.marks", *corner, "finite numbers", |_| true)?;
-    }
-    for outline in [&target.docking_unit, &target.station] {
-        require("radius_m of an outline of the target", outline.radius_m, "greater than 0", positive)?;
-        require("depth_m of an outline of the target", outline.depth_m, "a finite number", |_| true)?;
-        require("centre_m of an outline of the target", outline.centre_m[0], "a finite number", |_| true)?;
-        require("centre_m of an outline of the target", outline.centre_m[1], "a finite number", |_| true)?;
-    }
-    Ok(())
-}

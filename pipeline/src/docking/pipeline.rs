@@ -111,8 +111,8 @@ impl Docking {
         let ended = std::mem::take(&mut self.portion);
         self.portion.last_time_s = ended.last_time_s;
         let paper = self.paper.end(&ended.paper);
-        let best = self.exact.end(&ended.best)?;
-        Some(MotionReport { best, paper })
+        let best = self.exact.end(&ended.best);
+        MotionReport::of(best, paper)
     }
 }
 

@@ -46,7 +46,13 @@ pub(crate) fn target() -> TargetModel {
         plate_radius_m: 0.30,
         mark_circle_radius_m: 0.25,
         marks,
-        cross: StandOffCross { height_m: 0.30, half_length_m: 0.15, width_m: 0.030, thickness_m: 0.010 },
+        cross: StandOffCross {
+            height_m: 0.30,
+            half_length_m: 0.15,
+            width_m: 0.030,
+            thickness_m: 0.010,
+            post_width_m: 0.020,
+        },
         docking_unit: Outline { centre_m: [0.0, -1.25], radius_m: 0.66, depth_m: 0.10 },
         station: Outline { centre_m: [0.0, -1.25], radius_m: 2.05, depth_m: 0.45 },
     }

@@ -140,13 +140,15 @@ impl MotionWriter {
         CsvWriter::create(path, COLUMNS).map(Self)
     }
 
-    /// Writes the report at a field: a row for each estimator.
+    /// Writes the report at a field: a row for each estimator that gave a motion.
     ///
     /// # Errors
     /// [`FileError::Io`].
     pub fn write(&mut self, field: u64, report: &MotionReport) -> Result<(), FileError> {
-        self.row(field, BEST, &report.best)?;
-        report.paper.as_ref().map_or(Ok(()), |motion| self.row(field, PAPER, motion))
+        for (estimator, motion) in [(BEST, &report.best), (PAPER, &report.paper)] {
+            motion.as_ref().map_or(Ok(()), |motion| self.row(field, estimator, motion))?;
+        }
+        Ok(())
     }
 
     fn row(&mut self, field: u64, estimator: &str, motion: &Motion) -> Result<(), FileError> {
@@ -200,7 +202,7 @@ pub fn report_as_filed(report: &MotionReport) -> MotionReport {
         cross_covariance: motion.cross_covariance.map(as_filed),
         ..*motion
     };
-    MotionReport { best: motion(&report.best), paper: report.paper.as_ref().map(motion) }
+    MotionReport { best: report.best.as_ref().map(motion), paper: report.paper.as_ref().map(motion) }
 }
 
 /// Reads the table: the report at each field that has one, fields ascending.
@@ -215,21 +217,23 @@ pub fn read_motion(path: &Path) -> Result<Vec<(u64, MotionReport)>, FileError> {
     let mut table = CsvReader::open(path, COLUMNS)?;
     let mut reports: Vec<(u64, MotionReport)> = Vec::new();
     while let Some(row) = table.next_row()? {
-        let motion = parse(&row)?;
-        match row.text("estimator").trim() {
-            "" | BEST => {
-                let field = row.number_after("field", reports.last().map(|(field, _)| *field))?;
-                reports.push((field, MotionReport { best: motion, paper: None }));
-            }
+        let motion = Some(parse(&row)?);
+        let report = match row.text("estimator").trim() {
+            "" | BEST => MotionReport { best: motion, paper: None },
             PAPER => {
                 let field: u64 = row.count("field")?;
-                match reports.last_mut().filter(|(last, report)| *last == field && report.paper.is_none()) {
-                    Some((_, report)) => report.paper = Some(motion),
-                    None => return Err(row.error("field", "that of the row of `best` just before it")),
+                if let Some((_, report)) = reports.last_mut().filter(|(last, _)| *last == field) {
+                    if report.paper.is_some() {
+                        return Err(row.error("estimator", "each estimator once a field"));
+                    }
+                    report.paper = motion;
+                    continue;
                 }
+                MotionReport { best: None, paper: motion }
             }
             _ => return Err(row.error("estimator", "`best`, or `paper` after it")),
-        }
+        };
+        reports.push((row.number_after("field", reports.last().map(|(field, _)| *field))?, report));
     }
     Ok(reports)
 }
@@ -337,8 +341,10 @@ mod tests {
     #[test]
     fn what_is_written_comes_back_with_both_estimators() {
         let reports = [
-            (9, MotionReport { best: motion(5.0), paper: Some(motion(5.1)) }),
-            (19, MotionReport { best: motion(4.9), paper: None }),
+            (9, MotionReport { best: Some(motion(5.0)), paper: Some(motion(5.1)) }),
+            (19, MotionReport { best: Some(motion(4.9)), paper: None }),
+            (29, MotionReport { best: None, paper: Some(motion(4.8)) }),
+            (39, MotionReport { best: None, paper: Some(motion(4.7)) }),
         ];
         let directory = tempdir().unwrap();
         let path = directory.path().join("motion.csv");
@@ -346,7 +352,7 @@ mod tests {
         reports.iter().for_each(|(field, report)| writer.write(*field, report).unwrap());
         writer.finish().unwrap();
         let read = read_motion(&path).unwrap();
-        assert_eq!(read.iter().map(|(field, _)| *field).collect::<Vec<_>>(), [9, 19]);
+        assert_eq!(read.iter().map(|(field, _)| *field).collect::<Vec<_>>(), [9, 19, 29, 39]);
         assert!(read[1].1.paper.is_none());
         for ((_, read), (_, written)) in read.iter().zip(&reports) {
             assert_eq!(*read, report_as_filed(written));
@@ -370,7 +376,7 @@ mod tests {
             SIGMA.join(",")
         );
         let reports = read(&text).unwrap();
-        let best = &reports[0].1.best;
+        let best = reports[0].1.best.as_ref().unwrap();
         let shown = Shown::of(&best.pose, &best.velocity_m_s);
         let met = [shown.rho_m, shown.u_m_s, shown.alpha_rad.to_degrees(), shown.beta_rad.to_degrees()];
         for (met, meant) in met.iter().zip([5.0, -0.1, 3.0, -4.0]) {
@@ -391,7 +397,6 @@ mod tests {
             ("9,x,5,-0.1,3,-4,0.1,0.2,0.3,best,", "time_s"),
             ("9,0.2,5,,3,-4,0.1,0.2,0.3,best,", "u_m_s"),
             ("9,0.2,5,-0.1,3,-4,0.1,0.2,0.3,worst,", "estimator"),
-            ("9,0.2,5,-0.1,3,-4,0.1,0.2,0.3,paper,", "field"),
             ("9,0.2,5,-0.1,3,-4,0.1,0.2,0.3,best,1", "d2_m"),
         ] {
             let message = read(&format!("{header}\n{row}\n")).unwrap_err().to_string();
@@ -399,6 +404,15 @@ mod tests {
                 message.contains("line 2") && message.contains(&format!("`{column}`")),
                 "{row}: {message}"
             );
+        }
+        let row = |field: u64, estimator: &str| format!("{field},0.2,5,-0.1,3,-4,0.1,0.2,0.3,{estimator},");
+        for (rows, column) in [
+            ([row(9, "paper"), row(9, "paper")], "estimator"),
+            ([row(9, "paper"), row(9, "best")], "field"),
+            ([row(9, "paper"), row(8, "paper")], "field"),
+        ] {
+            let message = read(&format!("{header}\n{}\n", rows.join("\n"))).unwrap_err().to_string();
+            assert!(message.contains("line 3") && message.contains(&format!("`{column}`")), "{message}");
         }
         let missing = read("field,time_s\n").unwrap_err().to_string();
         assert!(missing.contains("column `rho_m` is missing"), "{missing}");

@@ -4,13 +4,11 @@ use std::path::Path;
 
 use contract::Camera;
 use contract::docking::{DockingSetup, TargetModel};
-use pipeline::PipelineError;
 use pipeline::docking::DockingConfig;
 use serde::{Deserialize, Serialize};
 
 use super::super::FileError;
-use super::super::error::{Place, create_new};
-use crate::toml_file;
+use super::super::toml_table::{self, Refused, TomlTable, check_bit_depth};
 
 /// The cameras, the target's dimensions, and parameters of the built-in pipeline.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -41,75 +39,92 @@ impl SetupFile {
     /// Reads and checks the file.
     ///
     /// # Errors
-    /// [`FileError::Toml`] with line and column for what is not TOML or has a wrong, unknown or missing field;
-    /// [`FileError::Contract`] or [`FileError::Value`] for a number outside its range.
+    /// [`FileError::Io`]; [`FileError::Toml`] with line and column for what is not TOML, for a wrong, unknown or missing
+    /// field, and for a value outside its range.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        let text = toml_file::read_text(path).map_err(|source| FileError::io(path, "read", source))?;
-        let file: Self = toml_file::parse(path, &text).map_err(FileError::Toml)?;
-        file.check(path)?;
-        Ok(file)
+        toml_table::read(path)
     }
 
     /// Writes the file.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it exists or cannot be written; as [`SetupFile::read`] for what could not be read back.
+    /// [`FileError::Io`] when it exists or cannot be written; [`FileError::Value`] for what could not be read back.
     pub fn write(&self, path: &Path) -> Result<(), FileError> {
-        self.check(path)?;
-        let text = toml::to_string(self).map_err(|error| FileError::format(path, "TOML", error))?;
-        let mut file = create_new(path)?;
-        std::io::Write::write_all(&mut file, text.as_bytes())
-            .map_err(|source| FileError::io(path, "write", source))
+        toml_table::write(self, path)
     }
 
     /// What a pipeline is told.
     pub fn setup(&self) -> DockingSetup {
         DockingSetup { cameras: self.cameras.clone(), bit_depth: self.bit_depth, target: self.target.clone() }
     }
+}
 
-    fn check(&self, path: &Path) -> Result<(), FileError> {
-        let error = |field: &str, value: String, expected: &str| {
-            Err(FileError::value(path, Place::Header, field, value, expected))
-        };
-        if !(1..=16).contains(&self.bit_depth) {
-            return error("bit_depth", self.bit_depth.to_string(), "1 to 16");
-        }
+impl TomlTable for SetupFile {
+    fn check(&self) -> Result<(), Refused> {
+        check_bit_depth(self.bit_depth)?;
         let Some(first) = self.cameras.first() else {
-            return error("cameras", "an empty list".to_owned(), "at least one camera");
+            return Err(Refused::new("cameras", "an empty list", "at least one camera"));
         };
-        for camera in &self.cameras {
-            camera.check().map_err(|source| FileError::contract(path, source))?;
+        for (index, camera) in self.cameras.iter().enumerate() {
+            let table = format!("cameras[{index}]");
+            camera.check().map_err(|error| Refused::by_contract(&table, &error))?;
             if (camera.columns, camera.rows) != (first.columns, first.rows) {
                 let size = format!("{} × {}", camera.columns, camera.rows);
-                return error("cameras", size, "columns and rows of the first camera");
+                let expected =
+                    format!("{} × {}, columns and rows of the first camera", first.columns, first.rows);
+                return Err(Refused::new(table, size, expected));
             }
         }
-        self.check_target().or_else(|(field, value)| error(field, value, "finite, greater than 0"))?;
-        match self.docking.check() {
-            Err(PipelineError::Parameter { field, value, expected }) => {
-                error(&format!("docking.{field}"), value, expected)
-            }
-            Err(PipelineError::Contract(source)) => Err(FileError::contract(path, source)),
-            Ok(()) => Ok(()),
-        }
+        self.target.check().map_err(|error| Refused::by_contract("target", &error))?;
+        self.docking.check().map_err(|error| Refused::by_pipeline("docking", &error))
     }
+}
 
-    /// The lengths that formulas divide by.
-    fn check_target(&self) -> Result<(), (&'static str, String)> {
-        let target = &self.target;
-        for (field, value) in [
-            ("target.plate_radius_m", target.plate_radius_m),
-            ("target.mark_circle_radius_m", target.mark_circle_radius_m),
-            ("target.cross.height_m", target.cross.height_m),
-            ("target.cross.half_length_m", target.cross.half_length_m),
-            ("target.cross.width_m", target.cross.width_m),
-            ("target.docking_unit.radius_m", target.docking_unit.radius_m),
-            ("target.station.radius_m", target.station.radius_m),
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use tempfile::tempdir;
+
+    use super::*;
+    use crate::scenario::{DOCKING, DockingScenario};
+
+    #[test]
+    fn each_value_outside_its_range_is_named_with_its_line() {
+        let directory = tempdir().unwrap();
+        let scenario: DockingScenario = toml::from_str(DOCKING).unwrap();
+        let simulator = sim::docking::DockingSimulator::new(&scenario.simulation(), Path::new(".")).unwrap();
+        let good = SetupFile::new(&simulator.setup(), &scenario.docking);
+        let good_path = directory.path().join("good.toml");
+        good.write(&good_path).unwrap();
+        assert_eq!(SetupFile::read(&good_path).unwrap(), good);
+        let text = fs::read_to_string(&good_path).unwrap();
+        for (key, table, number, path) in [
+            ("bit_depth", "", "17", "bit_depth"),
+            ("focal_length_mm", "[[cameras]]", "1e300", "cameras[0].focal_length_mm"),
+            ("thickness_m", "[target.cross]", "-1.0", "target.cross.thickness_m"),
+            ("post_width_m", "[target.cross]", "0.5", "target.cross.post_width_m"),
+            ("depth_m", "[target.station]", "nan", "target.station.depth_m"),
+            (
+                "forgetting_attitude",
+                "[docking.paper_portions]",
+                "2.0",
+                "docking.paper_portions.forgetting_attitude",
+            ),
+            ("field_gate", "[docking.portions]", "0.0", "docking.portions.field_gate"),
         ] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err((field, value.to_string()));
-            }
+            let start = text.find(table).unwrap();
+            let start = start + text[start..].find(&format!("{key} = ")).unwrap();
+            let end = start + text[start..].find('\n').unwrap();
+            let wrong = directory.path().join("wrong.toml");
+            fs::write(&wrong, format!("{}{key} = {number}{}", &text[..start], &text[end..])).unwrap();
+            let message = SetupFile::read(&wrong).unwrap_err().to_string();
+            let line = 1 + text[..start].matches('\n').count();
+            assert!(message.contains(&format!("wrong.toml:{line}:")), "{message}");
+            assert!(
+                message.contains(&format!("{path}: is ")) && message.contains(", expected "),
+                "{message}"
+            );
         }
-        Ok(())
     }
 }

@@ -37,7 +37,13 @@ fn setup(columns: usize, rows: usize) -> DockingSetup {
         plate_radius_m: 0.3,
         mark_circle_radius_m: 0.25,
         marks: Vec::new(),
-        cross: StandOffCross { height_m: 0.3, half_length_m: 0.15, width_m: 0.03, thickness_m: 0.01 },
+        cross: StandOffCross {
+            height_m: 0.3,
+            half_length_m: 0.15,
+            width_m: 0.03,
+            thickness_m: 0.01,
+            post_width_m: 0.020,
+        },
         docking_unit: outline,
         station: outline,
     };

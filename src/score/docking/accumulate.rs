@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contract::docking::{DockingOutcome, DockingSetup, MotionReport};
+use contract::docking::{DockingOutcome, DockingSetup, Motion, MotionReport};
 use indexmap::IndexMap;
 
 use super::bins::{bin, group_name, lens_names};
@@ -71,7 +71,9 @@ pub struct DockingScorer {
 /// Where the running portion began and the last one ended.
 #[derive(Debug, Default)]
 struct PortionClock {
-    reports: usize,
+    /// Whether the best estimator gave a motion, and whether the paper's did.
+    has_best: bool,
+    has_paper: bool,
     /// Fields since the portion's first measured one, that one included; 0: there is none yet.
     fields: u64,
     /// When a field was first measured, s.
@@ -169,19 +171,19 @@ impl DockingScorer {
             clock.begin_s.get_or_insert(truth.time_s);
         }
         let report = report?;
+        let sights = &self.sights;
+        let judge = |motion: Option<&Motion>, has_one: &mut bool| {
+            let is_led = *has_one;
+            *has_one |= motion.is_some();
+            motion.map(|motion| MotionVerdict::of(sights, truth, motion, is_led))
+        };
         let verdict = PortionVerdict {
-            number: clock.reports,
-            best: MotionVerdict::of(&self.sights, truth, &report.best),
-            paper: report.paper.as_ref().map(|motion| MotionVerdict::of(&self.sights, truth, motion)),
+            best: judge(report.best.as_ref(), &mut clock.has_best),
+            paper: judge(report.paper.as_ref(), &mut clock.has_paper),
             fields: clock.fields,
         };
-        let begin_s = clock.begin_s;
-        *clock = PortionClock {
-            reports: clock.reports + 1,
-            fields: 0,
-            begin_s,
-            last_report_s: Some(truth.time_s),
-        };
+        clock.fields = 0;
+        clock.last_report_s = Some(truth.time_s);
         Some(verdict)
     }
 

@@ -55,7 +55,7 @@ pub(super) fn figures(fields: &Fields<'_>) -> Figures {
         .iter()
         .map(|fields| fields.iter().filter_map(|field| field.portion.as_ref()).collect())
         .collect();
-    motion(&portions, names::MOTION, &|portion| Some(portion.best), &mut figures);
+    motion(&portions, names::MOTION, &|portion| portion.best, &mut figures);
     motion(&portions, &format!("{}{}", names::PAPER, names::MOTION), &|portion| portion.paper, &mut figures);
     let of_portions = |value: &dyn Fn(&PortionVerdict) -> Option<f64>| select(&portions, |p| value(p));
     let latency = Figure::mean(&of_portions(&|portion| Some(portion.fields as f64)));
@@ -144,7 +144,7 @@ fn range_only(fields: &Fields<'_>, figures: &mut Figures) {
     figures.insert("range_only_within_3_sigma".to_owned(), Figure::rate(&within));
 }
 
-/// What is said at the end of portions. Consistency is counted from the second portion of a sequence on: the first has no
+/// What is said at the end of portions. Consistency is counted from an estimator's second motion on: the first has no
 /// portion before it to lean on.
 fn motion(
     portions: &Portions<'_>,
@@ -161,7 +161,7 @@ fn motion(
         let errors = select(portions, |portion| right(portion).map(|motion| in_files(motion.errors[index])));
         add(name, Figure::rms(&errors));
     }
-    let led = |portion: &PortionVerdict| right(portion).filter(|_| portion.number > 0);
+    let led = |portion: &PortionVerdict| right(portion).filter(|motion| motion.is_led);
     let pooled: Vec<Vec<bool>> = portions
         .iter()
         .map(|portions| {

@@ -16,6 +16,8 @@ const MAX_AGE_S: f64 = 1.0;
 /// One estimator's motion at the end of a portion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MotionVerdict {
+    /// Whether its estimator gave a motion before: the first of a sequence has none to lean on.
+    pub(super) is_led: bool,
     /// Whether its pose is grossly wrong, as that of a field may be.
     pub(super) is_wrong: bool,
     /// Measured minus true: ρ (m), u (m/s), α, β, φ1, φ2, φ3 (rad).
@@ -27,7 +29,7 @@ pub(super) struct MotionVerdict {
 }
 
 impl MotionVerdict {
-    pub(super) fn of(sights: &Sights, truth: &TrueField, motion: &Motion) -> Self {
+    pub(super) fn of(sights: &Sights, truth: &TrueField, motion: &Motion, is_led: bool) -> Self {
         // A portion's last fields may not be measured: its motion is then of an earlier moment than the field that reports
         // it. A few fields back the true rates carry the truth there to micrometres.
         let since_s = motion.time_s - truth.time_s;
@@ -45,6 +47,7 @@ impl MotionVerdict {
         let both =
             |a: nalgebra::Vector3<f64>, b: nalgebra::Vector3<f64>| Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z);
         Self {
+            is_led,
             is_wrong: since_s.abs() > MAX_AGE_S
                 || gross(sights, truth, &PoseErrors::new(&motion.pose, &truth.pose)).is_some(),
             errors: errors.into(),
@@ -71,11 +74,9 @@ fn pose_covariance(motion: &Motion) -> Matrix6<f64> {
 /// The report at the end of a portion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct PortionVerdict {
-    /// Its number in the sequence, from 0.
-    pub(super) number: usize,
-    /// By the pipeline's own best estimator.
-    pub(super) best: MotionVerdict,
-    /// By the paper's formulas, where they are told.
+    /// By the pipeline's own best estimator, where it gave one.
+    pub(super) best: Option<MotionVerdict>,
+    /// By the paper's formulas, where they gave one.
     pub(super) paper: Option<MotionVerdict>,
     /// Fields from the portion's first measured one to the report, both counted.
     pub(super) fields: u64,
@@ -104,9 +105,9 @@ mod tests {
             cross_covariance: Matrix3::zeros(),
             fields: 10,
         };
-        let verdict = MotionVerdict::of(&sights, &truth, &motion(4.9, 10.02));
+        let verdict = MotionVerdict::of(&sights, &truth, &motion(4.9, 10.02), false);
         assert!(!verdict.is_wrong && verdict.errors.iter().all(|error| error.abs() < 1e-12), "{verdict:?}");
-        assert!(MotionVerdict::of(&sights, &truth, &motion(3.9, 10.22)).is_wrong, "too old");
+        assert!(MotionVerdict::of(&sights, &truth, &motion(3.9, 10.22), false).is_wrong, "too old");
     }
 
     #[test]
@@ -126,7 +127,7 @@ mod tests {
             cross_covariance: Matrix3::zeros(),
             fields: 10,
         };
-        let verdict = MotionVerdict::of(&sights, &truth, &motion);
+        let verdict = MotionVerdict::of(&sights, &truth, &motion, false);
         assert!(!verdict.is_wrong);
         let expected = [0.02, -0.01, 0.0, 0.0, 0.001, 0.0, -0.002];
         for (error, expected) in verdict.errors.iter().zip(expected) {

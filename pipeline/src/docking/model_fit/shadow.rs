@@ -85,15 +85,12 @@ fn outline(target: &TargetModel, tangents: Vector2<f64>) -> [[[f64; 2]; 4]; 3] {
     };
     let (half, length) = (0.5 * cross.width_m, cross.half_length_m);
     let towards = tangents.try_normalize(1e-9).unwrap_or(Vector2::x());
-    let side = Vector2::new(-towards.y, towards.x) * (half * POST_OF_BAR);
+    let side = Vector2::new(-towards.y, towards.x) * (0.5 * cross.post_width_m);
     let foot = Vector2::zeros();
     let head = centre - towards * 1e-6;
     let post = [foot - side, foot + side, head + side, head - side].map(|p| [p.x, p.y]);
     [bar(half, length), bar(length, half), post]
 }
-
-/// Width of the post over that of a bar: not among the target's dimensions, assumed.
-const POST_OF_BAR: f64 = 2.0 / 3.0;
 
 impl ShadowFinder {
     /// The shadow on the plate, if one is seen. `is_clear` says which points (image and plate) show the bare plate.

@@ -45,10 +45,10 @@ impl ExactPortionConfig {
     /// # Errors
     /// [`PipelineError::Parameter`] for the first one outside its range.
     pub fn check(&self) -> Result<(), PipelineError> {
-        require("docking.portions.forgetting", self.forgetting, "0 to 1", |q| (0.0..=1.0).contains(&q))?;
-        require("docking.portions.field_gate", self.field_gate, "greater than 0", |gate| gate > 0.0)?;
-        require("docking.portions.covariance_trust", self.covariance_trust, "greater than 0", |n| n > 0.0)?;
-        require("docking.portions.prior_gate", self.prior_gate, "greater than 0", |gate| gate > 0.0)
+        require("portions.forgetting", self.forgetting, "0 to 1", |q| (0.0..=1.0).contains(&q))?;
+        require("portions.field_gate", self.field_gate, "greater than 0", |gate| gate > 0.0)?;
+        require("portions.covariance_trust", self.covariance_trust, "greater than 0", |n| n > 0.0)?;
+        require("portions.prior_gate", self.prior_gate, "greater than 0", |gate| gate > 0.0)
     }
 }
 

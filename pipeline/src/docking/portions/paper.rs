@@ -35,11 +35,11 @@ impl PaperPortionConfig {
     /// [`PipelineError::Parameter`] for the first one outside its range.
     pub fn check(&self) -> Result<(), PipelineError> {
         for weight in self.weights {
-            require("docking.paper_portions.weights", weight, "greater than 0", |w| w > 0.0)?;
+            require("paper_portions.weights", weight, "greater than 0", |w| w > 0.0)?;
         }
         let fraction = |q: f64| (0.0..=1.0).contains(&q);
-        require("docking.paper_portions.forgetting_position", self.forgetting_position, "0 to 1", fraction)?;
-        require("docking.paper_portions.forgetting_attitude", self.forgetting_attitude, "0 to 1", fraction)
+        require("paper_portions.forgetting_position", self.forgetting_position, "0 to 1", fraction)?;
+        require("paper_portions.forgetting_attitude", self.forgetting_attitude, "0 to 1", fraction)
     }
 }
 

@@ -22,7 +22,7 @@ pub struct CrossTable {
     pub source: String,
     /// b: height of the front face over the disk's plane, m, more than the thickness, at most 10.
     pub height_m: f64,
-    /// From the centre to the end of a bar, m, more than half the width, at most 10.
+    /// From the centre to the end of a bar, m, more than the width, at most 10.
     pub half_length_m: f64,
     /// Width of a bar, m, positive.
     pub width_m: f64,
@@ -45,8 +45,8 @@ impl CrossTable {
         require("cross.height_m", self.height_m, "more than thickness_m, at most 10", |b| {
             b > self.thickness_m && b <= 10.0
         })?;
-        require("cross.half_length_m", self.half_length_m, "more than half of width_m, at most 10", |l| {
-            l > self.width_m / 2.0 && l <= 10.0
+        require("cross.half_length_m", self.half_length_m, "more than width_m, at most 10", |l| {
+            l > self.width_m && l <= 10.0
         })?;
         require("cross.post_radius_m", self.post_radius_m, "greater than 0, at most half of width_m", |r| {
             r > 0.0 && r <= self.width_m / 2.0
@@ -84,6 +84,7 @@ impl CrossTable {
             half_length_m: self.half_length_m,
             width_m: self.width_m,
             thickness_m: self.thickness_m,
+            post_width_m: 2.0 * self.post_radius_m,
         }
     }
 

@@ -146,7 +146,7 @@ fn report(time_s: f64, range_m: f64) -> MotionReport {
         cross_covariance: Matrix3::zeros(),
         fields: 10,
     };
-    MotionReport { best: best.clone(), paper: Some(best) }
+    MotionReport { best: Some(best.clone()), paper: Some(best) }
 }
 
 /// Fields 0.1 s apart, all measured, a report at 0.9 s and then none: from 1.1 s on it is asked for, until 1.9 s it is a
@@ -215,6 +215,30 @@ fn a_field_met_twice_is_refused() {
     let mut scorer = DockingScorer::new(context);
     scorer.add(&field(3, 10.0), None).unwrap();
     assert_eq!(scorer.add(&field(3, 10.0), None), Err(ScoreError::Order { previous: 3, frame: 3 }));
+}
+
+/// Of three reports the first is the paper's alone: it is counted as the paper's, and the best estimator's first motion is
+/// the second report's.
+#[test]
+fn a_report_of_the_papers_motion_alone_counts_as_the_papers() {
+    let fields: Vec<_> = (0..30)
+        .map(|i| {
+            let truth = TrueField { time_s: 0.1 * i as f64, ..field(i, 10.0) };
+            let mut outcome = at([0.0, 0.0, 10.0], [0.0; 3]);
+            if let Some(outcome) = outcome.as_mut().filter(|_| i % 10 == 9) {
+                let both = report(truth.time_s, 10.0);
+                let best = both.best.filter(|_| i > 10);
+                outcome.motion = Some(MotionReport { best, ..both });
+            }
+            (truth, outcome)
+        })
+        .collect();
+    let score = score(&fields);
+    let of = |name: &str| score.figures[name].of;
+    assert_eq!(score.portions, 3);
+    assert_eq!((of("motion_wrong_rate"), of("paper_motion_wrong_rate")), (2, 3));
+    // From the second of each on.
+    assert_eq!((of("motion_range_within_3_sigma"), of("paper_motion_range_within_3_sigma")), (1, 2));
 }
 
 /// A saboteur among pipelines: the same errors, and a covariance that claims ten times as little.
