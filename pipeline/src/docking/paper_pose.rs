@@ -1,10 +1,7 @@
 //! The pose of a field by the paper's formulas (3.1): small angles, the image of the circle taken for a circle.
 
-use contract::PixelPoint;
 use contract::docking::{NoPose, Pose, TargetModel};
 use nalgebra::Vector3;
-
-use crate::CameraModel;
 
 /// What 3.1 works on: cross and circle in the image without distortion, from the principal point.
 ///
@@ -40,45 +37,7 @@ impl PaperTarget {
     }
 }
 
-/// Points of the circle at which its distortion is undone; the mean over these is free of the terms up to the third
-/// harmonic.
-const RADIUS_POINTS: [(f64, f64); 8] = {
-    const H: f64 = std::f64::consts::FRAC_1_SQRT_2;
-    [(1.0, 0.0), (H, H), (0.0, 1.0), (-H, H), (-1.0, 0.0), (-H, -H), (0.0, -1.0), (H, -H)]
-};
-
 impl PaperMeasurement {
-    /// From what was measured in the image: `None` where the distortion has no inverse.
-    pub fn from_pixels(
-        camera: &CameraModel,
-        cross: PixelPoint,
-        slope: f64,
-        circle: PixelPoint,
-        radius_px: f64,
-    ) -> Option<Self> {
-        let (focal_px, focal_y_px) = camera.focal_px();
-        let square = |point: PixelPoint| camera.to_ideal(point).map(|(u, v)| [u, v * focal_px / focal_y_px]);
-        let around = RADIUS_POINTS
-            .iter()
-            .map(|(c, s)| square(PixelPoint::new(circle.x + radius_px * c, circle.y + radius_px * s)))
-            .collect::<Option<Vec<_>>>()?;
-        // A circle's centre is not where the distortion puts the image of that point: both come from the rim.
-        let n = around.len() as f64;
-        let centre = [0, 1].map(|i| around.iter().map(|p| p[i]).sum::<f64>() / n);
-        let radius = around.iter().map(|p| libm::hypot(p[0] - centre[0], p[1] - centre[1])).sum::<f64>() / n;
-        // The bar is half as long as the circle is wide; its ends are as near as its slope needs.
-        let half = 0.5 * radius_px / libm::hypot(1.0, slope);
-        let left = square(PixelPoint::new(cross.x - half, cross.y - half * slope))?;
-        let right = square(PixelPoint::new(cross.x + half, cross.y + half * slope))?;
-        Some(Self {
-            focal_px,
-            cross: square(cross)?,
-            slope: (right[1] - left[1]) / (right[0] - left[0]),
-            circle: centre,
-            radius_px: radius,
-        })
-    }
-
     /// Range, then position from the parallax of the cross, then attitude (3.1).
     ///
     /// d3 = f r/R; d1 = −(Xc − Xo) d3 (d3 − b)/(f b), d2 = (Yc − Yo) d3 (d3 − b)/(f b); φ1 = Yo/f − d2/d3,
@@ -134,14 +93,16 @@ pub fn range_from_outline(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::CameraModel;
     use crate::docking::geometry;
-    use contract::Camera;
+    use crate::docking::view::Lens;
+    use contract::{Camera, PixelPoint};
 
     const TARGET: PaperTarget = PaperTarget { radius_m: 0.25, height_m: 0.30 };
     const NARROW_PX: f64 = 2917.0;
 
-    fn camera(radial: [f64; 3], pixel_height_um: f64) -> CameraModel {
-        CameraModel::new(&Camera {
+    fn camera(radial: [f64; 3], pixel_height_um: f64) -> Camera {
+        Camera {
             columns: 768,
             rows: 576,
             focal_length_mm: NARROW_PX * 0.01,
@@ -151,20 +112,27 @@ mod tests {
             principal_y_px: 287.5,
             radial,
             tangential: [0.0; 2],
-        })
-        .unwrap()
+        }
     }
 
     fn pose(d: [f64; 3], phi_deg: [f64; 3]) -> Pose {
         Pose { position_m: d.into(), phi_rad: Vector3::from(phi_deg) * (std::f64::consts::PI / 180.0) }
     }
 
+    /// Exact image of a point of the target, its distortion undone, from the principal point.
+    fn exact(camera: &Camera, pose: &Pose, point_m: [f64; 3]) -> PixelPoint {
+        let lens = Lens::new(camera).unwrap();
+        let seen = geometry::project(lens.model(), pose, &point_m.into()).unwrap();
+        let ideal = lens.to_ideal(seen).unwrap();
+        PixelPoint::new(ideal.x, ideal.y)
+    }
+
     /// Least-squares circle through the exact images of 72 points of the mark circle.
-    fn exact_circle(camera: &CameraModel, pose: &Pose) -> (PixelPoint, f64) {
+    fn exact_circle(camera: &Camera, pose: &Pose) -> (PixelPoint, f64) {
         let points: Vec<PixelPoint> = (0..72)
             .map(|k| {
                 let (s, c) = libm::sincos(f64::from(k) * std::f64::consts::TAU / 72.0);
-                geometry::project(camera, pose, &Vector3::new(0.25 * c, 0.25 * s, 0.0)).unwrap()
+                exact(camera, pose, [0.25 * c, 0.25 * s, 0.0])
             })
             .collect();
         let n = points.len() as f64;
@@ -184,6 +152,19 @@ mod tests {
         (centre, radius)
     }
 
+    /// What 3.1 gets at a pose, the bar's slope being −φ3.
+    fn measured(camera: &Camera, pose: &Pose) -> PaperMeasurement {
+        let (circle, radius_px) = exact_circle(camera, pose);
+        let cross = exact(camera, pose, [0.0, 0.0, TARGET.height_m]);
+        PaperMeasurement {
+            focal_px: NARROW_PX,
+            cross: [cross.x, cross.y],
+            slope: -pose.phi_rad.z,
+            circle: [circle.x, circle.y],
+            radius_px,
+        }
+    }
+
     #[test]
     fn the_formulas_invert_their_own_projection() {
         let truth = pose([0.4, -0.7, 12.0], [1.0, -2.0, 3.0]);
@@ -195,10 +176,7 @@ mod tests {
     fn on_the_axis_the_formulas_are_exact() {
         let model = camera([0.0; 3], 10.0);
         let truth = pose([0.0, 0.0, 5.0], [0.0; 3]);
-        let (centre, radius) = exact_circle(&model, &truth);
-        let cross = geometry::project(&model, &truth, &Vector3::new(0.0, 0.0, 0.3)).unwrap();
-        let m = PaperMeasurement::from_pixels(&model, cross, 0.0, centre, radius).unwrap();
-        let found = m.pose(&TARGET).unwrap();
+        let found = measured(&model, &truth).pose(&TARGET).unwrap();
         assert!((geometry::to_vector(&found) - geometry::to_vector(&truth)).abs().max() < 1e-9);
     }
 
@@ -206,7 +184,7 @@ mod tests {
     fn the_slope_of_the_horizontal_bar_is_minus_the_roll() {
         let model = camera([0.0; 3], 10.0);
         let truth = pose([0.0, 0.0, 5.0], [0.0, 0.0, 2.0]);
-        let end = |y1: f64| geometry::project(&model, &truth, &Vector3::new(y1, 0.0, 0.3)).unwrap();
+        let end = |y1: f64| exact(&model, &truth, [y1, 0.0, 0.3]);
         let slope = (end(0.15).y - end(-0.15).y) / (end(0.15).x - end(-0.15).x);
         let m = PaperMeasurement::expected(&truth, &TARGET, NARROW_PX);
         // tan φ and φ differ by φ³/3 = 1.4e-5.
@@ -224,7 +202,7 @@ mod tests {
             let (s, c) = libm::sincos(tilt);
             let truth = pose([5.0 * s, 0.0, 5.0 * c], [0.0, -tilt_deg, 0.0]);
             let (centre, _) = exact_circle(&model, &truth);
-            let true_centre = geometry::project(&model, &truth, &Vector3::zeros()).unwrap();
+            let true_centre = exact(&model, &truth, [0.0; 3]);
             let bias = centre.distance(true_centre);
             let closed = NARROW_PX * libm::tan(tilt) * 0.05 * 0.05;
             assert!((bias - documented_px).abs() < 0.006, "{tilt_deg}°: {bias} px");
@@ -242,12 +220,7 @@ mod tests {
             [(0.05, 0.0, 1e-6, 1e-6, 1e-6), (0.1, 1.0, 3.5, 0.076, 0.043), (0.4, -4.0, 15.0, 0.48, 0.17)]
         {
             let truth = pose([d1, 0.0, 5.0], [0.0, phi2_deg, 0.0]);
-            let (centre, radius) = exact_circle(&model, &truth);
-            let cross = geometry::project(&model, &truth, &Vector3::new(0.0, 0.0, 0.3)).unwrap();
-            let found = PaperMeasurement::from_pixels(&model, cross, 0.0, centre, radius)
-                .unwrap()
-                .pose(&TARGET)
-                .unwrap();
+            let found = measured(&model, &truth).pose(&TARGET).unwrap();
             let error = geometry::to_vector(&found) - geometry::to_vector(&truth);
             let measured = (error[0].abs() * 1e3, error[2].abs() / 5.0 * 100.0, error[4].abs().to_degrees());
             let documented = (lateral_mm, range_percent, attitude_deg);
@@ -258,24 +231,19 @@ mod tests {
         }
     }
 
+    /// The points that the circle is fitted to and the cross have their distortion undone one by one, in square pixels: what
+    /// 3.1 then gets is that of a camera without distortion.
     #[test]
     fn distortion_and_pixels_that_are_not_square_are_undone() {
-        let model = camera([2.6e-8, 0.0, 0.0], 9.0);
-        let truth = pose([0.0, 0.0, 5.0], [0.3, 0.2, 0.0]);
-        let ideal = PaperMeasurement::expected(&truth, &TARGET, NARROW_PX);
-        // The image of a centred circle under other pixels is an ellipse; the paper's circle needs square ones.
-        let square = camera([2.6e-8, 0.0, 0.0], 10.0);
-        let (centre, radius) = exact_circle(&square, &truth);
-        let cross = geometry::project(&square, &truth, &Vector3::new(0.0, 0.0, 0.3)).unwrap();
-        let m = PaperMeasurement::from_pixels(&square, cross, ideal.slope, centre, radius).unwrap();
-        // Tilts of 0.3° bias the centre by 0.04 px; the distortion alone moves the rim by 0.1 px.
-        assert!((m.radius_px - ideal.radius_px).abs() < 0.01, "{} {}", m.radius_px, ideal.radius_px);
-        for i in 0..2 {
-            assert!((m.cross[i] - ideal.cross[i]).abs() < 0.05, "{:?} {:?}", m.cross, ideal.cross);
-        }
-        let cross = geometry::project(&model, &truth, &Vector3::new(0.0, 0.0, 0.3)).unwrap();
-        let m = PaperMeasurement::from_pixels(&model, cross, 0.0, cross, 100.0).unwrap();
-        assert!((m.cross[1] - ideal.cross[1]).abs() < 0.05, "{:?} {:?}", m.cross, ideal.cross);
+        let truth = pose([0.1, -0.2, 5.0], [0.3, 0.2, 1.0]);
+        let ideal = measured(&camera([0.0; 3], 10.0), &truth);
+        // The distortion alone moves the rim by 0.1 px.
+        let met = measured(&camera([2.6e-8, 0.0, 0.0], 9.0), &truth);
+        let off = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]);
+        // The inverse of the distortion is iterated to 1e-9 px.
+        assert!(off(met.cross, ideal.cross) < 1e-6, "{:?} {:?}", met.cross, ideal.cross);
+        assert!(off(met.circle, ideal.circle) < 1e-6, "{:?} {:?}", met.circle, ideal.circle);
+        assert!((met.radius_px - ideal.radius_px).abs() < 1e-6, "{} {}", met.radius_px, ideal.radius_px);
     }
 
     #[test]

@@ -3,16 +3,13 @@
 //!
 //! - [`PaperPortions`]: the paper's two stages, on cross and circle, with its standard deviations as printed;
 //! - [`ExactPortions`]: the same idea on poses with their full covariance, position and attitude together, with the
-//!   covariance that the forgetting really leaves;
-//! - [`Indicators`]: what the operator is shown.
+//!   covariance that the forgetting really leaves.
 
 mod exact;
-mod indicators;
 mod paper;
 mod scatter;
 
 pub use exact::{ExactPortionConfig, ExactPortions};
-pub use indicators::{Indicator, Indicators};
 pub use paper::{PaperPortionConfig, PaperPortions};
 
 use nalgebra::{Cholesky, Const, DimMin, SMatrix};
