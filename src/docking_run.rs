@@ -7,6 +7,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use contract::Camera;
 use contract::docking::{Digitiser, DockingPipelineFactory, DockingSetup};
 use sim::docking::{DockingSimulator, DockingWorkspace, FieldExposure, FieldTruth};
 
@@ -171,7 +172,11 @@ impl PreparedDocking {
         let make = |workspace: &mut DockingWorkspace, field| {
             self.renderer.expose(&self.simulator, &self.setup, workspace, field)
         };
-        in_order(flight.fields.clone(), flight.jobs, workspace, make, take)
+        // A video signal is kept as f32; a progressive field is a whole frame.
+        let frame = |camera: &Camera| camera.columns * camera.rows * size_of::<f32>();
+        let bytes = self.setup.cameras.first().map_or(0, frame)
+            / self.scenario().television.interlace.lines(0).step();
+        in_order(flight.fields.clone(), flight.jobs, bytes as u64, workspace, make, take)
     }
 }
 

@@ -9,9 +9,15 @@ use sim::{SimulatedCamera, Simulator};
 
 use crate::failure::Failure;
 
-/// Frames that a thread makes before the batch is handed on: enough to keep threads busy, few enough that memory
-/// stays flat (a frame of 752 × 580 takes about 1 MB).
+/// Frames that a thread makes before the batch is handed on, at most: enough to keep threads busy.
 const FRAMES_PER_JOB: u64 = 8;
+/// Bytes of pixels in them, at most, though never less than one frame: few enough that memory stays flat.
+const BYTES_PER_JOB: u64 = 8 << 20;
+
+/// Frames of a batch for each thread, by the bytes that the pixels of one take.
+fn frames_per_job(frame_bytes: u64) -> u64 {
+    (BYTES_PER_JOB / frame_bytes.max(1)).clamp(1, FRAMES_PER_JOB)
+}
 
 /// Makes something of each of `frames` on `jobs` threads, each with a camera of its own, and hands it to `take` in
 /// order. What is made does not depend on the number of threads.
@@ -25,17 +31,20 @@ pub fn fly<T: Send>(
     make: impl Fn(&mut SimulatedCamera<'_>, u64) -> Result<T, Failure> + Sync,
     take: impl FnMut(T) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    in_order(frames, jobs, || Ok(simulator.camera()?), make, take)
+    let (columns, rows) = simulator.projection().detector();
+    let frame_bytes = (columns * rows * size_of::<u16>()) as u64;
+    in_order(frames, jobs, frame_bytes, || Ok(simulator.camera()?), make, take)
 }
 
 /// Makes something of each of `frames` on `jobs` threads, each with a workspace of its own, and hands it to `take` in
-/// order, on the caller's thread.
+/// order, on the caller's thread. The pixels of one take `frame_bytes`, by which batches are sized.
 ///
 /// # Errors
 /// The first failure in the order of the frames; nothing after it is taken.
 pub fn in_order<W, T: Send>(
     frames: Range<u64>,
     jobs: usize,
+    frame_bytes: u64,
     workspace: impl Fn() -> Result<W, Failure> + Sync + Send,
     make: impl Fn(&mut W, u64) -> Result<T, Failure> + Sync,
     mut take: impl FnMut(T) -> Result<(), Failure>,
@@ -48,7 +57,7 @@ pub fn in_order<W, T: Send>(
         .num_threads(jobs)
         .build()
         .map_err(|error| Failure::Usage(format!("{jobs} threads cannot be started: {error}")))?;
-    let batch = FRAMES_PER_JOB * jobs as u64;
+    let batch = frames_per_job(frame_bytes) * jobs as u64;
     let make_one = |workspace: &mut Result<W, _>, frame| match workspace {
         Ok(workspace) => make(workspace, frame),
         Err(_) => Err(Failure::Usage("the camera could not be made on every thread".to_owned())),
@@ -69,4 +78,15 @@ pub fn in_order<W, T: Send>(
         });
         waiting.into_iter().flatten().try_for_each(|result| take(result?))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_batch_is_a_few_frames_and_one_when_frames_are_large() {
+        let mb = |bytes: f64| frames_per_job((bytes * (1 << 20) as f64) as u64);
+        assert_eq!([mb(0.0), mb(0.8), mb(2.0), mb(8.0), mb(500.0)], [8, 8, 4, 1, 1]);
+    }
 }

@@ -52,6 +52,8 @@ pub enum Effect {
     LostLines = 44,
     /// Level of each line of a field.
     LineLevel = 45,
+    /// Errors of range and range rate that the overlay of a video picture says, by the second.
+    OverlayReading = 46,
 }
 
 /// The generator behind every draw.

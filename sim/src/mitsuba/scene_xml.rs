@@ -8,6 +8,7 @@ use super::mesh::{Mesh, meshes};
 use super::{Crop, Layer, Settings};
 use crate::SimError;
 use crate::scene::docking::DockingScene;
+use crate::truth::approach::target_from_camera;
 
 /// What Mitsuba renders: a scene file, and beside it the meshes that it names.
 #[derive(Debug, Clone, PartialEq)]
@@ -86,11 +87,9 @@ fn sensor(pose: &Pose, camera: &Camera, settings: &Settings, crop: &Crop) -> Res
     let fov_deg = (2.0 * libm::atan(columns / (2.0 * fx))).to_degrees();
     let offset_x = (columns / 2.0 - (camera.principal_x_px + 0.5)) / columns;
     let offset_y = (rows / 2.0 - (camera.principal_y_px + 0.5)) / rows;
-    let ideal = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
-    let target_from_camera = ideal * Rotation3::from_scaled_axis(pose.phi_rad).matrix();
     let mitsuba_axes = Matrix3::from_diagonal(&Vector3::new(-1.0, -1.0, 1.0));
     // Both reflect two axes: the product is a rotation.
-    let to_world = Rotation3::from_matrix_unchecked(target_from_camera * mitsuba_axes);
+    let to_world = Rotation3::from_matrix_unchecked(target_from_camera(pose) * mitsuba_axes);
 
     let film: String = [
         ("width", camera.columns),

@@ -282,8 +282,9 @@ impl Television {
             level.apply(seed, number, time_s, lines, signal, columns);
         }
         config.noise.apply(&self.ziggurat, seed, number, lines, signal, columns);
-        if let Some(overlay) = &self.overlay {
-            overlay.draw(&field.caption, lines, signal);
+        if let (Some(overlay), Some(config)) = (&self.overlay, &config.overlay) {
+            let caption = config.measured(seed, time_s, &field.caption);
+            overlay.draw(&caption, lines, signal);
         }
         VideoTruth { lost_lines, ..truth }
     }

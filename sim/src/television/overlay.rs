@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::glyphs::{Glyphs, field_row};
 use crate::SimError;
 use crate::error::require;
+use crate::randomness::{Effect, Seed, normal};
 
 /// Rows of the camera for which the sizes below hold; they go with its rows.
 const REFERENCE_ROWS: f64 = 576.0;
@@ -28,21 +29,31 @@ const RETICLE_PX: (f64, f64, f64) = (40.0, 30.0, 1.4);
 pub struct OverlayConfig {
     /// Level of lines and text, in units of the white level, 0 to 2.
     pub level: f64,
+    /// Standard deviation of the range that the text says, as a part of it, 0 to 0.5; drawn anew each second.
+    pub range_error: f64,
+    /// Standard deviation of the range rate that the text says, m/s, 0 to 10; drawn anew each second.
+    pub range_rate_error_m_s: f64,
 }
 
 impl Default for OverlayConfig {
     fn default() -> Self {
-        Self { level: 0.95 }
+        Self { level: 0.95, range_error: 0.01, range_rate_error_m_s: 0.02 }
     }
 }
 
 impl OverlayConfig {
     pub(super) fn check(&self) -> Result<(), SimError> {
-        require("television.overlay.level", self.level, "0 to 2", |v| (0.0..=2.0).contains(&v))
+        require("television.overlay.level", self.level, "0 to 2", |v| (0.0..=2.0).contains(&v))?;
+        require("television.overlay.range_error", self.range_error, "0 to 0.5", |v| {
+            (0.0..=0.5).contains(&v)
+        })?;
+        require("television.overlay.range_rate_error_m_s", self.range_rate_error_m_s, "0 to 10", |v| {
+            (0.0..=10.0).contains(&v)
+        })
     }
 }
 
-/// What the text says.
+/// What the text says of the approach; at first the truth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Caption<'a> {
     /// UTC, as 14:07:32.
@@ -50,6 +61,19 @@ pub(crate) struct Caption<'a> {
     pub(crate) camera: &'a str,
     pub(crate) range_m: f64,
     pub(crate) range_rate_m_s: f64,
+}
+
+impl OverlayConfig {
+    /// The caption with range and range rate as the radar of the approach measures them, whose readings the picture shows:
+    /// the truth is in no picture.
+    pub(super) fn measured<'a>(&self, seed: &Seed, time_s: f64, caption: &Caption<'a>) -> Caption<'a> {
+        let mut stream = seed.stream(time_s.max(0.0).floor() as u64, Effect::OverlayReading, 0);
+        Caption {
+            range_m: caption.range_m * (1.0 + self.range_error * normal(&mut stream)),
+            range_rate_m_s: caption.range_rate_m_s + self.range_rate_error_m_s * normal(&mut stream),
+            ..*caption
+        }
+    }
 }
 
 /// The overlay for a camera, its characters rasterised once.
@@ -132,7 +156,7 @@ mod tests {
     use super::*;
 
     fn drawn(lines: Lines, caption: &Caption<'_>) -> Vec<f32> {
-        let overlay = Overlay::new(&OverlayConfig { level: 1.0 }, 768, 576);
+        let overlay = Overlay::new(&OverlayConfig { level: 1.0, ..OverlayConfig::default() }, 768, 576);
         let mut signal = vec![0.0; 768 * lines.rows(576)];
         overlay.draw(caption, lines, &mut signal);
         signal
@@ -140,6 +164,30 @@ mod tests {
 
     const CAPTION: Caption<'static> =
         Caption { clock: "14:07:32", camera: "TV-1", range_m: 20.0, range_rate_m_s: -0.11 };
+
+    /// The readings of a second are one: the digits do not flicker. Those of many have the errors that were asked for.
+    #[test]
+    fn readings_are_the_radars_and_hold_for_a_second() {
+        let config =
+            OverlayConfig { range_error: 0.02, range_rate_error_m_s: 0.05, ..OverlayConfig::default() };
+        let seed = Seed { seed: 3, case: 0 };
+        let at = |time_s: f64| config.measured(&seed, time_s, &CAPTION);
+        assert_eq!(at(7.0), at(7.98));
+        assert_ne!(at(7.0), at(8.0));
+        let n = 4000;
+        let (mut range, mut rate) = (0.0, 0.0);
+        for second in 0..n {
+            let reading = at(f64::from(second));
+            range += libm::pow((reading.range_m / CAPTION.range_m - 1.0) / 0.02, 2.0);
+            rate += libm::pow((reading.range_rate_m_s - CAPTION.range_rate_m_s) / 0.05, 2.0);
+        }
+        // Mean squares of normal numbers: standard error √(2/n) = 0.022; four of them.
+        for mean in [range, rate].map(|sum| sum / f64::from(n)) {
+            assert!((mean - 1.0).abs() < 0.09, "{mean}");
+        }
+        let exact = OverlayConfig { range_error: 0.0, range_rate_error_m_s: 0.0, ..config };
+        assert_eq!(exact.measured(&seed, 7.0, &CAPTION), CAPTION);
+    }
 
     #[test]
     fn the_reticle_points_at_the_centre_from_four_sides() {

@@ -15,6 +15,14 @@ fn light(lines: Lines) -> Vec<f32> {
 }
 
 fn transmitted(config: &TelevisionConfig, number: u64) -> (Vec<f32>, VideoTruth) {
+    transmitted_of(light, config, number)
+}
+
+fn transmitted_of(
+    light: fn(Lines) -> Vec<f32>,
+    config: &TelevisionConfig,
+    number: u64,
+) -> (Vec<f32>, VideoTruth) {
     let lines = config.interlace.lines(number);
     let mut signal = light(lines);
     let sun = SunImage {
@@ -101,17 +109,70 @@ fn an_effect_leaves_the_draws_of_noise_as_they_were() {
     }
 }
 
-/// As above for the draws of lines: which are lost, and by how much they are shifted.
+/// The rows of a field by their numbers in which two pictures differ.
+fn changed_rows(a: &[f32], b: &[f32]) -> Vec<usize> {
+    let rows = a.chunks_exact(COLUMNS).zip(b.chunks_exact(COLUMNS)).enumerate();
+    rows.filter(|(_, (a, b))| a != b).map(|(k, _)| k).collect()
+}
+
+/// A picture of which no row is like another, and every row tells a shift.
+fn uneven_light(lines: Lines) -> Vec<f32> {
+    let mut light = light(lines);
+    for (i, light) in light.iter_mut().enumerate() {
+        let (x, y) = (i % COLUMNS, i / COLUMNS);
+        *light += 0.005 * y as f32 + 0.01 * (x * (x + y) % 23) as f32;
+    }
+    light
+}
+
+/// As above for the draws of lost lines: the same rows are lost, the same of them to the same snow.
 #[test]
-fn an_effect_leaves_the_draws_of_lines_as_they_were() {
-    for (name, change) in EFFECTS {
-        let mut config = TelevisionConfig {
-            lost_lines: Some(LostLinesConfig { probability: 0.2 }),
-            ..TelevisionConfig::default()
-        };
-        let alone = transmitted(&config, 4).1.lost_lines;
+fn an_effect_leaves_the_lines_that_are_lost_as_they_were() {
+    let picture = |change: Change, lost: Option<LostLinesConfig>| {
+        let mut config = TelevisionConfig::default();
         change(&mut config);
-        assert_eq!(transmitted(&config, 4).1.lost_lines, alone, "{name}");
+        config.lost_lines = lost;
+        transmitted_of(uneven_light, &config, 4).0
+    };
+    let lost = |change| {
+        changed_rows(&picture(change, Some(LostLinesConfig { probability: 0.2 })), &picture(change, None))
+    };
+    let alone = lost(|_| ());
+    assert!(alone.len() > 3, "{alone:?}");
+    for (name, change) in EFFECTS {
+        assert_eq!(lost(change), alone, "{name}");
+    }
+}
+
+/// As above for the shifts of lines. An effect before the jitter gives another picture that is shifted by the same; one after
+/// it leaves what it leaves of a picture that was not shifted.
+#[test]
+fn an_effect_leaves_the_shifts_of_lines_as_they_were() {
+    let jitter = LineJitterConfig { sigma_px: 0.5 };
+    let picture = |change: Change, line_jitter: Option<LineJitterConfig>| {
+        let noise = VideoNoiseConfig { sigma_dn8: 0.0 };
+        let mut config = TelevisionConfig { noise, ..TelevisionConfig::default() };
+        change(&mut config);
+        config.line_jitter = line_jitter;
+        transmitted_of(uneven_light, &config, 4).0
+    };
+    let (plain, plain_shifted) = (picture(|_| (), None), picture(|_| (), Some(jitter)));
+    for (name, change) in EFFECTS {
+        let (still, shifted) = (picture(change, None), picture(change, Some(jitter)));
+        let comes_after = ["lost_lines", "overlay"].contains(&name);
+        let mut expected = still.clone();
+        jitter.apply(&SEED, 4, Lines::Even, &mut expected, COLUMNS, &mut Vec::new());
+        let mut compared = 0;
+        for i in 0..shifted.len() {
+            if comes_after && still[i] != plain[i] {
+                continue;
+            }
+            compared += 1;
+            let expected = if comes_after { plain_shifted[i] } else { expected[i] };
+            // Rounding of f32 sums.
+            assert!((shifted[i] - expected).abs() < 1e-5, "{name} at {i}: {} {expected}", shifted[i]);
+        }
+        assert!(compared > shifted.len() / 2, "{name}");
     }
 }
 
@@ -179,5 +240,9 @@ fn bad_values_are_refused_with_their_path() {
     refused("television.line_level.hum_period_rows", |c| {
         c.line_level = Some(LineLevelConfig { hum_period_rows: 0.0, ..LineLevelConfig::default() });
     });
-    refused("television.overlay.level", |c| c.overlay = Some(OverlayConfig { level: f64::INFINITY }));
+    refused("television.overlay.level", |c| c.overlay.get_or_insert_default().level = f64::INFINITY);
+    refused("television.overlay.range_error", |c| c.overlay.get_or_insert_default().range_error = 1.0);
+    refused("television.overlay.range_rate_error_m_s", |c| {
+        c.overlay.get_or_insert_default().range_rate_error_m_s = -1.0;
+    });
 }

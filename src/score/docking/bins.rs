@@ -2,10 +2,11 @@
 
 use contract::Camera;
 
-/// Limits of the bins, m: a bin is above its lower limit, up to and with its upper one.
-pub const RANGE_BINS_M: [f64; 10] = [500.0, 200.0, 100.0, 50.0, 30.0, 20.0, 10.0, 5.0, 3.0, 1.5];
+/// Limits of the bins, m: a bin is above its lower limit, up to and with its upper one. The farthest has no upper one: an
+/// approach from d3 = 500 m begins a few centimetres beyond 500 m.
+pub const RANGE_BINS_M: [f64; 9] = [200.0, 100.0, 50.0, 30.0, 20.0, 10.0, 5.0, 3.0, 1.5];
 
-/// The bin of a range, counted from the farthest: 0 is beyond 500 m, 10 is 1.5 m or less.
+/// The bin of a range, counted from the farthest: 0 is beyond 200 m, 9 is 1.5 m or less.
 pub(super) fn bin(range_m: f64) -> usize {
     RANGE_BINS_M.iter().filter(|limit| range_m <= **limit).count()
 }
@@ -46,9 +47,8 @@ mod tests {
     #[test]
     fn a_limit_belongs_to_the_bin_below_it() {
         for (range_m, name) in [
-            (501.0, "> 500 m, w"),
-            (500.0, "500–200 m, w"),
-            (200.1, "500–200 m, w"),
+            (500.03, "> 200 m, w"),
+            (200.1, "> 200 m, w"),
             (200.0, "200–100 m, w"),
             (3.0, "3–1.5 m, w"),
             (1.5, "< 1.5 m, w"),

@@ -131,7 +131,7 @@ fn groups_go_from_far_to_near_by_lens() {
     let groups: Vec<_> = score.groups.keys().map(String::as_str).collect();
     assert_eq!(
         groups,
-        ["500–200 m, 15.0°", "20–10 m, 15.0°", "20–10 m, 40.0°", "5–3 m, 15.0°", "< 1.5 m, 40.0°"]
+        ["> 200 m, 15.0°", "20–10 m, 15.0°", "20–10 m, 40.0°", "5–3 m, 15.0°", "< 1.5 m, 40.0°"]
     );
 }
 
