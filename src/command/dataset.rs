@@ -213,14 +213,15 @@ struct SequenceArguments {
     /// A file `setup.toml` that names them, in the place of a scenario
     #[arg(long, value_name = "FILE", conflicts_with = "scenario")]
     setup: Option<PathBuf>,
-    /// Which of its cameras took the images, where no telemetry.csv tells, from 0
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    camera: usize,
-    /// Which field of a whole frame is first in time
-    #[arg(long, value_name = "top|bottom", default_value = "top")]
-    field_order: FieldOrder,
+    /// Which of its cameras took the images, from 0
+    /// [default: 0]
+    #[arg(long, value_name = "N")]
+    camera: Option<usize>,
+    /// Which field of a whole frame is first in time, whatever a header says [default: top]
+    #[arg(long, value_name = "top|bottom")]
+    field_order: Option<FieldOrder>,
     /// Frames are progressive: of one moment, not two fields
-    #[arg(long)]
+    #[arg(long, conflicts_with = "field_order")]
     progressive: bool,
     /// Whole frames a second; default: what the file says, 25 where it says nothing
     #[arg(long, value_name = "HZ")]
@@ -230,9 +231,42 @@ struct SequenceArguments {
     raw: Option<FrameSize>,
 }
 
+impl SequenceArguments {
+    /// What a sequence does not say of itself: as the options have it, or as it is by default.
+    fn options(&self) -> SequenceOptions {
+        let order = self.field_order.unwrap_or(FieldOrder::Top);
+        SequenceOptions {
+            scan: if self.progressive { Scan::Progressive } else { Scan::Interlaced(order) },
+            camera: self.camera.unwrap_or(0),
+            frame_rate_hz: self.frame_rate_hz,
+            raw: self.raw,
+            digitiser: Digitiser::default(),
+        }
+    }
+
+    /// Refuses an option that a folder with `telemetry.csv` would pass over.
+    fn check_free(&self, table: &Path) -> Result<(), Failure> {
+        let given = [
+            ("--camera", self.camera.is_some()),
+            ("--field-order", self.field_order.is_some()),
+            ("--progressive", self.progressive),
+            ("--frame-rate-hz", self.frame_rate_hz.is_some()),
+            ("--raw", self.raw.is_some()),
+        ];
+        match given.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) if table.is_file() => Err(Failure::Usage(format!(
+                "{option} is given, expected without {}, which tells camera, lines and time of every field",
+                table.display()
+            ))),
+            _ => Ok(()),
+        }
+    }
+}
+
 /// Docking: digitised television, from files or standard input.
 fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Answer, Failure> {
     let (path, sequence) = (&arguments.directory, &arguments.sequence);
+    sequence.check_free(&path.join("telemetry.csv"))?;
     let (setup, config) = match (&sequence.scenario, setup_file(path, sequence)) {
         (Some(word), _) => {
             let prepared = PreparedDocking::new(&ScenarioSource::read(word)?, DockingRenderer::Fast)?;
@@ -243,22 +277,15 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
             (file.setup(), file.docking)
         }
         (None, None) => {
+            let name = if path == Path::new("-") { "standard input".into() } else { path.to_string_lossy() };
             return Err(Failure::Usage(format!(
-                "{}: cameras and target are not known, expected --scenario SCENARIO or --setup FILE",
-                path.display()
+                "{name}: cameras and target are not known, expected --scenario SCENARIO or --setup FILE"
             )));
         }
     };
-    let options = SequenceOptions {
-        scan: if sequence.progressive { Scan::Progressive } else { Scan::Interlaced(sequence.field_order) },
-        camera: sequence.camera,
-        frame_rate_hz: sequence.frame_rate_hz,
-        raw: sequence.raw,
-        digitiser: Digitiser::default(),
-    };
     let scratch = super::scratch_directory()?;
     let factory = arguments.pipeline.choice().docking_factory(&config, scratch.path())?;
-    let fields = FieldSource::open(path, &setup, &options)?;
+    let fields = FieldSource::open(path, &setup, &sequence.options())?;
     if arguments.out.as_deref() == Some(Path::new("-")) {
         output.check_free("--out -")?;
         let processed = stream_fields(fields, &setup, factory.as_ref())?;

@@ -22,17 +22,21 @@ pub enum Place {
         /// Row.
         y: usize,
     },
-    /// The file's header, or the file as a whole.
+    /// The file's header.
     Header,
+    /// The file as a whole, a folder, or what is told of it from outside.
+    Whole,
 }
 
+/// As it goes on from the file's name: `, line 3`.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Line(line) => write!(f, "line {line}"),
-            Self::Row(row) => write!(f, "row {row}"),
-            Self::Pixel { x, y } => write!(f, "pixel ({x}, {y})"),
-            Self::Header => f.write_str("header"),
+            Self::Line(line) => write!(f, ", line {line}"),
+            Self::Row(row) => write!(f, ", row {row}"),
+            Self::Pixel { x, y } => write!(f, ", pixel ({x}, {y})"),
+            Self::Header => f.write_str(", header"),
+            Self::Whole => Ok(()),
         }
     }
 }
@@ -51,7 +55,7 @@ pub enum FileError {
         source: io::Error,
     },
     /// A value that is not what it should be.
-    #[error("{path}, {place}: `{field}` is `{value}`, expected {expected}", path = path.display())]
+    #[error("{path}{place}: `{field}` is `{value}`, expected {expected}", path = path.display())]
     Value {
         /// The file.
         path: PathBuf,
@@ -112,7 +116,7 @@ pub enum FileError {
         reason: &'static str,
     },
     /// A place for output that is taken.
-    #[error("{path} {reason}; give another place with --out", path = path.display())]
+    #[error("{path} {reason}; give another folder with --out", path = path.display())]
     OutputTaken {
         /// The directory.
         path: PathBuf,

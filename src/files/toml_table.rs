@@ -79,7 +79,7 @@ pub(super) fn read<T: TomlTable>(path: &Path) -> Result<T, FileError> {
 /// [`FileError::Io`] when it exists or cannot be written; [`FileError::Value`] for what could not be read back.
 pub(super) fn write<T: TomlTable>(table: &T, path: &Path) -> Result<(), FileError> {
     table.check().map_err(|Refused { path: key, value, expected }| {
-        FileError::value(path, Place::Header, key, value, expected)
+        FileError::value(path, Place::Whole, key, value, expected)
     })?;
     let text = toml::to_string(table).map_err(|error| FileError::format(path, "TOML", error))?;
     create_new(path)?.write_all(text.as_bytes()).map_err(|source| FileError::io(path, "write", source))

@@ -51,6 +51,11 @@ fn a_target_that_is_unknown_gets_the_nearest() {
 fn a_value_out_of_its_range_is_named_with_its_line() {
     check_edited("blur_sigma_px = 0.7", "blur_sigma_px = -0.7", &["lens.blur_sigma_px", "is -0.7, expected"]);
     check_edited("start_d3_m = 500.0", "start_d3_m = -5.0", &["approach.start_d3_m", "is -5, expected"]);
+    check_edited(
+        "focal_length_mm = 24.2111",
+        "focal_length_mm = 1e300",
+        &["cameras[0].camera.focal_length_mm", "is 1", "expected 0.01 to 1e6"],
+    );
     check_edited("until_range_m = 2.8", "until_range_m = nan", &["until_range_m", "NaN"]);
     check_edited("white_radiance = 0.9", "white_radianc = 0.9", &["`white_radianc`", "`white_radiance`"]);
 }
@@ -133,6 +138,66 @@ fn a_field_order_a_rate_or_a_size_that_is_none_is_refused() {
         ("--raw 640x480", ["640 × 480", "768 × 576"]),
     ] {
         check_refused(&bench, &format!("process set/fields.avi {option}"), &parts);
+    }
+}
+
+/// A folder's table tells all of it: an option would be passed over in silence.
+#[test]
+fn an_option_that_a_table_makes_idle_is_refused() {
+    let bench = video();
+    for option in
+        ["--camera 1", "--field-order bottom", "--progressive", "--frame-rate-hz 30", "--raw 768x576"]
+    {
+        let name = option.split(' ').next().unwrap();
+        check_refused(&bench, &format!("process set {option}"), &[name, "set/telemetry.csv"]);
+    }
+    let both = "process set/fields.avi --progressive --field-order top";
+    check_refused(&bench, both, &["--progressive", "--field-order"]);
+}
+
+#[test]
+fn images_of_another_size_and_an_empty_input_are_refused() {
+    let bench = video();
+    let image = image::GrayImage::new(640, 480);
+    let mut png = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    bench.write("pictures/a1.png", png.into_inner());
+    let size = ["pictures/a1.png", "`image size` is `640 × 480`", "expected 768 × 576"];
+    check_refused(&bench, "process pictures --setup set/setup.toml", &size);
+    // Nothing is written to it.
+    check_refused(&bench, "process - --setup set/setup.toml", &["standard input", "Y4M", "it is empty"]);
+    check_refused(&bench, "process -", &["standard input", "--scenario SCENARIO", "--setup FILE"]);
+    check_refused(&bench, "process set/fields.avi --camera 7", &["`camera` is `7`", "expected 0 to 1"]);
+}
+
+/// What goes beside the measurements has names of its own: another folder helps, another file does not.
+#[test]
+fn a_second_set_of_answers_in_a_folder_is_refused() {
+    let bench = video();
+    bench.boresight("process set/fields.avi --camera 1 --out first.csv").done();
+    let again = "process set/fields.avi --camera 1 --out second.csv";
+    check_refused(&bench, again, &["motion.csv exists", "another folder with --out"]);
+}
+
+/// Each where the file has it.
+#[test]
+fn a_setup_with_a_value_that_cannot_be_is_named_with_its_line() {
+    let bench = video();
+    let good = bench.read("set/setup.toml");
+    for (key, value, path) in [
+        ("focal_length_mm", "1e300", "cameras[0].focal_length_mm"),
+        ("principal_x_px", "1e9", "cameras[0].principal_x_px"),
+        ("thickness_m", "0.0", "target.cross.thickness_m"),
+        ("forgetting_position", "1.5", "docking.paper_portions.forgetting_position"),
+        ("field_gate", "-1.0", "docking.portions.field_gate"),
+    ] {
+        let line = good.lines().position(|line| line.starts_with(&format!("{key} = "))).unwrap();
+        let mut lines: Vec<String> = good.lines().map(str::to_owned).collect();
+        lines[line] = format!("{key} = {value}");
+        bench.write("wrong.toml", lines.join("\n"));
+        let place = format!("wrong.toml:{}:", line + 1);
+        let parts = [place.as_str(), path, ", expected "];
+        check_refused(&bench, "process set/fields.avi --setup wrong.toml --camera 1 --out m.csv", &parts);
     }
 }
 

@@ -93,7 +93,6 @@ pub fn range_from_outline(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::CameraModel;
     use crate::docking::geometry;
     use crate::docking::view::Lens;
     use contract::{Camera, PixelPoint};

@@ -87,7 +87,7 @@ pub(super) fn by_name(directory: &Path) -> Result<Vec<PathBuf>, FileError> {
     }
     if images.is_empty() {
         let expected = "telemetry.csv, or images *.png";
-        return Err(FileError::value(directory, Place::Header, "number of images", 0, expected));
+        return Err(FileError::value(directory, Place::Whole, "number of images", 0, expected));
     }
     images.sort_by_cached_key(|path| natural_key(path));
     Ok(images)

@@ -170,7 +170,7 @@ impl FieldSource {
         if let Some(given) = options.raw.filter(|given| (given.columns, given.rows) != (columns, rows)) {
             let size = format!("{} × {}", given.columns, given.rows);
             let expected = format!("{columns} × {rows}, those of the camera");
-            return Err(FileError::value(&path, Place::Header, "size of raw frames", size, expected));
+            return Err(FileError::value(&path, Place::Whole, "size of raw frames", size, expected));
         }
         Ok(Self::of_frames(&path, format, StreamReader::raw(input, (columns, rows))))
     }
@@ -216,7 +216,7 @@ impl Iterator for FieldSource {
 fn size(path: &Path, setup: &DockingSetup, options: &SequenceOptions) -> Result<(usize, usize), FileError> {
     let camera = setup.cameras.get(options.camera).ok_or_else(|| {
         let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
-        FileError::value(path, Place::Header, "camera", options.camera, expected)
+        FileError::value(path, Place::Whole, "camera", options.camera, expected)
     })?;
     camera.check().map_err(|source| FileError::contract(path, source))?;
     Ok((camera.columns, camera.rows))
@@ -232,7 +232,7 @@ fn format(
 ) -> Result<Format, FileError> {
     let (columns, rows) = size(path, setup, options)?;
     let wrong = |field: &str, value: String, expected: &str| {
-        Err(FileError::value(path, Place::Header, field, value, expected))
+        Err(FileError::value(path, Place::Whole, field, value, expected))
     };
     if bit_depth != setup.bit_depth {
         return wrong(
