@@ -18,7 +18,7 @@ use sim::scene::docking::{DockingScene, Facet, Lighting};
 use sim::truth::approach::target_from_camera;
 use sim::vector::{Drawer, RadianceImage};
 
-use crate::frames::{BLUR_PX, NOISE_DN};
+use crate::still::{BLUR_PX, NOISE_DN};
 
 /// How far a step moves the image, px: small against the blur, large against the rounding of the image's numbers.
 const STEP_PX: f64 = 0.02;

@@ -12,6 +12,8 @@ mod docking_random;
 mod frames;
 #[path = "../docking_random/in_field.rs"]
 mod in_field;
+#[path = "../docking_random/still.rs"]
+mod still;
 mod table;
 
 use std::error::Error;
@@ -25,7 +27,8 @@ use pipeline::docking::{DockingConfig, DockingFactory};
 use rayon::prelude::*;
 
 use bound::Bound;
-use frames::{Case, NOISE_DN, Row};
+use frames::{Case, ROWS};
+use still::{NOISE_DN, Row};
 use table::{Answer, Line};
 
 struct Arguments {
@@ -153,7 +156,7 @@ fn measured_bounds(measured: &[Measured]) -> Vec<Bound> {
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = arguments()?;
     println!("{}", table::HEADING);
-    for row in Row::ALL {
+    for row in ROWS {
         if arguments.rows.as_ref().is_some_and(|names| !names.iter().any(|name| name == row.name)) {
             continue;
         }

@@ -10,11 +10,13 @@
 mod cases;
 #[path = "../docking_random/mod.rs"]
 mod docking_random;
+#[path = "../docking_random/still.rs"]
+mod still;
 
 use std::error::Error;
 
 use boresight::mitsuba::{MitsubaOptions, MitsubaRenderer};
-use cases::{Case, Row};
+use cases::{Case, ROWS};
 use contract::docking::{Digitiser, DockingPipelineFactory, DockingSolution, FieldTelemetry, Pose};
 use pipeline::docking::{DockingConfig, DockingFactory};
 use sim::mitsuba::Settings;
@@ -113,7 +115,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "{:<11} {:<10} {:>8} {:>8} {:>11} {:>8}",
         "row", "images", "answered", "range %", "lateral mm", "φ1,2 °"
     );
-    for row in Row::ALL {
+    for row in ROWS {
         if arguments.rows.as_ref().is_some_and(|names| !names.iter().any(|name| name == row.name)) {
             continue;
         }

@@ -1,5 +1,5 @@
-//! What the programs on random poses of the docking target share: their camera and their Sun. (Whether the target is in the
-//! field: `in_field.rs` beside it.) Each program includes it by its path.
+//! What the programs on random poses of the docking target share: their camera and their Sun. Beside it: whether the target
+//! is in the field (`in_field.rs`), and single fields (`still.rs`). Each program includes what it needs by its path.
 
 use contract::Camera;
 use nalgebra::Vector3;

@@ -66,7 +66,7 @@ impl FieldSource {
     /// Opens a sequence:
     ///
     /// - a folder with a `telemetry.csv` ([`super::super::FieldRow`]): the fields that it lists, their images or, where it names
-    ///   none, those of `fields.avi` or `fields.y4m`; `options` do not apply;
+    ///   none, those of `fields.avi` or `fields.y4m`; `options` do not apply to it;
     /// - another folder: its images `*.png`, whole frames, in the order of their names;
     /// - `-`: standard input, Y4M or, with `options.raw`, raw frames; live: a field is given as soon as the last byte
     ///   of its frame has arrived, and a pipe that is closed between two frames is the end;
