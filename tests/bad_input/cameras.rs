@@ -12,7 +12,11 @@ fn check(old: &str, new: &str, parts: &[&str]) {
 fn a_mistake_in_the_camera_is_named() {
     check("columns = 752", "columns = ", &["camera.toml:12:11"]);
     check("focal_length_mm", "focal_length", &["`focal_length`", "did you mean `focal_length_mm`?"]);
-    check("focal_length_mm = 20.187", "focal_length_mm = 0.0", &["camera.focal_length_mm", "0", "greater"]);
+    check(
+        "focal_length_mm = 20.187",
+        "focal_length_mm = 0.0",
+        &["camera.focal_length_mm", "is 0, expected 0.01"],
+    );
     check("bit_depth = 12", "bit_depth = 20", &["camera.toml:1:", "bit_depth: is 20", "1 to 16"]);
     check("magnitude_limit = 7.5", "magnitude_limit = 70.0", &["magnitude_limit: is 70", "-2 to 15"]);
     check("star_epoch_utc = \"2012", "star_epoch_utc = \"20-12", &["`star_epoch_utc`", "20-12"]);

@@ -67,9 +67,12 @@ impl OverlayConfig {
     /// The caption with range and range rate as the radar of the approach measures them, whose readings the picture shows:
     /// the truth is in no picture.
     pub(super) fn measured<'a>(&self, seed: &Seed, time_s: f64, caption: &Caption<'a>) -> Caption<'a> {
-        let mut stream = seed.stream(time_s.max(0.0).floor() as u64, Effect::OverlayReading, 0);
+        let second = time_s.max(0.0).floor();
+        let mut stream = seed.stream(second as u64, Effect::OverlayReading, 0);
+        // As it was when the second began: the digits do not change between the fields of a frame.
+        let range_m = caption.range_m - caption.range_rate_m_s * (time_s - second);
         Caption {
-            range_m: caption.range_m * (1.0 + self.range_error * normal(&mut stream)),
+            range_m: range_m * (1.0 + self.range_error * normal(&mut stream)),
             range_rate_m_s: caption.range_rate_m_s + self.range_rate_error_m_s * normal(&mut stream),
             ..*caption
         }
@@ -165,15 +168,21 @@ mod tests {
     const CAPTION: Caption<'static> =
         Caption { clock: "14:07:32", camera: "TV-1", range_m: 20.0, range_rate_m_s: -0.11 };
 
-    /// The readings of a second are one: the digits do not flicker. Those of many have the errors that were asked for.
+    /// The readings of a second are one, that of its beginning. Those of many have the errors that were asked for.
     #[test]
     fn readings_are_the_radars_and_hold_for_a_second() {
         let config =
             OverlayConfig { range_error: 0.02, range_rate_error_m_s: 0.05, ..OverlayConfig::default() };
         let seed = Seed { seed: 3, case: 0 };
-        let at = |time_s: f64| config.measured(&seed, time_s, &CAPTION);
-        assert_eq!(at(7.0), at(7.98));
-        assert_ne!(at(7.0), at(8.0));
+        let reading = |config: &OverlayConfig, time_s: f64| {
+            let moved = CAPTION.range_m + CAPTION.range_rate_m_s * (time_s - time_s.floor());
+            config.measured(&seed, time_s, &Caption { range_m: moved, ..CAPTION })
+        };
+        let at = |time_s: f64| reading(&config, time_s);
+        // Rounding of the way back to the second's beginning.
+        assert!((at(7.0).range_m - at(7.98).range_m).abs() < 1e-9);
+        assert_eq!(at(7.0).range_rate_m_s, at(7.98).range_rate_m_s);
+        assert!((at(7.0).range_m - at(8.0).range_m).abs() > 1e-3);
         let n = 4000;
         let (mut range, mut rate) = (0.0, 0.0);
         for second in 0..n {
@@ -186,7 +195,7 @@ mod tests {
             assert!((mean - 1.0).abs() < 0.09, "{mean}");
         }
         let exact = OverlayConfig { range_error: 0.0, range_rate_error_m_s: 0.0, ..config };
-        assert_eq!(exact.measured(&seed, 7.0, &CAPTION), CAPTION);
+        assert_eq!(reading(&exact, 7.0), CAPTION);
     }
 
     #[test]
