@@ -79,9 +79,9 @@ impl TomlTable for CameraFile {
         }
         self.far_range.check().map_err(|error| Refused::by_pipeline("far_range", &error))?;
         match &self.star_epoch_utc {
-            Some(text) => parse_utc(text)
-                .map(|_| ())
-                .map_err(|expected| Refused::new("star_epoch_utc", format!("`{text}`"), expected)),
+            Some(text) => {
+                parse_utc(text).map(|_| ()).map_err(|expected| Refused::new("star_epoch_utc", text, expected))
+            }
             None => Ok(()),
         }
     }
