@@ -170,7 +170,7 @@ fn a_bad_camera_file_names_the_field() {
         let message = refusal(run.path());
         assert!(message.contains("camera.toml") && message.contains(part), "{message}");
     };
-    check("bit_depth = 10", "bit_depth = 17", "`bit_depth` is `17`, expected 1 to 16");
+    check("bit_depth = 10", "bit_depth = 17", "bit_depth: is 17, expected 1 to 16");
     check("bit_depth = 10", "", "missing field `bit_depth`");
     check("bit_depth = 10", "bit_dept = 10", "unknown field `bit_dept`");
     check("magnitude_limit = 7.0", "magnitude_limit = nan", "magnitude_limit");
