@@ -129,3 +129,68 @@ pub(super) fn along_lines(by_pose: &nalgebra::SMatrix<f64, 2, POSE>) -> Option<S
         turn
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Normal to a few percent: twelve uniform numbers of a multiplicative congruential sequence (Park and Miller 1988).
+    fn normal(state: &mut u64) -> f64 {
+        let mut uniform = || {
+            *state = *state * 48_271 % 2_147_483_647;
+            *state as f64 / 2_147_483_647.0
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+
+    /// 200 lines of 20 pixels with noise of 1 DN, shifted by so much, px, and brighter by so much, DN.
+    fn lines(shift_px: f64, level_dn: f64) -> Lines {
+        let (mut lines, mut state) = (Lines::default(), 12_345);
+        lines.clear();
+        for row in 0..200 {
+            let (shift, level) = (shift_px * normal(&mut state), level_dn * normal(&mut state));
+            for x in 0..20 {
+                // Edges of both signs.
+                let slope = if x % 2 == 0 { 50.0 } else { -40.0 };
+                let mut slopes = Globals::zeros();
+                (slopes[0], slopes[1]) = (slope, 1.0);
+                lines.add(&LinePixel {
+                    row,
+                    residual: slope * shift + level + normal(&mut state),
+                    effects: [slope, 1.0],
+                    slopes,
+                    levels: SVector::zeros(),
+                });
+            }
+        }
+        lines.close(&nalgebra::SMatrix::zeros());
+        lines
+    }
+
+    #[test]
+    fn noise_alone_is_no_scatter_of_lines() {
+        let (covariance, explained) = lines(0.0, 0.0).scatter(1.0);
+        assert_eq!((covariance.abs().max(), explained), (0.0, 0.0));
+    }
+
+    #[test]
+    fn shifts_of_lines_are_found_in_their_size() {
+        let shift_px = 0.1;
+        // Squares of 50 and 40 in equal parts.
+        let square = 2050.0;
+        let variance = 1.0 + shift_px * shift_px * square;
+        let (covariance, explained) = lines(shift_px, 0.0).scatter(variance);
+        // 200 lines tell a variance to √(2/200) = 10 %; three of it.
+        assert!((explained / (shift_px * shift_px * square) - 1.0).abs() < 0.3, "{explained}");
+        let of_line = 20.0 * square * shift_px;
+        let expected = 200.0 * of_line * of_line;
+        assert!((covariance[(0, 0)] / expected - 1.0).abs() < 0.3, "{}", covariance[(0, 0)]);
+    }
+
+    #[test]
+    fn levels_of_lines_are_found_in_their_size() {
+        let (covariance, explained) = lines(0.0, 1.0).scatter(2.0);
+        assert!((explained - 1.0).abs() < 0.3, "{explained}");
+        assert!((covariance[(1, 1)] / (200.0 * 400.0) - 1.0).abs() < 0.3, "{}", covariance[(1, 1)]);
+    }
+}

@@ -8,7 +8,7 @@ use nalgebra::{SMatrix, Vector3};
 
 use super::edge::{BOX_VARIANCE, Blur, GLOBALS};
 use super::sampled::Tables;
-use super::shadow::ShadowFinder;
+use super::shadow::{POST_OF_BAR, ShadowFinder};
 use crate::CameraModel;
 use crate::docking::geometry::View;
 
@@ -423,7 +423,7 @@ impl<'a> Search<'a> {
             plate_scale,
             cross_scale,
             side_px,
-            post: (post_px > half * cross_scale).then_some(post),
+            post: (post_px > (1.0 - POST_OF_BAR) * half * cross_scale).then_some(post),
             thin: (thin as usize).max(1),
             crowded: Vec::new(),
         };

@@ -99,7 +99,7 @@ fn outline(target: &TargetModel, tangents: Vector2<f64>) -> [[[f64; 2]; 4]; 3] {
 }
 
 /// Width of the post over that of a bar: not among the target's dimensions, assumed.
-const POST_OF_BAR: f64 = 2.0 / 3.0;
+pub(super) const POST_OF_BAR: f64 = 2.0 / 3.0;
 
 impl ShadowFinder {
     /// The shadow on the plate, if one is seen. `is_clear` says which points (image and plate) show the bare plate.

@@ -9,7 +9,6 @@
 mod exact;
 mod indicators;
 mod paper;
-mod scatter;
 
 pub use exact::{ExactPortionConfig, ExactPortions};
 pub use indicators::{Indicator, Indicators};
