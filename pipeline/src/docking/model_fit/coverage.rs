@@ -8,7 +8,8 @@ use contract::docking::{StandOffCross, TargetModel};
 use nalgebra::Vector3;
 
 use super::edge::{Blur, ByGlobals, Edge, GLOBALS, SIDES, Step};
-use super::gaussian::{Gaussian, LIMIT};
+use super::gaussian::LIMIT;
+use super::sampled::Tables;
 use crate::docking::geometry::{Seen, View};
 
 /// Coverage at a pixel with its derivatives.
@@ -28,17 +29,18 @@ pub(super) struct MarkImage {
 
 impl MarkImage {
     /// `None` when a corner is behind the camera.
-    pub(super) fn new(corners: &[[f64; 2]; 4], view: &View, blur: Blur) -> Option<Self> {
+    pub(super) fn new(corners: &[[f64; 2]; 4], view: &View, blur: Blur, tables: &Tables) -> Option<Self> {
         let seen = corners.map(|[y1, y2]| view.see(&Vector3::new(y1, y2, 0.0)));
         let [Some(a), Some(b), Some(c), Some(d)] = seen else { return None };
         let middle = (0.25 * (a.u + b.u + c.u + d.u), 0.25 * (a.v + b.v + c.v + d.v));
-        let edges = [(a, b), (b, c), (c, d), (d, a)].map(|(p, q)| Edge::through(&p, &q, middle, blur));
+        let edges = [(a, b), (b, c), (c, d), (d, a)]
+            .map(|(p, q)| Edge::through(&p, &q, middle, blur, &tables.profiles));
         let correlations = [0, 1, 2, 3].map(|k: usize| edges[k].correlation(&edges[(k + 1) % 4], blur));
         Some(Self { edges, correlations })
     }
 
-    pub(super) fn at(&self, gaussian: &Gaussian, u: f64, v: f64) -> Coverage {
-        let steps = [0, 1, 2, 3].map(|k: usize| self.edges[k].step(gaussian, u, v));
+    pub(super) fn at(&self, tables: &Tables, u: f64, v: f64) -> Coverage {
+        let steps = [0, 1, 2, 3].map(|k: usize| self.edges[k].step(tables, u, v));
         let across = [steps[0].inside + steps[2].inside - 1.0, steps[1].inside + steps[3].inside - 1.0];
         let mut coverage = Coverage { value: across[0] * across[1], by: [0.0; GLOBALS] };
         for k in 0..4 {
@@ -49,11 +51,16 @@ impl MarkImage {
     }
 
     /// The coverage alone.
-    pub(super) fn value_at(&self, gaussian: &Gaussian, u: f64, v: f64) -> f64 {
-        let steps = [0, 1, 2, 3].map(|k: usize| self.edges[k].step(gaussian, u, v));
+    pub(super) fn value_at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
+        let steps = [0, 1, 2, 3].map(|k: usize| self.edges[k].step(tables, u, v));
         let corners: f64 =
             (0..4).map(|k| self.correlations[k] * steps[k].density * steps[(k + 1) % 4].density).sum();
         (steps[0].inside + steps[2].inside - 1.0) * (steps[1].inside + steps[3].inside - 1.0) + corners
+    }
+
+    /// Of the edges.
+    pub(super) fn normals(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.edges.iter().map(Edge::normal)
     }
 
     pub(super) fn shift(&self, by: &ByGlobals) -> f64 {
@@ -112,8 +119,9 @@ impl CrossImage {
         camera_at: &Vector3<f64>,
         blur: Blur,
         sides: [f64; 4],
+        tables: &Tables,
     ) -> Option<Self> {
-        let front = bars(&target.cross, view, target.cross.height_m, blur)?;
+        let front = bars(&target.cross, view, target.cross.height_m, blur, tables)?;
         let (half, length) = (0.5 * target.cross.width_m, target.cross.half_length_m);
         let mut back = [None; 8];
         let beyond = [
@@ -127,7 +135,8 @@ impl CrossImage {
             (HT, camera_at.y - half),
         ];
         if beyond.iter().any(|(_, over)| *over > 0.0) {
-            let behind = bars(&target.cross, view, target.cross.height_m - target.cross.thickness_m, blur)?;
+            let behind =
+                bars(&target.cross, view, target.cross.height_m - target.cross.thickness_m, blur, tables)?;
             for (edge, over) in beyond {
                 back[edge] = (over > 0.0).then_some(behind[edge]);
             }
@@ -136,15 +145,15 @@ impl CrossImage {
         Some(Self { front, back, correlations, sides })
     }
 
-    pub(super) fn at(&self, gaussian: &Gaussian, u: f64, v: f64) -> Coverage {
+    pub(super) fn at(&self, tables: &Tables, u: f64, v: f64) -> Coverage {
         let mut front = [Step::default(); 8];
         for (step, edge) in front.iter_mut().zip(&self.front) {
-            *step = edge.step(gaussian, u, v);
+            *step = edge.step(tables, u, v);
         }
         let mut back = front;
         for (step, edge) in back.iter_mut().zip(&self.back) {
             if let Some(edge) = edge {
-                *step = edge.step(gaussian, u, v);
+                *step = edge.step(tables, u, v);
             }
         }
         let slab = |a: usize, b: usize| front[a].inside + front[b].inside - 1.0;
@@ -199,13 +208,18 @@ impl CrossImage {
         coverage
     }
 
+    /// Of the front face's edges.
+    pub(super) fn normals(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.front.iter().map(Edge::normal)
+    }
+
     pub(super) fn shift(&self, by: &ByGlobals) -> f64 {
         self.front.iter().map(|edge| edge.shift(by)).fold(0.0, f64::max)
     }
 }
 
 /// The eight edges of the two bars in the plane y3 = `height_m`.
-fn bars(cross: &StandOffCross, view: &View, height_m: f64, blur: Blur) -> Option<[Edge; 8]> {
+fn bars(cross: &StandOffCross, view: &View, height_m: f64, blur: Blur, tables: &Tables) -> Option<[Edge; 8]> {
     let (half, length) = (0.5 * cross.width_m, cross.half_length_m);
     let see = |y1: f64, y2: f64| view.see(&Vector3::new(y1, y2, height_m));
     let middle: Seen = see(0.0, 0.0)?;
@@ -214,7 +228,7 @@ fn bars(cross: &StandOffCross, view: &View, height_m: f64, blur: Blur) -> Option
         let (tl, tr) = (see(-across, up)?, see(across, up)?);
         Some(
             [(bl, tl), (br, tr), (bl, br), (tl, tr)]
-                .map(|(a, b)| Edge::through(&a, &b, (middle.u, middle.v), blur)),
+                .map(|(a, b)| Edge::through(&a, &b, (middle.u, middle.v), blur, &tables.profiles)),
         )
     };
     let ([a, b, c, d], [e, f, g, h]) = (bar(half, length)?, bar(length, half)?);

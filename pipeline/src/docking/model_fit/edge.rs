@@ -1,6 +1,6 @@
 //! A straight edge of a feature in the image, blurred.
 
-use super::gaussian::Gaussian;
+use super::sampled::{SampledProfiles, Tables};
 use crate::docking::geometry::Seen;
 
 /// Variance of the lens and of the video along columns and rows, px²: the pixel's own box is not in it.
@@ -11,14 +11,11 @@ pub(super) struct Blur {
     /// Share of the blur that acts on pixels instead of on light.
     grid: f64,
     /// Weights of a sampled Gaussian at 0, 1 … px along columns and rows.
-    taps: [[f64; TAPS]; 2],
+    pub(super) taps: [[f64; TAPS]; 2],
 }
 
 /// Weights of the sampled Gaussian on one side, with that of the centre.
-const TAPS: usize = 6;
-
-/// Above this variance a sampled Gaussian is as good as a continuous one, px².
-const SMOOTH_PX2: f64 = 1.5;
+pub(super) const TAPS: usize = 6;
 
 impl Blur {
     /// A continuous blur.
@@ -39,24 +36,6 @@ impl Blur {
         });
         Self { x, y, grid: share, taps }
     }
-}
-
-/// Step and slope of an edge along the other axis, blurred by a sampled Gaussian of the pixels, at a distance in px: linear
-/// between the pixels' borders.
-fn sampled_step(taps: &[f64; TAPS], distance: f64) -> (f64, f64) {
-    let x = distance.abs();
-    let place = x + 0.5;
-    if place.is_nan() || place >= TAPS as f64 {
-        return (if distance > 0.0 { 1.0 } else { 0.0 }, 0.0);
-    }
-    let k = place as usize;
-    // From the middle of the centre's pixel: half of it, all between, and a part of the last.
-    let half = if k == 0 {
-        taps[0] * x
-    } else {
-        0.5 * taps[0] + taps[1..k].iter().sum::<f64>() + taps[k] * (place - k as f64)
-    };
-    (0.5 + half.copysign(distance), taps[k])
 }
 
 /// Variance of a pixel's box along a side, px².
@@ -82,10 +61,8 @@ pub(super) type ByGlobals = [f64; GLOBALS];
 /// σ, σ² = n_x² (x + 1/12) + n_y² (y + 1/12). F is Φ with the next term of its Edgeworth series, for the box, whose fourth
 /// cumulant along the normal is −(n_x⁴ + n_y⁴)/120.
 ///
-/// A Gaussian sampled on the pixels has images of its spectrum about whole cycles a pixel. Across an edge along rows they make
-/// the profile a chain of straight pieces; for an edge off that axis they fade by exp(−2π² σ² n²), n the normal's other component
-/// (the product of the Gaussians G(f n_x − 1) G(f n_y) is that times G(f − n_x)). How much of the blur is of that kind is one
-/// of the globals.
+/// Where the blur acts on pixels instead of on light the profile is another (`sampled.rs`); how much of it does is one of the
+/// globals.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Edge {
     normal: (f64, f64),
@@ -98,65 +75,10 @@ pub(super) struct Edge {
     /// dz/d(variance) over z.
     by_blur: (f64, f64),
     kurtosis: f64,
-    sampled: [Sampled; 2],
-}
-
-/// What a sampled blur adds to an edge almost along an axis.
-#[derive(Debug, Clone, Copy, Default)]
-struct Sampled {
-    /// 0 far off the axis, 1 along it.
-    fading: f64,
+    sigma: f64,
+    /// Table of the sampled profile, and its share.
+    sampled: Option<usize>,
     share: f64,
-    /// Distance along the axis over distance across the line; the continuous blur's 1/σ and kurtosis on the axis; σ of the line.
-    stretch: f64,
-    per_sigma: f64,
-    kurtosis: f64,
-    slope: f64,
-    taps: [f64; TAPS],
-}
-
-/// Below this fading the sampled blur is the continuous one.
-const LEAST_FADING: f64 = 0.01;
-
-impl Sampled {
-    fn new(
-        along: f64,
-        other: f64,
-        variances: (f64, f64),
-        blur: &Blur,
-        taps: &[f64; TAPS],
-        sigma: f64,
-    ) -> Self {
-        let (variance, other_variance) = variances;
-        if taps[0] == 0.0 || variance.max(other_variance) > SMOOTH_PX2 {
-            return Self::default();
-        }
-        let tau = std::f64::consts::TAU;
-        let fading = libm::exp(-0.5 * tau * tau * other_variance * other * other);
-        if fading < LEAST_FADING {
-            return Self::default();
-        }
-        let full = variance + BOX_VARIANCE;
-        Self {
-            fading,
-            share: blur.grid,
-            stretch: 1.0 / along.abs(),
-            per_sigma: 1.0 / full.sqrt(),
-            kurtosis: 1.0 / (2880.0 * full * full),
-            slope: sigma / along.abs(),
-            taps: *taps,
-        }
-    }
-
-    /// Sampled over continuous step, and the same of their slopes by z, at a distance across the line.
-    fn over(&self, gaussian: &Gaussian, distance: f64) -> (f64, f64) {
-        let x = distance * self.stretch;
-        let z = x * self.per_sigma;
-        let (below, density) = gaussian.at(z);
-        let (step, slope) = sampled_step(&self.taps, x);
-        let smooth = below + self.kurtosis * z * (z * z - 3.0) * density;
-        (self.fading * (step - smooth), self.fading * self.slope * (slope - density * self.per_sigma))
-    }
 }
 
 /// The blurred step at a pixel.
@@ -173,7 +95,13 @@ pub(super) struct Step {
 
 impl Edge {
     /// The line through a and b; `inside` is any point on its inner side.
-    pub(super) fn through(a: &Seen, b: &Seen, inside: (f64, f64), blur: Blur) -> Self {
+    pub(super) fn through(
+        a: &Seen,
+        b: &Seen,
+        inside: (f64, f64),
+        blur: Blur,
+        profiles: &SampledProfiles,
+    ) -> Self {
         let (du, dv) = (b.u - a.u, b.v - a.v);
         let length2 = (du * du + dv * dv).max(f64::MIN_POSITIVE);
         let length = length2.sqrt();
@@ -197,27 +125,24 @@ impl Edge {
             per_sigma: 1.0 / variance.sqrt(),
             by_blur: (-0.5 * nx * nx / variance, -0.5 * ny * ny / variance),
             kurtosis: (nx * nx * nx * nx + ny * ny * ny * ny) / (2880.0 * variance * variance),
-            sampled: [
-                Sampled::new(nx, ny, (blur.x, blur.y), &blur, &blur.taps[0], variance.sqrt()),
-                Sampled::new(ny, nx, (blur.y, blur.x), &blur, &blur.taps[1], variance.sqrt()),
-            ],
+            sigma: variance.sqrt(),
+            sampled: if blur.taps[0][0] > 0.0 { profiles.find((nx, ny), &blur) } else { None },
+            share: blur.grid,
         }
     }
 
     /// The step at an ideal image point.
-    pub(super) fn step(&self, gaussian: &Gaussian, u: f64, v: f64) -> Step {
+    pub(super) fn step(&self, tables: &Tables, u: f64, v: f64) -> Step {
         let distance = self.normal.0 * u + self.normal.1 * v + self.offset;
         let z = distance * self.per_sigma;
-        let (below, density) = gaussian.at(z);
+        let (below, density) = tables.gaussian.at(z);
         let mut step =
             Step { z, inside: below + self.kurtosis * z * (z * z - 3.0) * density, density, by_grid: 0.0 };
-        for sampled in &self.sampled {
-            if sampled.fading > 0.0 {
-                let (value, slope) = sampled.over(gaussian, distance);
-                step.inside += sampled.share * value;
-                step.density += sampled.share * slope;
-                step.by_grid += value;
-            }
+        if let Some(table) = self.sampled {
+            let (value, slope) = tables.profiles.at(table, distance);
+            step.inside += self.share * value;
+            step.density += self.share * slope * self.sigma;
+            step.by_grid = value;
         }
         step
     }
@@ -244,6 +169,10 @@ impl Edge {
             + self.normal.1 * other.normal.1 * (blur.y + BOX_VARIANCE))
             * self.per_sigma
             * other.per_sigma
+    }
+
+    pub(super) fn normal(&self) -> (f64, f64) {
+        self.normal
     }
 
     /// How far a change of the pose moves the line at its two points, px, the larger.

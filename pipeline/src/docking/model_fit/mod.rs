@@ -8,7 +8,9 @@
 mod coverage;
 mod edge;
 mod gaussian;
+mod lines;
 mod near;
+mod sampled;
 mod samples;
 mod shadow;
 mod solve;
@@ -21,13 +23,13 @@ use contract::docking::{Field, Mark, MarkUse, NoPose, Pose, PoseEstimate, Target
 use nalgebra::{Matrix6, Vector3};
 
 use self::edge::{BLUR, Blur, GLOBALS, GRID, POSE};
-use self::gaussian::Gaussian;
+use self::lines::Lines;
+use self::sampled::Tables;
 use self::samples::{Feature, Samples};
 use self::shadow::ShadowFinder;
-use self::solve::{Evaluation, Globals, Scene, Search, residual, solve};
+use self::solve::{Evaluation, Globals, Scene, Search, covariance, normals, residual, solve};
 use crate::CameraModel;
 use crate::docking::geometry::{View, project, to_pose, to_vector};
-use crate::docking::portions::inverse;
 
 /// Variance of the blur that the first field is begun with, px².
 const FIRST_BLUR_PX2: f64 = 0.5;
@@ -96,9 +98,10 @@ pub struct Fitted {
 /// Fits fields of one camera after the other; owns its buffers and begins with the blur of the last field.
 #[derive(Debug)]
 pub struct ModelFit {
-    gaussian: Gaussian,
+    tables: Tables,
     samples: Samples,
     shadows: ShadowFinder,
+    lines: Lines,
     variances: Vec<f64>,
     blur: Blur,
 }
@@ -113,9 +116,10 @@ impl ModelFit {
     /// No field seen yet.
     pub fn new() -> Self {
         Self {
-            gaussian: Gaussian::new(),
+            tables: Tables::new(),
             samples: Samples::default(),
             shadows: ShadowFinder::default(),
+            lines: Lines::default(),
             variances: Vec::new(),
             blur: Blur::new(FIRST_BLUR_PX2, FIRST_BLUR_PX2),
         }
@@ -184,7 +188,7 @@ impl ModelFit {
         globals[BLUR + 1] = self.blur.y;
         globals.fixed_rows_mut::<{ GLOBALS - GRID }>(GRID).fill(0.5);
 
-        let scene = Scene { camera, target, gaussian: &self.gaussian };
+        let scene = Scene { camera, target, tables: &self.tables };
         let samples = &mut self.samples;
         let wide = Blur::new(self.blur.x + 0.5, self.blur.y + 0.5);
         collect(samples, field, &scene, &globals, wide, slack_px)?;
@@ -197,13 +201,22 @@ impl ModelFit {
                 .variance();
         }
 
+        prepare(&mut self.tables, camera, target, &globals)?;
+        let scene = Scene { camera, target, tables: &self.tables };
         let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
         collect(samples, field, &scene, &globals, blur, 0.0)?;
         let view = View::new(camera, &to_pose(&globals));
-        samples.shade(&mut self.shadows, field, camera, target, &self.gaussian, &view, blur);
+        samples.shade(&mut self.shadows, field, camera, target, &self.tables, &view, blur);
         let search = Search { extra_blur_px2: 0.0, free: 0..GLOBALS, stride: 1, steps: 12, decrement: 1e-3 };
         let mut evaluation =
             solve(&scene, samples, &mut globals, &search, noise).ok_or(NoPose::TooFewFeatures)?;
+        // The first field of a video finds its blur only now.
+        let is_renewed = prepare(&mut self.tables, camera, target, &globals)?;
+        let scene = Scene { camera, target, tables: &self.tables };
+        if is_renewed {
+            evaluation = solve(&scene, samples, &mut globals, &search, evaluation.variance())
+                .ok_or(NoPose::TooFewFeatures)?;
+        }
         for _ in 0..ROUNDS {
             let is_changed = reject(samples, &mut self.variances)?;
             if !is_changed {
@@ -212,10 +225,22 @@ impl ModelFit {
             evaluation = solve(&scene, samples, &mut globals, &search, evaluation.variance())
                 .ok_or(NoPose::TooFewFeatures)?;
         }
-        let fitted = judge(samples, &scene, &globals, &evaluation)?;
+        let fitted = judge(samples, &mut self.lines, &scene, &globals, &evaluation)?;
         self.blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
         Ok(fitted)
     }
+}
+
+/// Makes the sampled profiles that the edges at some globals need; whether any was not there yet.
+fn prepare(
+    tables: &mut Tables,
+    camera: &CameraModel,
+    target: &TargetModel,
+    globals: &Globals,
+) -> Result<bool, NoPose> {
+    let scene = Scene { camera, target, tables };
+    let (normals, blur) = normals(&scene, globals).ok_or(NoPose::TooFewFeatures)?;
+    Ok(tables.prepare(&normals, &blur))
 }
 
 fn collect(
@@ -228,7 +253,7 @@ fn collect(
 ) -> Result<(), NoPose> {
     let view = View::new(scene.camera, &to_pose(globals));
     samples
-        .collect(field, scene.camera, scene.target, scene.gaussian, &view, blur, slack_px)
+        .collect(field, scene.camera, scene.target, scene.tables, &view, blur, slack_px)
         .ok_or(NoPose::Inconsistent)?;
     if samples.patches.is_empty() { Err(too_few(samples)) } else { Ok(()) }
 }
@@ -283,6 +308,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
 /// The answer, if what was used determines a pose and enough of what is seen looks like the target.
 fn judge(
     samples: &Samples,
+    lines: &mut Lines,
     scene: &Scene,
     globals: &Globals,
     evaluation: &Evaluation,
@@ -298,7 +324,8 @@ fn judge(
     if median(&mut levels).is_none_or(|level| level < FAINTEST_LEVEL * variance.sqrt()) {
         return Err(too_few(samples));
     }
-    let covariance = inverse(&evaluation.information).ok_or_else(|| too_few(samples))? * variance;
+    let covariance =
+        covariance(scene, samples, lines, globals, evaluation).ok_or_else(|| too_few(samples))?;
     let covariance: Matrix6<f64> = covariance.fixed_view::<POSE, POSE>(0, 0).into();
     let pose = to_pose(globals);
     let range = pose.position_m.norm();

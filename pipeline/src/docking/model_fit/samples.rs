@@ -1,11 +1,13 @@
 //! Which pixels are looked at: bands along the edges of marks and cross, away from what is not in the model.
 
+use std::ops::RangeInclusive;
+
 use contract::PixelPoint;
 use contract::docking::{Field, MarkUse, TargetModel};
-use nalgebra::Vector3;
+use nalgebra::{SMatrix, Vector3};
 
-use super::edge::{BOX_VARIANCE, Blur};
-use super::gaussian::Gaussian;
+use super::edge::{BOX_VARIANCE, Blur, GLOBALS};
+use super::sampled::Tables;
 use super::shadow::ShadowFinder;
 use crate::CameraModel;
 use crate::docking::geometry::View;
@@ -16,6 +18,8 @@ pub(super) struct Sample {
     /// Ideal image coordinates, px.
     pub(super) u: f64,
     pub(super) v: f64,
+    /// Row of the field.
+    pub(super) row: usize,
     pub(super) dn: f64,
     /// Blurred share of what lies beyond the plate's rim.
     pub(super) beyond_rim: f64,
@@ -45,6 +49,9 @@ pub(super) struct Patch {
     pub(super) centre: (f64, f64),
     pub(super) levels: [f64; LOCALS],
     pub(super) squares: f64,
+    /// Inverse of the levels' normal equations, and times what they share with the globals' derivatives.
+    pub(super) levels_inverse: SMatrix<f64, LOCALS, LOCALS>,
+    pub(super) levels_by_globals: SMatrix<f64, LOCALS, GLOBALS>,
     pub(super) used_samples: usize,
     pub(super) is_used: bool,
     /// A shadow falls on the mark: it is not used again.
@@ -66,6 +73,10 @@ const BEYOND_RIM_PX: f64 = 0.8;
 /// A mark of which a shadow takes more than this part anywhere is in shadow.
 const SHADED: f64 = 0.02;
 
+/// Shares of the shadow between which a pixel is at its edge. Where that edge meets the cross's, the blurred part of the shadow
+/// that the cross leaves open is not the product of the two blurred shares: for parallel edges it is off by a quarter.
+const EDGE_OF_SHADOW: RangeInclusive<f64> = 0.01..=0.99;
+
 /// Collects samples; owns its buffers.
 #[derive(Debug, Default)]
 pub(super) struct Samples {
@@ -83,7 +94,7 @@ struct Search<'a> {
     camera: &'a CameraModel,
     target: &'a TargetModel,
     view: &'a View,
-    gaussian: &'a Gaussian,
+    tables: &'a Tables,
     reach_px: f64,
     blur_px: f64,
     /// px/m on the plate and on the cross.
@@ -107,7 +118,7 @@ impl Samples {
         field: &Field,
         camera: &CameraModel,
         target: &TargetModel,
-        gaussian: &Gaussian,
+        tables: &Tables,
         view: &View,
         blur: Blur,
         slack_px: f64,
@@ -122,7 +133,7 @@ impl Samples {
         self.pixels.clear();
         self.patches.clear();
         self.marks.clear();
-        let search = Search::new(field, camera, target, view, gaussian, blur, slack_px)?;
+        let search = Search::new(field, camera, target, view, tables, blur, slack_px)?;
         for index in 0..target.marks.len() {
             let usage = self.collect_mark(&search, index);
             self.marks.push(usage);
@@ -140,20 +151,20 @@ impl Samples {
         field: &Field,
         camera: &CameraModel,
         target: &TargetModel,
-        gaussian: &Gaussian,
+        tables: &Tables,
         view: &View,
         blur: Blur,
     ) {
-        let Some(search) = Search::new(field, camera, target, view, gaussian, blur, 0.0) else { return };
+        let Some(search) = Search::new(field, camera, target, view, tables, blur, 0.0) else { return };
         let is_clear = |u: f64, v: f64, y1: f64, y2: f64| {
             let inside_px = (target.plate_radius_m - libm::hypot(y1, y2)) * search.plate_scale;
             inside_px > search.reach_px
                 && !search.is_on_marks(y1, y2, 0..target.marks.len())
                 && !search.is_near_cross(u, v)
         };
-        let Some(shadow) = finder.find(field, camera, target, gaussian, view, blur, is_clear) else { return };
+        let Some(shadow) = finder.find(field, camera, target, tables, view, blur, is_clear) else { return };
         for pixel in &mut self.pixels {
-            pixel.shadow_dn = shadow.depth_dn * shadow.at(gaussian, pixel.u, pixel.v);
+            pixel.shadow_dn = shadow.depth_dn * shadow.at(tables, pixel.u, pixel.v);
         }
         for patch in &mut self.patches {
             let Feature::Mark(index) = patch.feature else { continue };
@@ -166,12 +177,39 @@ impl Samples {
                         (0..4).map(|k| weight[k] * corners[(k + turn) % 4][axis]).sum()
                     };
                     let seen = view.see(&Vector3::new(along(0), along(1), 0.0));
-                    seen.is_some_and(|seen| shadow.at(gaussian, seen.u, seen.v) > SHADED)
+                    seen.is_some_and(|seen| shadow.at(tables, seen.u, seen.v) > SHADED)
                 })
             });
             patch.is_shaded = is_shaded;
             patch.is_used &= !is_shaded;
         }
+        let edge_px = search.reach_px;
+        self.leave_out(|patch, pixel| {
+            patch.feature == Feature::Cross
+                && EDGE_OF_SHADOW.contains(&shadow.at(tables, pixel.u, pixel.v))
+                && search.beside_cross_px(pixel.u, pixel.v).abs() < edge_px
+        });
+    }
+
+    /// Drops pixels, and patches that are left with too few.
+    fn leave_out(&mut self, is_out: impl Fn(&Patch, &Sample) -> bool) {
+        let mut kept = 0;
+        for patch in &mut self.patches {
+            let first = kept;
+            for index in patch.first..patch.end {
+                let pixel = self.pixels[index];
+                if !is_out(patch, &pixel) {
+                    self.pixels[kept] = pixel;
+                    kept += 1;
+                }
+            }
+            if kept - first < LEAST_SAMPLES {
+                kept = first;
+            }
+            (patch.first, patch.end) = (first, kept);
+        }
+        self.pixels.truncate(kept);
+        self.patches.retain(|patch| patch.end > patch.first);
     }
 
     fn collect_mark(&mut self, search: &Search, index: usize) -> MarkUse {
@@ -252,6 +290,8 @@ impl Samples {
             centre,
             levels: [0.0; LOCALS],
             squares: 0.0,
+            levels_inverse: SMatrix::zeros(),
+            levels_by_globals: SMatrix::zeros(),
             used_samples: 0,
             is_used: true,
             is_shaded: false,
@@ -311,6 +351,7 @@ impl Samples {
                 self.pixels.push(Sample {
                     u,
                     v,
+                    row,
                     dn,
                     beyond_rim,
                     shadow_dn: 0.0,
@@ -340,7 +381,7 @@ impl<'a> Search<'a> {
         camera: &'a CameraModel,
         target: &'a TargetModel,
         view: &'a View,
-        gaussian: &'a Gaussian,
+        tables: &'a Tables,
         blur: Blur,
         slack_px: f64,
     ) -> Option<Self> {
@@ -376,13 +417,13 @@ impl<'a> Search<'a> {
             camera,
             target,
             view,
-            gaussian,
+            tables,
             reach_px,
             blur_px: (0.5 * (blur.x + blur.y) + BOX_VARIANCE).sqrt(),
             plate_scale,
             cross_scale,
             side_px,
-            post: (post_px > half * cross_scale).then_some(post),
+            post: (post_px > (half - 0.5 * cross.post_width_m) * cross_scale).then_some(post),
             thin: (thin as usize).max(1),
             crowded: Vec::new(),
         };
@@ -405,7 +446,8 @@ impl<'a> Search<'a> {
     fn beyond_rim(&self, u: f64, v: f64) -> Option<(f64, f64)> {
         let (y1, y2) = self.view.on_plane(u, v, 0.0)?;
         let inside_px = (self.target.plate_radius_m - libm::hypot(y1, y2)) * self.plate_scale;
-        (inside_px > -BEYOND_RIM_PX).then(|| (self.gaussian.at(-inside_px / self.blur_px).0, inside_px))
+        (inside_px > -BEYOND_RIM_PX)
+            .then(|| (self.tables.gaussian.at(-inside_px / self.blur_px).0, inside_px))
     }
 
     /// Distance from the cross's front face, px, negative inside.
@@ -442,12 +484,12 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Whether the post may be seen at a point: it is no wider than a bar.
+    /// Whether the post may be seen at a point, or its blurred edge.
     fn is_near_post(&self, u: f64, v: f64) -> bool {
         let Some([a, b]) = self.post else { return false };
         let (du, dv) = (b.0 - a.0, b.1 - a.1);
         let along = (((u - a.0) * du + (v - a.1) * dv) / (du * du + dv * dv)).clamp(0.0, 1.0);
         let off = libm::hypot(u - a.0 - along * du, v - a.1 - along * dv);
-        off < 0.5 * self.target.cross.width_m * self.cross_scale + 0.6 * self.reach_px
+        off < 0.5 * self.target.cross.post_width_m * self.cross_scale + 0.6 * self.reach_px
     }
 }

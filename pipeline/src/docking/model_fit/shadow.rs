@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::coverage::MarkImage;
 use super::edge::Blur;
-use super::gaussian::Gaussian;
+use super::sampled::Tables;
 use crate::CameraModel;
 use crate::docking::geometry::View;
 
@@ -58,17 +58,23 @@ pub(super) struct Shadow {
 }
 
 impl Shadow {
-    fn new(target: &TargetModel, view: &View, blur: Blur, tangents: Vector2<f64>) -> Option<Self> {
+    fn new(
+        target: &TargetModel,
+        view: &View,
+        blur: Blur,
+        tables: &Tables,
+        tangents: Vector2<f64>,
+    ) -> Option<Self> {
         let quads = outline(target, tangents);
-        let [Some(a), Some(b), Some(c)] = quads.map(|quad| MarkImage::new(&quad, view, blur)) else {
+        let [Some(a), Some(b), Some(c)] = quads.map(|quad| MarkImage::new(&quad, view, blur, tables)) else {
             return None;
         };
         Some(Self { images: [a, b, c], depth_dn: 0.0 })
     }
 
     /// Blurred share of the shadow at an ideal image point.
-    pub(super) fn at(&self, gaussian: &Gaussian, u: f64, v: f64) -> f64 {
-        let lit = self.images.iter().fold(1.0, |lit, image| lit * (1.0 - image.value_at(gaussian, u, v)));
+    pub(super) fn at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
+        let lit = self.images.iter().fold(1.0, |lit, image| lit * (1.0 - image.value_at(tables, u, v)));
         1.0 - lit
     }
 }
@@ -100,34 +106,34 @@ impl ShadowFinder {
         field: &Field,
         camera: &CameraModel,
         target: &TargetModel,
-        gaussian: &Gaussian,
+        tables: &Tables,
         view: &View,
         blur: Blur,
         is_clear: impl Fn(f64, f64, f64, f64) -> bool,
     ) -> Option<Shadow> {
         self.collect(field, camera, target, view, is_clear)?;
         let mut tangents = self.search(target)?;
-        let shadow = Shadow::new(target, view, blur, tangents)?;
+        let shadow = Shadow::new(target, view, blur, tables, tangents)?;
         // Only pixels about the shadow's edges place it; the others say what is light and dark.
         let near: Vec<PlatePixel> = {
-            let is_edge = |p: &&PlatePixel| (0.002..0.998).contains(&shadow.at(gaussian, p.u, p.v));
+            let is_edge = |p: &&PlatePixel| (0.002..0.998).contains(&shadow.at(tables, p.u, p.v));
             let edges: Vec<PlatePixel> = self.pixels.iter().filter(is_edge).copied().collect();
             let stride = edges.len().div_ceil(EDGE_PIXELS).max(1);
             let others = self.pixels.len().div_ceil(EDGE_PIXELS / 2).max(1);
             edges.iter().step_by(stride).chain(self.pixels.iter().step_by(others)).copied().collect()
         };
         for _ in 0..STEPS {
-            let here = Shadow::new(target, view, blur, tangents)?;
+            let here = Shadow::new(target, view, blur, tables, tangents)?;
             let along = [Vector2::x(), Vector2::y()]
-                .map(|axis| Shadow::new(target, view, blur, tangents + axis * STEP));
+                .map(|axis| Shadow::new(target, view, blur, tables, tangents + axis * STEP));
             let [Some(first), Some(second)] = along else { return None };
-            let shares: Vec<f64> = near.iter().map(|p| here.at(gaussian, p.u, p.v)).collect();
+            let shares: Vec<f64> = near.iter().map(|p| here.at(tables, p.u, p.v)).collect();
             let (light, depth) = levels(&near, &shares)?;
             let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
             for (pixel, share) in near.iter().zip(&shares) {
                 let slope = Vector2::new(
-                    first.at(gaussian, pixel.u, pixel.v) - share,
-                    second.at(gaussian, pixel.u, pixel.v) - share,
+                    first.at(tables, pixel.u, pixel.v) - share,
+                    second.at(tables, pixel.u, pixel.v) - share,
                 ) * (-depth / STEP);
                 normal += slope * slope.transpose();
                 right += slope * (pixel.dn - light + depth * share);
@@ -140,8 +146,8 @@ impl ShadowFinder {
                 break;
             }
         }
-        let mut shadow = Shadow::new(target, view, blur, tangents)?;
-        let shares: Vec<f64> = near.iter().map(|p| shadow.at(gaussian, p.u, p.v)).collect();
+        let mut shadow = Shadow::new(target, view, blur, tables, tangents)?;
+        let shares: Vec<f64> = near.iter().map(|p| shadow.at(tables, p.u, p.v)).collect();
         shadow.depth_dn = levels(&near, &shares)?.1;
         (shadow.depth_dn > 0.0).then_some(shadow)
     }

@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{SMatrix, SVector, Vector3};
 
 use super::coverage::{Coverage, CrossImage, MarkImage};
 use super::edge::{BLUR, Blur, ByGlobals, GLOBALS, GRID, POSE, SIDES};
-use super::gaussian::Gaussian;
+use super::lines::{LinePixel, Lines, along_lines};
+use super::sampled::Tables;
 use super::samples::{Feature, LOCALS, Patch, Sample, Samples};
 use crate::CameraModel;
 use crate::docking::geometry::{View, to_pose};
@@ -75,7 +76,7 @@ impl Evaluation {
 pub(super) struct Scene<'a> {
     pub(super) camera: &'a CameraModel,
     pub(super) target: &'a TargetModel,
-    pub(super) gaussian: &'a Gaussian,
+    pub(super) tables: &'a Tables,
 }
 
 /// The features' images at some globals.
@@ -92,14 +93,27 @@ impl Images {
         let blur = Blur::on_grid(x, y, globals[GRID]);
         let sides = [0, 1, 2, 3].map(|k| globals[SIDES + k]);
         Some(Self {
-            marks: scene.target.marks.iter().map(|corners| MarkImage::new(corners, &view, blur)).collect(),
-            cross: CrossImage::new(scene.target, &view, &pose.position_m, blur, sides)?,
+            marks: scene
+                .target
+                .marks
+                .iter()
+                .map(|corners| MarkImage::new(corners, &view, blur, scene.tables))
+                .collect(),
+            cross: CrossImage::new(scene.target, &view, &pose.position_m, blur, sides, scene.tables)?,
         })
     }
 
     fn shift(&self, by: &ByGlobals) -> f64 {
         self.marks.iter().flatten().map(|mark| mark.shift(by)).fold(self.cross.shift(by), f64::max)
     }
+}
+
+/// The directions of all edges at some globals, and their blur; `None` when the features are not in front of the camera.
+pub(super) fn normals(scene: &Scene, globals: &Globals) -> Option<(Vec<(f64, f64)>, Blur)> {
+    let images = Images::new(scene, globals, 0.0)?;
+    let marks = images.marks.iter().flatten().flat_map(MarkImage::normals);
+    let blur = Blur::on_grid(globals[BLUR], globals[BLUR + 1], globals[GRID]);
+    Some((marks.chain(images.cross.normals()).collect(), blur))
 }
 
 /// Looks for the least squares from `globals` on by Levenberg and Marquardt's method. `noise` is the variance of a pixel
@@ -155,6 +169,48 @@ pub(super) fn solve(
     Some(now)
 }
 
+/// Covariance of the globals at a solution: that of noise, independent from pixel to pixel, and of what lines have in common.
+///
+/// The estimate is off by H⁻¹ Jᵀ n, H being the information: with noise of σ² that has the covariance σ² H⁻¹, and with lines that
+/// are off by s_l e_l as well, of variance τ², H⁻¹ (σ² H + τ² Σ_l (Jᵀ e_l)(Jᵀ e_l)ᵀ) H⁻¹. `None` when nothing is determined.
+pub(super) fn covariance(
+    scene: &Scene,
+    samples: &Samples,
+    lines: &mut Lines,
+    globals: &Globals,
+    evaluation: &Evaluation,
+) -> Option<GlobalMatrix> {
+    let inverse = inverse(&evaluation.information)?;
+    let images = Images::new(scene, globals, 0.0)?;
+    let centre = View::new(scene.camera, &to_pose(globals)).see(&Vector3::zeros())?;
+    let Some(turn) = along_lines(&centre.by_pose) else { return Some(inverse * evaluation.variance()) };
+    lines.clear();
+    for patch in samples.patches.iter().filter(|patch| patch.is_used) {
+        let level = patch.levels[COVERAGE - 1];
+        for pixel in samples.pixels[patch.first..patch.end].iter().filter(|pixel| pixel.is_used) {
+            let coverage = match patch.feature {
+                Feature::Mark(index) => images.marks[index].as_ref()?.at(scene.tables, pixel.u, pixel.v),
+                Feature::Cross => images.cross.at(scene.tables, pixel.u, pixel.v),
+            };
+            let [_, levels @ ..] = regressors(patch, pixel.u, pixel.v, pixel.beyond_rim, coverage.value);
+            let levels = SVector::from(levels);
+            let slopes = Globals::from(coverage.by);
+            let shift = level * slopes.fixed_rows::<POSE>(0).dot(&turn);
+            lines.add(&LinePixel {
+                row: pixel.row,
+                residual: residual(patch, pixel),
+                effects: [shift, 1.0],
+                slopes: (slopes - patch.levels_by_globals.transpose() * levels) * level,
+                levels,
+            });
+        }
+        lines.close(&patch.levels_inverse);
+    }
+    let (of_lines, explained) = lines.scatter(evaluation.variance());
+    let noise = (evaluation.variance() - explained).max(0.0);
+    Some(inverse * noise + inverse * of_lines * inverse)
+}
+
 fn bounded(globals: &Globals) -> Globals {
     let mut bounded = *globals;
     for i in BLUR..GRID {
@@ -191,8 +247,8 @@ fn evaluate(
         for pixel in pixels[patch.first..patch.end].iter_mut().step_by(search.stride) {
             let (u, v) = (pixel.u, pixel.v);
             let coverage: Coverage = match patch.feature {
-                Feature::Mark(index) => images.marks[index].as_ref()?.at(scene.gaussian, u, v),
-                Feature::Cross => images.cross.at(scene.gaussian, u, v),
+                Feature::Mark(index) => images.marks[index].as_ref()?.at(scene.tables, u, v),
+                Feature::Cross => images.cross.at(scene.tables, u, v),
             };
             pixel.coverage = coverage.value;
             if !pixel.is_used {
@@ -292,7 +348,9 @@ fn fold(patch: &mut Patch, gram: &[[f64; ROW]; ROW], origin: f64, sum: &mut Eval
         return;
     }
     let mixed = SMatrix::<f64, LOCALS, GLOBALS>::from_fn(|i, j| gram[1 + i][FIRST_GLOBAL + j]);
-    let eliminated = mixed.transpose() * normal * mixed;
+    patch.levels_inverse = normal;
+    patch.levels_by_globals = normal * mixed;
+    let eliminated = mixed.transpose() * patch.levels_by_globals;
     for i in 0..GLOBALS {
         for j in i..GLOBALS {
             let term = feature * feature * (gram[FIRST_GLOBAL + i][FIRST_GLOBAL + j] - eliminated[(i, j)]);

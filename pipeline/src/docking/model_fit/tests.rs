@@ -318,11 +318,11 @@ fn what_is_not_the_target_is_no_pose() {
 fn derivatives_are_those_of_finite_differences() {
     use super::coverage::{CrossImage, MarkImage};
     use super::edge::{BLUR, Blur, GLOBALS, SIDES};
-    use super::gaussian::Gaussian;
+    use super::sampled::Tables;
     use crate::docking::geometry::View;
 
     let model = CameraModel::new(&camera(WIDE_PX, [0.0; 3])).unwrap();
-    let (target, gaussian) = (target(), Gaussian::new());
+    let (target, tables) = (target(), Tables::new());
     // Off the axis: side faces towards +y1 and −y2 are seen, those of the ends too.
     let truth = Pose { position_m: Vector3::new(0.3, -0.4, 1.5), phi_rad: Vector3::new(0.27, -0.2, 0.05) };
     let mut at = super::solve::Globals::zeros();
@@ -335,9 +335,9 @@ fn derivatives_are_those_of_finite_differences() {
         let view = View::new(&model, &pose);
         let blur = Blur::new(g[BLUR], g[BLUR + 1]);
         let sides = [0, 1, 2, 3].map(|k| g[SIDES + k]);
-        let cross = CrossImage::new(&target, &view, &pose.position_m, blur, sides).unwrap();
-        let mark = MarkImage::new(&target.marks[1], &view, blur).unwrap();
-        [cross.at(&gaussian, u, v), mark.at(&gaussian, u, v)]
+        let cross = CrossImage::new(&target, &view, &pose.position_m, blur, sides, &tables).unwrap();
+        let mark = MarkImage::new(&target.marks[1], &view, blur, &tables).unwrap();
+        [cross.at(&tables, u, v), mark.at(&tables, u, v)]
     };
     let view = View::new(&model, &truth);
     for (y1, y2, y3) in [

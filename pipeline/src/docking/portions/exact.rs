@@ -6,7 +6,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::inverse;
-use super::scatter::Scatter;
 use crate::docking::geometry::{to_pose, to_vector};
 use crate::error::{PipelineError, require};
 
@@ -24,18 +23,15 @@ pub struct ExactPortionConfig {
     /// A field is left out when its pose is off the motion by more than this normalised square (chi-square of 6 degrees of
     /// freedom), greater than 0; where the portion's fields scatter more than they say, by as much more.
     pub field_gate: f64,
-    /// Degrees of freedom that the fields' own covariances count for, against their scatter about the motion, greater than 0:
-    /// a great number takes them as they are.
-    pub covariance_trust: f64,
     /// The prior is dropped, and the motion begins anew, when it is off the portion's own motion by more than this normalised
     /// square (chi-square of 12 degrees of freedom), greater than 0: a manoeuvre, not noise.
     pub prior_gate: f64,
 }
 
 impl Default for ExactPortionConfig {
-    /// Five portions of memory; gates that noise passes once in 10⁷ fields and 10⁷ portions; one and a half portions' trust.
+    /// Five portions of memory; gates that noise passes once in 10⁷ fields and 10⁷ portions.
     fn default() -> Self {
-        Self { forgetting: 0.8, field_gate: 45.0, covariance_trust: 12.0, prior_gate: 58.0 }
+        Self { forgetting: 0.8, field_gate: 45.0, prior_gate: 58.0 }
     }
 }
 
@@ -47,7 +43,6 @@ impl ExactPortionConfig {
     pub fn check(&self) -> Result<(), PipelineError> {
         require("portions.forgetting", self.forgetting, "0 to 1", |q| (0.0..=1.0).contains(&q))?;
         require("portions.field_gate", self.field_gate, "greater than 0", |gate| gate > 0.0)?;
-        require("portions.covariance_trust", self.covariance_trust, "greater than 0", |n| n > 0.0)?;
         require("portions.prior_gate", self.prior_gate, "greater than 0", |gate| gate > 0.0)
     }
 }
@@ -75,7 +70,6 @@ struct Ended {
 #[derive(Debug, Clone)]
 pub struct ExactPortions {
     config: ExactPortionConfig,
-    scatter: Scatter,
     last: Option<Ended>,
 }
 
@@ -83,9 +77,6 @@ pub struct ExactPortions {
 struct Observation {
     t: f64,
     pose: Vector6<f64>,
-    /// As the field says.
-    told: Matrix6<f64>,
-    /// By the scatter of the fields.
     covariance: Matrix6<f64>,
     information: Matrix6<f64>,
 }
@@ -103,21 +94,22 @@ impl ExactPortions {
     /// Those of [`ExactPortionConfig::check`].
     pub fn new(config: ExactPortionConfig) -> Result<Self, PipelineError> {
         config.check()?;
-        Ok(Self { config, scatter: Scatter::new(config.covariance_trust), last: None })
+        Ok(Self { config, last: None })
     }
 
     /// Ends a portion with the poses that were measured in it, in order: their times (s) and estimates. `None` when they do
     /// not determine a motion; what was known before then stays the prior.
     pub fn end(&mut self, fields: &[(f64, PoseEstimate)]) -> Option<Motion> {
         let time_s = fields.last()?.0;
-        let observe = |t: f64, pose: Vector6<f64>, told: Matrix6<f64>, scatter: &Scatter| {
-            let covariance = scatter.covariance(&told)?;
-            Some(Observation { t, pose, told, covariance, information: inverse(&covariance)? })
-        };
         let mut observations: Vec<Observation> = fields
             .iter()
             .filter_map(|(at_s, estimate)| {
-                observe(at_s - time_s, to_vector(&estimate.pose), estimate.covariance, &self.scatter)
+                Some(Observation {
+                    t: at_s - time_s,
+                    pose: to_vector(&estimate.pose),
+                    covariance: estimate.covariance,
+                    information: inverse(&estimate.covariance)?,
+                })
             })
             .collect();
         let least = LEAST_FIELDS.max(observations.len().div_ceil(2));
@@ -130,14 +122,6 @@ impl ExactPortions {
                 None => break,
             }
         }
-        let line = Sums::over(&observations).solution()?;
-        let residuals: Vec<_> =
-            observations.iter().map(|field| (field.pose - at(&line, field.t), field.told)).collect();
-        self.scatter.add(&residuals, self.config.forgetting);
-        let observations: Vec<Observation> = observations
-            .iter()
-            .filter_map(|field| observe(field.t, field.pose, field.told, &self.scatter))
-            .collect();
         let sums = Sums::over(&observations);
         let own_covariance = inverse(&sums.normal)?;
         let own = own_covariance * sums.right;
@@ -213,11 +197,6 @@ impl Sums {
             }
         }
         Self { normal, right }
-    }
-
-    /// The motion of these fields alone.
-    fn solution(&self) -> Option<State> {
-        Some(inverse(&self.normal)? * self.right)
     }
 }
 
@@ -338,28 +317,6 @@ mod tests {
     }
 
     #[test]
-    fn fields_that_scatter_more_than_they_say_are_found_out_in_part() {
-        // Covariances a sixteenth of the errors': as told, NEES/12 would be 16.
-        let n = 100;
-        let mean = (0..n)
-            .map(|seed| {
-                let mut portions = portions(0.8);
-                let mut last = None;
-                for portion in 0..8 {
-                    let mut fields = fields(10 * portion, 10 * portion + 10, seed, 4.0);
-                    fields.iter_mut().for_each(|(_, field)| field.covariance /= 16.0);
-                    last = portions.end(&fields);
-                }
-                nees(&last.unwrap(), &portions) / 12.0
-            })
-            .sum::<f64>()
-            / n as f64;
-        // Measured 2.2, a bound set by it. The trust that is left in the covariances, and the weight of the first portions,
-        // explain about 1.3 of it.
-        assert!((0.8..=3.0).contains(&mean), "{mean}");
-    }
-
-    #[test]
     fn the_inverse_of_the_weight_would_not_be_the_covariance() {
         let mut portions = portions(0.8);
         for portion in 0..20 {
@@ -373,12 +330,12 @@ mod tests {
 
     #[test]
     fn with_q_1_portions_equal_the_batch() {
-        let as_told = ExactPortionConfig { forgetting: 1.0, covariance_trust: 1e12, ..Default::default() };
-        let mut recursive = ExactPortions::new(as_told).unwrap();
+        let all = ExactPortionConfig { forgetting: 1.0, ..Default::default() };
+        let mut recursive = ExactPortions::new(all).unwrap();
         recursive.end(&fields(0, 10, 2, 1.0)).unwrap();
         recursive.end(&fields(10, 20, 2, 1.0)).unwrap();
         let parts = recursive.end(&fields(20, 30, 2, 1.0)).unwrap();
-        let batch = ExactPortions::new(as_told).unwrap().end(&fields(0, 30, 2, 1.0)).unwrap();
+        let batch = ExactPortions::new(all).unwrap().end(&fields(0, 30, 2, 1.0)).unwrap();
         // Both are the same linear least squares: rounding alone, in matrices of condition 1e6.
         assert!((parts.pose.position_m - batch.pose.position_m).norm() < 1e-9);
         assert!((parts.velocity_m_s - batch.velocity_m_s).norm() < 1e-8);
@@ -421,9 +378,7 @@ mod tests {
         }
         let motion = portions.end(&pushed).unwrap();
         let alone = ExactPortions::new(ExactPortionConfig::default()).unwrap().end(&pushed).unwrap();
-        // The motion of its own fields; only what is believed of their scatter, and so their weights, is of before.
-        assert!((motion.velocity_m_s.z - alone.velocity_m_s.z).abs() < 0.02, "{motion:?}");
-        assert!(motion.position_covariance[(5, 5)] > 0.5 * alone.position_covariance[(5, 5)]);
+        assert_eq!(motion, alone);
     }
 
     #[test]

@@ -7,7 +7,6 @@
 
 mod exact;
 mod paper;
-mod scatter;
 
 pub use exact::{ExactPortionConfig, ExactPortions};
 pub use paper::{PaperPortionConfig, PaperPortions};

@@ -1,0 +1,64 @@
+//! Are the errors of the docking motion as large as σ says? A small part of what `examples/docking_consistency` measures.
+
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
+#[path = "../examples/docking_consistency/approaches.rs"]
+#[allow(dead_code, reason = "the example flies swinging approaches too")]
+mod approaches;
+#[path = "../examples/docking_consistency/tally.rs"]
+#[allow(dead_code, reason = "the example prints more than is checked here")]
+mod tally;
+
+use approaches::{Estimator, Flown, Lens, Plan, fly};
+use rayon::prelude::*;
+use tally::{Tally, errors};
+
+/// Approaches of constant velocity, two portions each.
+const APPROACHES: u64 = 8;
+
+/// Place of ρ among the parameters.
+const RANGE: usize = 12;
+
+fn flown(noise_dn: f64) -> Vec<Flown> {
+    let plan = Plan::noise_only(1, 2, noise_dn);
+    (0..APPROACHES).into_par_iter().map(|number| fly(&plan, number).unwrap()).collect()
+}
+
+#[test]
+fn errors_are_as_large_as_sigma_says_and_sigma_follows_noise_and_range() {
+    let (once, twice) = (flown(2.0), flown(4.0));
+    let tally = Tally::of(&once, Estimator::Exact);
+    assert_eq!(tally.portions, APPROACHES as usize);
+    // A field's NEES/6 has a standard deviation of √(2/6) and 160 fields a standard error of 0.05 where fields err alone; what
+    // the model of the image leaves is common to the fields of an approach.
+    let of_field = tally.field_nees.unwrap().value;
+    assert!((0.8..1.3).contains(&of_field), "{of_field}");
+    // 0.7 to 1.3 are wanted of many approaches. Of eight portions the mean of χ²/6 scatters by √(2/48) = 0.2: three of it.
+    let joint = tally.nees[2].unwrap().value;
+    assert!((0.3..1.9).contains(&joint), "{joint}");
+    // 8 × 16 errors, 98.5 % of them expected within 3σ at least, several of one cause: no more than four beyond.
+    let within = tally.within_all.unwrap().value;
+    assert!(within >= 1.0 - 4.0 / 128.0, "{within}");
+
+    let sigmas = |flown: &Flown| errors(flown, Estimator::Exact)[0].sigmas;
+    for parameter in 0..16 {
+        let mut ratios: Vec<f64> =
+            once.iter().zip(&twice).map(|(a, b)| sigmas(b)[parameter] / sigmas(a)[parameter]).collect();
+        ratios.sort_by(f64::total_cmp);
+        // Rounding to DN adds 1/12 DN²: √(16.08/4.08) = 1.985. Marks that one run rejects and the other does not.
+        let ratio = 0.5 * (ratios[3] + ratios[4]);
+        assert!((1.85..2.15).contains(&ratio), "{parameter}: {ratio}");
+    }
+    for lens in Lens::ALL {
+        let mut by_range: Vec<(f64, f64)> = once
+            .iter()
+            .filter(|flown| flown.lens == lens)
+            .map(|flown| (flown.portions[1].truth.range_m(), sigmas(flown)[RANGE]))
+            .collect();
+        by_range.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (near, far) = (by_range[0], by_range[by_range.len() - 1]);
+        // σ of the range goes with its square at least: fewer pixels show the same edges from farther off.
+        let expected = (far.0 / near.0) * (far.0 / near.0);
+        assert!(far.1 / near.1 > 0.7 * expected, "{}: {by_range:?}", lens.name);
+    }
+}
