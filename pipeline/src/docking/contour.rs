@@ -184,8 +184,9 @@ fn fit(
 ) -> Option<StationOutline> {
     let step = (reach / 12.0).max(0.5);
     let count = (2.0 * reach / step).ceil() as usize + 1;
-    // An edge is the difference of the means of some samples on either side: tiles and seams are narrower.
-    let side = ((0.02 * radius).max(2.0) / step).round().max(1.0) as usize;
+    // An edge is the difference of the means of some samples on either side: tiles and seams are narrower. The longer the sides, the
+    // farther out a rim that is brighter than what is inside it moves the steepest fall.
+    let side = ((0.01 * radius).max(1.0) / step).round().max(1.0) as usize;
     let mut points = Vec::with_capacity(RAYS);
     let mut values = Vec::with_capacity(count);
     for ray in 0..RAYS {
