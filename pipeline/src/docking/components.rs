@@ -158,17 +158,15 @@ fn join(runs: &mut [Run]) -> usize {
     }
     let mut count = 0;
     let mut numbers = vec![0; runs.len()];
+    // The first run of a region comes before all others of it, and has its number when they ask for it.
     for i in 0..runs.len() {
         let first = root(runs, i);
         if first == i {
             numbers[i] = count;
             count += 1;
+        } else {
+            numbers[i] = numbers[first];
         }
-    }
-    for i in 0..runs.len() {
-        let first = root(runs, i);
-        // Later runs only: the root is never after its runs, so its own entry is renumbered from `numbers`.
-        numbers[i] = numbers[first];
     }
     for (run, number) in runs.iter_mut().zip(numbers) {
         run.region = number;
