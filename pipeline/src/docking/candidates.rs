@@ -1,12 +1,15 @@
 //! Candidates for the cross: regions of the binary image, regions of its edges, and a scan by structure.
 
+use std::ops::Range;
+
 use imageproc::image::GrayImage;
 use nalgebra::Vector2;
 
+use super::binarise;
+use super::components::{self, Component};
 use super::cross::CrossSeed;
 use super::edges::EdgeConfig;
 use super::view::{Lens, Overview};
-use super::{binarise, components};
 
 /// A place where a cross may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,16 +49,23 @@ pub(crate) fn by_edges(overview: &Overview, lens: &Lens, config: &EdgeConfig) ->
 
 /// Adds the white regions that look like a cross or its outline.
 fn cross_shaped(binary: &GrayImage, overview: &Overview, lens: &Lens, found: &mut Vec<Candidate>) {
-    for component in components::find(binary).0 {
+    let half = |component: &Component| {
         let (width, height) = component.extent();
-        let half = (width + height) / 4.0;
+        (width + height) / 4.0
+    };
+    let is_thin_square = |component: &Component| {
+        let (width, height) = component.extent();
         let (middle, centroid) = (component.middle(), component.centroid);
         let off = libm::hypot(middle.0 - centroid.0, middle.1 - centroid.1);
         let square = width.min(height) > 0.7 * width.max(height);
         let thin = f64::from(component.area) < 0.55 * width * height;
-        if !(half >= MIN_HALF_PX && square && thin && off < 0.2 * half + 0.5 && component.fourfold > 0.55) {
+        half(component) >= MIN_HALF_PX && square && thin && off < 0.2 * half(component) + 0.5
+    };
+    for component in components::find(binary, is_thin_square) {
+        if component.fourfold <= 0.55 {
             continue;
         }
+        let (half, centroid) = (half(&component), component.centroid);
         let (sin, cos) = libm::sincos(component.angle_rad);
         // The rectangle about a turned cross: half = L cos + w/2 sin, with w = 0.2 L for want of better.
         let half_length = half / (cos + 0.1 * sin.abs());
@@ -78,17 +88,30 @@ fn candidate(
     Some(Candidate { seed: CrossSeed { centre, half_length_px, slope }, weight })
 }
 
+/// Smallest half length of a cross that the scan tries, overview pixels.
+const MIN_SCAN_HALF_PX: f64 = 3.2;
+
 /// Directions of the arms that the scan tries, rad. An arm's point at half length stays on the bar up to 0.2 rad.
 const SCAN_TURNS: [f64; 3] = [0.0, -0.22, 0.22];
+
+/// All scales of the scan.
+pub(crate) const ALL_SCALES: Range<f64> = 0.0..f64::INFINITY;
 
 /// Places where the centre and points on the arms are brighter than the points between them and beyond the ends, at
 /// any scale. Slower than the regions, and does not need a whole region: an arm may be in shadow, bars may be thinner
 /// than a pixel.
-pub(crate) fn by_structure(overview: &Overview, lens: &Lens, min_contrast: f64) -> Vec<Candidate> {
+///
+/// A whole field is searched at all scales, a part of one for a target of about known size at those between `halves_px`.
+pub(crate) fn by_structure(
+    overview: &Overview,
+    lens: &Lens,
+    min_contrast: f64,
+    halves_px: Range<f64>,
+) -> Vec<Candidate> {
     let grey = &overview.grey;
-    let largest = f64::from(grey.width().min(grey.height())) / 2.0;
+    let largest = (f64::from(grey.width().min(grey.height())) / 2.0).min(halves_px.end / Overview::PIXEL);
     let mut found = Vec::new();
-    let mut half = 3.2;
+    let mut half = (halves_px.start / Overview::PIXEL).max(MIN_SCAN_HALF_PX);
     while half < largest {
         let stride = ((half / 7.0) as usize).max(1);
         for turn in SCAN_TURNS {
@@ -122,41 +145,34 @@ fn scan(
     let beyond = [(1.3, 0.0), (-1.3, 0.0), (0.0, 1.3), (0.0, -1.3)].map(|(a, d)| offset(a, d));
     let margin = (1.4 * half).ceil() as usize + 1;
     let pixels = grey.as_raw();
+    let least = min_contrast.ceil() as u8;
     let (right, bottom) = (width.saturating_sub(margin), (grey.height() as usize).saturating_sub(margin));
     for y in (margin..bottom).step_by(stride) {
         for x in (margin..right).step_by(stride) {
             let here = y * width + x;
             // The margin keeps every offset inside the image.
-            let at = |by: isize| f64::from(pixels[here.wrapping_add_signed(by)]);
-            let centre = f64::from(pixels[here]);
-            let need = centre - min_contrast;
+            let at = |by: isize| pixels[here.wrapping_add_signed(by)];
+            let centre = pixels[here];
+            let Some(need) = centre.checked_sub(least) else { continue };
             if between.iter().any(|by| at(*by) > need) {
                 continue;
             }
-            let dark = between.iter().map(|by| at(*by)).fold(0.0, f64::max);
+            let dark = f64::from(between.iter().map(|by| at(*by)).fold(0, u8::max));
             // Seven of the eight points on the arms, and three of the four beyond them.
-            let mut arms: Vec<f64> = inner.iter().chain(&outer).map(|by| at(*by)).collect();
-            arms.sort_by(f64::total_cmp);
-            let weight = arms[1].min(centre) - dark;
+            let mut arms = [0; 8];
+            arms.iter_mut().zip(inner.iter().chain(&outer)).for_each(|(arm, by)| *arm = at(*by));
+            arms.sort_unstable();
+            let weight = f64::from(arms[1].min(centre)) - dark;
             if weight < min_contrast {
                 continue;
             }
             let middle = dark + 0.6 * weight;
-            if beyond.iter().filter(|by| at(**by) > middle).count() > 1 {
+            if beyond.iter().filter(|by| f64::from(at(**by)) > middle).count() > 1 {
                 continue;
             }
             report(x as f64, y as f64, weight);
         }
     }
-}
-
-/// The candidates of two ways of finding, each best first: those that both have found, then the rest of the one and of the
-/// other.
-pub(crate) fn agreed_first(one: Vec<Candidate>, other: Vec<Candidate>) -> Vec<Candidate> {
-    let (agreed, alone): (Vec<_>, Vec<_>) =
-        one.iter().partition(|candidate| other.iter().any(|second| candidate.repeats(second)));
-    let others = other.iter().filter(|candidate| !one.iter().any(|first| candidate.repeats(first)));
-    agreed.into_iter().chain(alone).chain(others).copied().collect()
 }
 
 /// The best candidates first, without those that repeat a better one.
@@ -200,7 +216,7 @@ mod tests {
             let field = scene.field(Lines::Even);
             let (overview, lens) = (View::new(&field).overview(), synthetic::lens());
             assert!(has(&by_regions(&overview, &lens), &scene), "regions, {range_m} m");
-            assert!(has(&by_structure(&overview, &lens, 10.0), &scene), "structure, {range_m} m");
+            assert!(has(&by_structure(&overview, &lens, 10.0, ALL_SCALES), &scene), "structure, {range_m} m");
             if range_m < 10.0 {
                 let edges = by_edges(&overview, &lens, &EdgeConfig::default());
                 assert!(has(&edges, &scene), "edges, {range_m} m");
@@ -209,22 +225,13 @@ mod tests {
     }
 
     #[test]
-    fn what_two_ways_have_found_comes_first() {
-        let candidate = |x: f64| Candidate {
-            seed: CrossSeed { centre: Vector2::new(x, 0.0), half_length_px: 10.0, slope: 0.0 },
-            weight: 1.0,
-        };
-        let found =
-            agreed_first(vec![candidate(0.0), candidate(50.0)], vec![candidate(100.0), candidate(51.0)]);
-        let places: Vec<f64> = found.iter().map(|c| c.seed.centre.x).collect();
-        assert_eq!(places, [50.0, 0.0, 100.0]);
-    }
-
-    #[test]
     fn structure_finds_a_cross_with_an_arm_in_shadow() {
         let scene = Scene { shadow_from_m: 0.10, noise_dn: 2.0, ..Scene::default() };
         let field = scene.field(Lines::Even);
-        assert!(has(&by_structure(&View::new(&field).overview(), &synthetic::lens(), 10.0), &scene));
+        assert!(has(
+            &by_structure(&View::new(&field).overview(), &synthetic::lens(), 10.0, ALL_SCALES),
+            &scene
+        ));
     }
 
     #[test]

@@ -2,12 +2,12 @@
 //! target is resolved.
 
 use contract::docking::Outline;
-use imageproc::image::GrayImage;
 use nalgebra::Vector2;
 
 use super::circle::{self, CircleFit};
 use super::paper_pose::range_from_outline;
 use super::view::{Lens, Overview, View};
+use super::votes::{self, Proposal};
 
 /// The station's outline in a field, ideal image.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,12 +19,6 @@ pub(crate) struct StationOutline {
     pub(crate) sigma_px: f64,
 }
 
-/// Smallest radius that is looked for, overview pixels.
-const MIN_RADIUS_PX: f64 = 4.5;
-
-/// From one radius of the search to the next.
-const RADIUS_STEP: f64 = 1.08;
-
 /// Circles of the search that are measured.
 const MEASURED: usize = 16;
 
@@ -34,8 +28,12 @@ const RAYS: usize = 72;
 /// Share of the rays that must meet the edge on the circle: less does not tell a circle from panels and shadows …
 const MIN_SHARE: f64 = 0.6;
 
-/// … nor, below [`SMALL_RADIUS_PX`], from the end of a bar.
-const MIN_SMALL_SHARE: f64 = 0.7;
+/// … nor, below [`SMALL_RADIUS_PX`], from the end of a bar or a character of an overlay.
+const MIN_SMALL_SHARE: f64 = 0.8;
+
+/// Largest root mean square of the edge's distances from the circle, as a part of the radius: characters of 8 to 11 px have 0.055
+/// to 0.13, a station of 12 px 0.05.
+const MAX_RMS: f64 = 0.054;
 
 /// Share of a predicted outline that must be in the image to say whether it is there.
 const MIN_INSIDE: f64 = 0.45;
@@ -48,12 +46,11 @@ const MIN_STEP: (f64, f64) = (8.0, 3.0);
 
 /// The outline of a bright round face; `None` when there is none, or when too much of it is outside the image.
 ///
-/// The face stands before structure that is now darker, now as bright: no threshold cuts it out. Each edge votes for the
-/// centres of the circles that it may belong to, bright inside (Kimme, Ballard and Sklansky 1975); the circles with most votes
+/// The face stands before structure that is now darker, now as bright: no threshold cuts it out. The circles with most votes
 /// are measured on the field, ray by ray, and the largest one that is whole enough is the outline.
 pub(crate) fn find(view: &View<'_>, overview: &Overview, lens: &Lens) -> Option<StationOutline> {
-    let min_step = MIN_STEP.0.max(MIN_STEP.1 * noise(&overview.grey));
-    let mut proposals = propose(&overview.grey, min_step);
+    let min_step = least_step(view);
+    let mut proposals = votes::propose(&overview.grey, min_step);
     proposals.sort_by(|a, b| b.share.total_cmp(&a.share));
     let mut kept: Vec<Proposal> = Vec::new();
     for proposal in proposals {
@@ -65,36 +62,56 @@ pub(crate) fn find(view: &View<'_>, overview: &Overview, lens: &Lens) -> Option<
             kept.push(proposal);
         }
     }
-    kept.iter()
+    let measured: Vec<StationOutline> = kept
+        .iter()
         .filter_map(|proposal| {
             let centre = lens.to_ideal(overview.to_camera(proposal.x, proposal.y))?;
             let radius = proposal.radius * Overview::PIXEL;
-            let share = if radius < SMALL_RADIUS_PX { MIN_SMALL_SHARE } else { MIN_SHARE };
-            measure(view, lens, (centre, radius), min_step, [MIN_SHARE, share])
+            measure(view, lens, (centre, radius), min_step, [MIN_SHARE, least_share(radius)])
         })
-        .max_by(|a, b| a.circle.radius.total_cmp(&b.circle.radius))
+        .filter(StationOutline::is_round)
+        .collect();
+    let largest = measured.iter().map(|outline| outline.circle.radius).fold(0.0, f64::max);
+    // Several proposals come to the same circle by other points. The largest of them would be too large: the one that its
+    // points fit best is taken.
+    measured
+        .into_iter()
+        .filter(|outline| outline.circle.radius > 0.93 * largest)
+        .min_by(|a, b| a.circle.rms.total_cmp(&b.circle.rms))
 }
 
-/// A circle that edges voted for, overview pixels.
-struct Proposal {
-    x: f64,
-    y: f64,
-    radius: f64,
-    /// Votes over the circle's circumference.
-    share: f64,
+/// The outline about where the field before has it; `None` when it is not there.
+pub(crate) fn follow(view: &View<'_>, lens: &Lens, before: &CircleFit) -> Option<StationOutline> {
+    let place = (before.centre, before.radius);
+    let share = least_share(before.radius);
+    let reach = (0.07 * before.radius).max(3.0);
+    fit(view, lens, place, reach, least_step(view), share).filter(StationOutline::is_round)
 }
 
-/// Median difference of horizontal neighbours, grey values.
-fn noise(grey: &GrayImage) -> f64 {
-    let width = grey.width() as usize;
-    if width < 2 {
-        return 0.0;
+impl StationOutline {
+    fn is_round(&self) -> bool {
+        self.circle.rms <= MAX_RMS * self.circle.radius
     }
+}
+
+/// Share of the rays on which a circle of this radius must have its edge.
+fn least_share(radius_px: f64) -> f64 {
+    if radius_px < SMALL_RADIUS_PX { MIN_SMALL_SHARE } else { MIN_SHARE }
+}
+
+/// Least height of an edge in this field, grey values.
+fn least_step(view: &View<'_>) -> f64 {
+    MIN_STEP.0.max(MIN_STEP.1 * noise(view))
+}
+
+/// Median difference of horizontal neighbours, each the mean of two pixels, grey values; of every fourth row.
+fn noise(view: &View<'_>) -> f64 {
     let mut counts = [0u32; 256];
     let mut total = 0;
-    for row in grey.as_raw().chunks_exact(width) {
-        for pair in row.windows(2) {
-            counts[usize::from(pair[0].abs_diff(pair[1]))] += 1;
+    for row in (0..view.rows()).step_by(4) {
+        let mean = |pair: usize| (view.at(2 * pair, row) + view.at(2 * pair + 1, row)) / 2.0;
+        for pair in 1..view.columns() / 2 {
+            counts[((mean(pair) - mean(pair - 1)).abs() + 0.5).min(View::WHITE) as usize] += 1;
             total += 1;
         }
     }
@@ -106,82 +123,6 @@ fn noise(grey: &GrayImage) -> f64 {
             2 * below >= total
         })
         .unwrap_or(0) as f64
-}
-
-/// The best circles of each radius.
-fn propose(grey: &GrayImage, min_step: f64) -> Vec<Proposal> {
-    let (width, height) = (grey.width() as usize, grey.height() as usize);
-    if width < 16 || height < 16 {
-        return Vec::new();
-    }
-    let edges = edges(grey, min_step);
-    let mut found = Vec::new();
-    let mut radius = MIN_RADIUS_PX;
-    let mut votes: Vec<u16> = Vec::new();
-    while radius < 0.5 * width.min(height) as f64 {
-        // The direction of an edge is known to a tenth or so: centres of large circles scatter.
-        let cell = (0.10 * radius).max(1.0);
-        let (columns, rows) = ((width as f64 / cell) as usize + 1, (height as f64 / cell) as usize + 1);
-        votes.clear();
-        votes.resize(columns * rows, 0);
-        for edge in &edges {
-            let (x, y) =
-                ((edge.x + radius * edge.inwards.x) / cell, (edge.y + radius * edge.inwards.y) / cell);
-            if x >= 0.0 && y >= 0.0 && (x as usize) < columns && (y as usize) < rows {
-                let place = y as usize * columns + x as usize;
-                votes[place] = votes[place].saturating_add(1);
-            }
-        }
-        let circumference = std::f64::consts::TAU * radius;
-        // Two by two cells, so that a centre on the border between cells is no worse than one within.
-        let mut best: Vec<Proposal> = Vec::new();
-        for row in 1..rows {
-            for column in 1..columns {
-                let at = row * columns + column;
-                let sum = votes[at] + votes[at - 1] + votes[at - columns] + votes[at - columns - 1];
-                let share = f64::from(sum) / circumference;
-                if share > 0.3 && best.last().is_none_or(|last| best.len() < 4 || share > last.share) {
-                    let proposal = Proposal { x: column as f64 * cell, y: row as f64 * cell, radius, share };
-                    let place = best.partition_point(|other| other.share >= share);
-                    best.insert(place, proposal);
-                    best.truncate(4);
-                }
-            }
-        }
-        found.append(&mut best);
-        radius *= RADIUS_STEP;
-    }
-    found
-}
-
-/// A place on an edge, overview pixels.
-struct Edge {
-    x: f64,
-    y: f64,
-    /// Unit vector towards the brighter side.
-    inwards: Vector2<f64>,
-}
-
-/// The places of steep gradient (Sobel).
-fn edges(grey: &GrayImage, min_step: f64) -> Vec<Edge> {
-    let (width, height) = (grey.width() as usize, grey.height() as usize);
-    let pixels = grey.as_raw();
-    let mut found = Vec::new();
-    for y in 1..height - 1 {
-        for x in 1..width - 1 {
-            let at = |dx: usize, dy: usize| i32::from(pixels[(y + dy - 1) * width + x + dx - 1]);
-            let gx = at(2, 0) + 2 * at(2, 1) + at(2, 2) - at(0, 0) - 2 * at(0, 1) - at(0, 2);
-            let gy = at(0, 2) + 2 * at(1, 2) + at(2, 2) - at(0, 0) - 2 * at(1, 0) - at(2, 0);
-            let square = f64::from(gx * gx + gy * gy);
-            // A step of this height has four times its height in Sobel's sum.
-            if square >= 16.0 * min_step * min_step {
-                let length = square.sqrt();
-                let inwards = Vector2::new(f64::from(gx), f64::from(gy)) / length;
-                found.push(Edge { x: x as f64, y: y as f64, inwards });
-            }
-        }
-    }
-    found
 }
 
 /// Whether the outline is seen where `centre` and `radius` predict it; `None` when too much of it is outside the image to
@@ -206,6 +147,16 @@ pub(crate) fn confirms(
     // Shadows and what stands behind may hide half of it.
     let seen = measure(view, lens, (centre, radius), min_step, [0.25 * inside, 0.45 * inside]);
     Some(seen.is_some_and(|seen| (seen.circle.radius / radius - 1.0).abs() < 0.12))
+}
+
+/// The outline where it is predicted, when most of it is seen.
+pub(crate) fn measure_at(
+    view: &View<'_>,
+    lens: &Lens,
+    place: (Vector2<f64>, f64),
+    min_step: f64,
+) -> Option<StationOutline> {
+    measure(view, lens, place, min_step, [MIN_SHARE, MIN_SHARE]).filter(StationOutline::is_round)
 }
 
 /// The circle through the steepest falls of brightness on rays from a centre, twice, the second time about the first; on it
@@ -233,8 +184,9 @@ fn fit(
 ) -> Option<StationOutline> {
     let step = (reach / 12.0).max(0.5);
     let count = (2.0 * reach / step).ceil() as usize + 1;
-    // An edge is the difference of the means of some samples on either side: tiles and seams are narrower.
-    let side = ((0.02 * radius).max(2.0) / step).round().max(1.0) as usize;
+    // An edge is the difference of the means of some samples on either side: tiles and seams are narrower. The longer the sides, the
+    // farther out a rim that is brighter than what is inside it moves the steepest fall.
+    let side = ((0.01 * radius).max(1.0) / step).round().max(1.0) as usize;
     let mut points = Vec::with_capacity(RAYS);
     let mut values = Vec::with_capacity(count);
     for ray in 0..RAYS {

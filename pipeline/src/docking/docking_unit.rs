@@ -62,25 +62,64 @@ pub(crate) struct DiskEdge {
     pub(crate) circle: Option<CircleFit>,
     /// How many points are on it.
     pub(crate) points: u32,
-    /// Share of the directions, 0 to 1, in which the strongest edge lies on the circle.
+    /// Share of the directions in the image, 0 to 1, in which the strongest edge lies on the circle, or on an arc of it.
     pub(crate) share: f64,
     /// Share of the directions, 0 to 1, in which the edge would be in the image.
     pub(crate) in_field: f64,
 }
 
-/// Looks for a circular edge of at least `min_step` grey values within a seventh of the radius of its predicted place.
+/// Looks for a circular edge of at least `min_step` grey values within a seventh of the radius of its predicted place; where less
+/// than two thirds of it is in the image, for an arc within a fortieth.
 pub(crate) fn find(
     view: &View<'_>,
     lens: &Lens,
     (centre, radius): (Vector2<f64>, f64),
     min_step: f64,
 ) -> DiskEdge {
-    let reach = (0.14 * radius).max(3.0);
+    let wide = rays(view, lens, (centre, radius), (0.14 * radius).max(3.0), min_step);
+    if wide.in_field < 2 * RAYS / 3 {
+        return arc(&rays(view, lens, (centre, radius), (0.025 * radius).max(3.0), min_step), radius);
+    }
+    let Rays { edges, in_field, reach, step } = wide;
+    let nothing = DiskEdge { circle: None, points: 0, share: 0.0, in_field: in_field as f64 / RAYS as f64 };
+    if edges.len() < 8 {
+        return nothing;
+    }
+    let points: Vec<Vector2<f64>> =
+        edges.iter().map(|(direction, offset)| centre + direction * (radius + offset)).collect();
+    let tolerance = (0.015 * radius).max(1.5 * step);
+    let Some((fit, _)) = circle::fit_robustly(&points, tolerance) else { return nothing };
+    let on_it = points.iter().filter(|p| fit.residual(p).abs() <= tolerance).count();
+    let plausible = (fit.centre - centre).norm() < reach && (fit.radius / radius - 1.0).abs() < 0.1;
+    if !plausible {
+        return nothing;
+    }
+    DiskEdge { circle: Some(fit), points: on_it as u32, share: on_it as f64 / in_field as f64, ..nothing }
+}
+
+/// The strongest edges along rays across a predicted circle.
+struct Rays {
+    /// Direction of a ray from the centre, and how far outside the predicted circle its strongest edge is, px.
+    edges: Vec<(Vector2<f64>, f64)>,
+    /// Rays that are in the image.
+    in_field: usize,
+    /// How far to either side of the circle an edge is looked for, px.
+    reach: f64,
+    /// From sample to sample, px.
+    step: f64,
+}
+
+fn rays(
+    view: &View<'_>,
+    lens: &Lens,
+    (centre, radius): (Vector2<f64>, f64),
+    reach: f64,
+    min_step: f64,
+) -> Rays {
     // An edge is a difference over two blurs; rows of a field are two pixels apart.
     let step = (reach / 12.0).max(1.0);
     let count = (2.0 * reach / step).ceil() as usize + 1;
-    let mut points = Vec::with_capacity(RAYS);
-    let mut in_field = 0usize;
+    let mut found = Rays { edges: Vec::with_capacity(RAYS), in_field: 0, reach, step };
     let mut values = Vec::with_capacity(count);
     for ray in 0..RAYS {
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * ray as f64 / RAYS as f64);
@@ -92,34 +131,29 @@ pub(crate) fn find(
         if values.len() < count {
             continue;
         }
-        in_field += 1;
+        found.in_field += 1;
         let strongest = (1..count - 1)
             .map(|i| (i, (values[i + 1] - values[i - 1]).abs()))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((i, height)) = strongest
             && height >= min_step
         {
-            points.push(centre + direction * (radius - reach + step * i as f64));
+            found.edges.push((direction, step * i as f64 - reach));
         }
     }
-    let share_in_field = in_field as f64 / RAYS as f64;
-    let nothing = DiskEdge { circle: None, points: 0, share: 0.0, in_field: share_in_field };
-    if in_field < RAYS / 3 || points.len() < 8 {
-        return nothing;
-    }
-    let tolerance = (0.015 * radius).max(1.5 * step);
-    let Some((fit, _)) = circle::fit_robustly(&points, tolerance) else { return nothing };
-    let on_it = points.iter().filter(|p| fit.residual(p).abs() <= tolerance).count();
-    let plausible = (fit.centre - centre).norm() < reach && (fit.radius / radius - 1.0).abs() < 0.1;
-    if !plausible {
-        return nothing;
-    }
-    DiskEdge {
-        circle: Some(fit),
-        points: on_it as u32,
-        share: on_it as f64 / in_field as f64,
-        in_field: share_in_field,
-    }
+    found
+}
+
+/// What is seen of an arc: too short for a circle of its own, it must lie about the predicted centre.
+fn arc(rays: &Rays, radius: f64) -> DiskEdge {
+    let nothing =
+        DiskEdge { circle: None, points: 0, share: 0.0, in_field: rays.in_field as f64 / RAYS as f64 };
+    let mut offsets: Vec<f64> = rays.edges.iter().map(|(_, offset)| *offset).collect();
+    offsets.sort_by(f64::total_cmp);
+    let Some(&middle) = offsets.get(offsets.len() / 2) else { return nothing };
+    let tolerance = (0.008 * radius).max(1.5 * rays.step);
+    let on_it = offsets.iter().filter(|offset| (*offset - middle).abs() <= tolerance).count();
+    DiskEdge { points: on_it as u32, share: on_it as f64 / rays.in_field as f64, ..nothing }
 }
 
 #[cfg(test)]

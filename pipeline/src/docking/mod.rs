@@ -19,18 +19,21 @@ mod histogram;
 mod marks;
 pub mod model_fit;
 mod observer;
+mod orientation;
 mod outline;
 pub mod paper_pose;
 mod paper_sigma;
 mod pipeline;
 pub mod portions;
 mod profile;
+mod range_memory;
 mod recognise;
 mod region;
 mod self_check;
 #[cfg(test)]
 mod synthetic;
 mod view;
+mod votes;
 
 pub use config::DockingConfig;
 pub use edges::EdgeConfig;

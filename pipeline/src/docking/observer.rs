@@ -7,14 +7,17 @@ use contract::docking::{
 use contract::{Camera, ContractError};
 
 use super::config::DockingConfig;
+use super::contour::{self, StationOutline};
 use super::docking_unit::Side;
 use super::evidence;
 use super::histogram::Histogram;
 use super::marks::{self, MarkShape};
 use super::model_fit::{Fitted, ModelFit};
-use super::outline;
+use super::orientation::{self, Orientation, Uprightness};
+use super::outline::{self, OutlineTrack, RESOLVED_CIRCLE_PX, SMALLEST_CIRCLE_PX};
 use super::paper_pose::{PaperMeasurement, PaperTarget};
 use super::paper_sigma;
+use super::range_memory::RangeMemory;
 use super::recognise::{Recognition, Sight};
 use super::region::{Prediction, Rectangle, Sighting, Track};
 use super::self_check;
@@ -31,8 +34,10 @@ pub(crate) struct Observer {
     shapes: Vec<MarkShape>,
     track: Track,
     fit: ModelFit,
-    /// Moment and d3 of the last pose, which a loss of the target does not erase.
-    last_range: Option<(f64, f64)>,
+    outlines: OutlineTrack,
+    orientation: Orientation,
+    /// What was told of the range, which a loss of the target does not erase.
+    ranges: RangeMemory,
 }
 
 /// What a field gave.
@@ -85,7 +90,9 @@ impl Observer {
             config: config.clone(),
             track: Track::default(),
             fit: ModelFit::new(),
-            last_range: None,
+            outlines: OutlineTrack::default(),
+            orientation: Orientation::default(),
+            ranges: RangeMemory::default(),
         })
     }
 
@@ -105,36 +112,77 @@ impl Observer {
             return Observed::nothing(NoPose::SaturatedField);
         }
         let sheet = Sheet { field, view, time_s: telemetry.time_s, camera: telemetry.camera };
+        let mut observed = self.look(&sheet, &lens);
+        let told_m = match &observed.solution {
+            DockingSolution::Measured(measurement) => Some(measurement.best.pose.position_m.z),
+            DockingSolution::RangeOnly { range_m, .. } => Some(*range_m),
+            DockingSolution::NoSolution(_) => None,
+        };
+        if told_m.is_some_and(|range_m| !self.ranges.admit(sheet.time_s, range_m)) {
+            self.track.reset();
+            observed.solution = DockingSolution::NoSolution(NoPose::Inconsistent);
+            observed.paper = None;
+        }
+        observed
+    }
+
+    /// About where the target is predicted; else within the outline of a station that is followed; else in the whole field.
+    fn look(&mut self, sheet: &Sheet, lens: &Lens) -> Observed {
         let max_gap_s = self.config.region.max_gap_s;
         let predicted = self.track.predict(sheet.time_s, sheet.camera, lens.focal_px(), max_gap_s);
         let mut lost = None;
         if let Some(prediction) = &predicted {
-            match self.follow(&sheet, &lens, prediction) {
+            match self.follow(sheet, lens, prediction) {
                 Ok(observed) => return observed,
                 Err(reason) => lost = Some(reason),
             }
         }
-        let overview = view.overview();
-        let found = self.recognition(view, &lens).search(&overview);
-        let reason = match found {
-            Ok(sight) => match self.measure(&sheet, &lens, &sight, true) {
-                Ok(observed) => return observed,
-                Err(reason) => reason,
-            },
+        if let Some(observed) = self.within_outline(sheet, lens, max_gap_s) {
+            return observed;
+        }
+        let overview = sheet.view.overview();
+        let found = self.recognition(sheet.view, lens).search(&overview, predicted.as_ref());
+        let reason = match found.and_then(|sight| self.measure(sheet, lens, &sight)) {
+            Ok(observed) => return observed,
             Err(NoPose::NoTarget) => lost.unwrap_or(NoPose::NoTarget),
             Err(reason) => reason,
         };
         self.track.reset();
+        match contour::find(sheet.view, &overview, lens) {
+            Some(outline) => {
+                self.outlines.found((sheet.time_s, sheet.camera), &outline);
+                self.range_alone(lens, &outline, reason)
+            }
+            None => Observed::nothing(outline::nothing(sheet.view, reason)),
+        }
+    }
+
+    /// The answer while the station's outline is followed and its target not yet resolved.
+    fn within_outline(&mut self, sheet: &Sheet, lens: &Lens, max_gap_s: f64) -> Option<Observed> {
+        let outline = self.outlines.follow(sheet.view, lens, (sheet.time_s, sheet.camera), max_gap_s)?;
+        let mark_circle_px = outline::mark_circle_px(&self.target, lens, &outline.circle)?;
+        if mark_circle_px >= RESOLVED_CIRCLE_PX {
+            return None;
+        }
+        let mut reason = NoPose::NoTarget;
+        if mark_circle_px >= SMALLEST_CIRCLE_PX {
+            let overview = sheet.view.overview();
+            let recognition = self.recognition(sheet.view, lens);
+            let found = recognition.search_within(&overview, &outline.circle, mark_circle_px);
+            match found.and_then(|sight| self.measure(sheet, lens, &sight)) {
+                Ok(observed) => return Some(observed),
+                Err(why) => reason = why,
+            }
+        }
+        self.track.reset();
+        Some(self.range_alone(lens, &outline, reason))
+    }
+
+    fn range_alone(&self, lens: &Lens, outline: &StationOutline, reason: NoPose) -> Observed {
         let mut observed = Observed::nothing(reason.clone());
         let Observed { features, region, .. } = &mut observed;
-        observed.solution =
-            match outline::range(view, &overview, &lens, &self.target, features, region, reason) {
-                Ok(DockingSolution::RangeOnly { range_m, .. }) if !self.may_be_at(sheet.time_s, range_m) => {
-                    DockingSolution::NoSolution(NoPose::Inconsistent)
-                }
-                Ok(solution) => solution,
-                Err(reason) => DockingSolution::NoSolution(reason),
-            };
+        observed.solution = outline::range(lens, &self.target, outline, features, region, reason)
+            .unwrap_or_else(DockingSolution::NoSolution);
         observed
     }
 
@@ -145,7 +193,7 @@ impl Observer {
     /// The target about where the fields before have it: cross and marks, or what is left of them about the predicted pose.
     fn follow(&mut self, sheet: &Sheet, lens: &Lens, prediction: &Prediction) -> Result<Observed, NoPose> {
         let tracked = self.recognition(sheet.view, lens).track(&prediction.cross, &prediction.plane);
-        let lost = match tracked.and_then(|sight| self.measure(sheet, lens, &sight, false)) {
+        let lost = match tracked.and_then(|sight| self.measure(sheet, lens, &sight)) {
             Ok(observed) => return Ok(observed),
             Err(reason) => reason,
         };
@@ -159,18 +207,9 @@ impl Observer {
     }
 
     /// The answer from cross and marks.
-    fn measure(
-        &mut self,
-        sheet: &Sheet,
-        lens: &Lens,
-        sight: &Sight,
-        is_new: bool,
-    ) -> Result<Observed, NoPose> {
+    fn measure(&mut self, sheet: &Sheet, lens: &Lens, sight: &Sight) -> Result<Observed, NoPose> {
         let (cross, plane) = (&sight.cross, &sight.marks.plane);
         let unit = self_check::docking_unit(sheet.view, lens, &self.target, cross, plane, Side::Nominal);
-        if is_new {
-            self_check::upright(sheet.view, lens, &self.target, cross, plane, &unit)?;
-        }
         let measurement = PaperMeasurement {
             focal_px: lens.focal_px(),
             cross: cross.seed.centre.into(),
@@ -180,6 +219,12 @@ impl Observer {
         };
         let target = PaperTarget::of(&self.target);
         let paper = measurement.pose(&target)?;
+        let seen = orientation::look(sheet.view, lens, &self.target, cross, plane, &unit);
+        if self.orientation.is_turned(sheet.time_s, seen) {
+            // It is followed, so that nearer, where nothing in the field tells, it is known.
+            self.remember(sheet, lens, paper);
+            return Ok(Observed::nothing(NoPose::Inconsistent));
+        }
         let mut features = evidence::evidence(lens, sight, &unit);
         features.station = evidence::station(sheet.view, lens, &self.target, sight);
         let best = match self.fit.fit(sheet.field, lens.model(), &self.target, &paper) {
@@ -190,6 +235,7 @@ impl Observer {
             // Cross and marks are there and of one target: the paper's pose is worse than the best one, and better than none.
             Err(_) => paper_sigma::estimate(&measurement, &target, cross.seed.half_length_px)?,
         };
+        self_check::range(sheet.view, lens, &self.target, cross, plane, &best)?;
         self.remember(sheet, lens, best.pose);
         Ok(Observed {
             solution: DockingSolution::Measured(Box::new(FieldMeasurement { best, paper: Some(paper) })),
@@ -203,6 +249,9 @@ impl Observer {
     fn remaining(&mut self, sheet: &Sheet, lens: &Lens, fitted: &Fitted) -> Observed {
         let best = fitted.estimate;
         self.remember(sheet, lens, best.pose);
+        if self.orientation.is_turned(sheet.time_s, Uprightness::Unknown) {
+            return Observed::nothing(NoPose::Inconsistent);
+        }
         let plane = self.track.last().map(|sighting| sighting.plane);
         Observed {
             solution: DockingSolution::Measured(Box::new(FieldMeasurement { best, paper: None })),
@@ -212,16 +261,7 @@ impl Observer {
         }
     }
 
-    /// Whether a range can be reached from the last pose: what is near and lost is not far.
-    fn may_be_at(&self, time_s: f64, range_m: f64) -> bool {
-        self.last_range.is_none_or(|(before_s, before_m)| {
-            let elapsed_s = time_s - before_s;
-            elapsed_s < 0.0 || (range_m - before_m).abs() <= 0.2 * before_m + MAX_SPEED_M_S * elapsed_s
-        })
-    }
-
     fn remember(&mut self, sheet: &Sheet, lens: &Lens, pose: Pose) {
-        self.last_range = Some((sheet.time_s, pose.position_m.z));
         if let Some(sighting) = Sighting::of(sheet.time_s, sheet.camera, lens, &self.target, pose) {
             self.track.push(sighting);
         }
@@ -231,5 +271,3 @@ impl Observer {
 /// A field of which more than this share is at full scale shows nothing.
 const MAX_SATURATED_SHARE: f64 = 0.6;
 
-/// No approach is faster than this, m/s.
-const MAX_SPEED_M_S: f64 = 10.0;

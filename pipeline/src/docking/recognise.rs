@@ -3,11 +3,12 @@
 use contract::docking::{MarkUse, NoPose, TargetModel};
 use nalgebra::Vector2;
 
-use super::candidates::{self, Candidate};
+use super::candidates::{self, ALL_SCALES, Candidate};
 use super::circle::{self, CircleFit};
 use super::config::DockingConfig;
 use super::cross::{self, CrossFit, CrossSeed};
 use super::marks::{MarkSearch, MarkShape, MarksFit, Plane};
+use super::region::Prediction;
 use super::self_check;
 use super::view::{Lens, Overview, View};
 
@@ -17,6 +18,21 @@ pub(crate) struct Sight {
     pub(crate) cross: CrossFit,
     pub(crate) marks: MarksFit,
     pub(crate) circle: MarkCircle,
+}
+
+impl Sight {
+    /// Whether it is of the same target as another one.
+    fn repeats(&self, other: &Self) -> bool {
+        let (one, two) = (&self.cross.seed, &other.cross.seed);
+        (one.centre - two.centre).norm() <= one.half_length_px.min(two.half_length_px)
+    }
+
+    /// Whether its cross is the one that is expected.
+    fn is_at(&self, expected: &CrossSeed) -> bool {
+        let seed = &self.cross.seed;
+        let scale = seed.half_length_px / expected.half_length_px;
+        (seed.centre - expected.centre).norm() <= 0.5 * expected.half_length_px && (0.9..1.1).contains(&scale)
+    }
 }
 
 /// The circle of the marks, ideal image.
@@ -61,23 +77,53 @@ impl Recognition<'_> {
         self.complete(cross, &start, reach, 0.02)
     }
 
-    /// The one target in the field.
+    /// The one target in the field; of several the one that is predicted.
+    ///
+    /// The ways of finding candidates are taken one after the other, the quick ones first, until one of them has found a target.
     ///
     /// # Errors
     /// The reason why there is none, or not one.
-    pub(crate) fn search(&self, overview: &Overview) -> Result<Sight, NoPose> {
-        let mut reason = NoPose::NoTarget;
-        let ways: [&dyn Fn() -> Vec<Candidate>; 2] = [
-            &|| {
-                let regions = candidates::by_regions(overview, self.lens);
-                let edges = candidates::by_edges(overview, self.lens, &self.config.edges);
-                candidates::agreed_first(regions, edges)
-            },
-            &|| candidates::by_structure(overview, self.lens, self.config.min_contrast),
+    pub(crate) fn search(
+        &self,
+        overview: &Overview,
+        predicted: Option<&Prediction>,
+    ) -> Result<Sight, NoPose> {
+        let ways: [&dyn Fn() -> Vec<Candidate>; 3] = [
+            &|| candidates::by_regions(overview, self.lens),
+            &|| candidates::by_edges(overview, self.lens, &self.config.edges),
+            &|| candidates::by_structure(overview, self.lens, self.config.min_contrast, ALL_SCALES),
         ];
+        self.first_of(&ways, predicted)
+    }
+
+    /// The one target within a station's outline, which says how large it must be.
+    ///
+    /// # Errors
+    /// The reason why there is none, or not one.
+    pub(crate) fn search_within(
+        &self,
+        overview: &Overview,
+        outline: &CircleFit,
+        mark_circle_px: f64,
+    ) -> Result<Sight, NoPose> {
+        let centre = self.lens.to_camera(outline.centre).ok_or(NoPose::NoTarget)?;
+        let part = overview.around(centre, outline.radius);
+        let half_px = mark_circle_px * self.model.cross.half_length_m / self.model.mark_circle_radius_m;
+        let scales = 0.8 * half_px..1.25 * half_px;
+        let ways: [&dyn Fn() -> Vec<Candidate>; 2] = [&|| candidates::by_regions(&part, self.lens), &|| {
+            candidates::by_structure(&part, self.lens, self.config.min_contrast, scales.clone())
+        }];
+        self.first_of(&ways, None)
+    }
+
+    fn first_of(
+        &self,
+        ways: &[&dyn Fn() -> Vec<Candidate>],
+        predicted: Option<&Prediction>,
+    ) -> Result<Sight, NoPose> {
+        let mut reason = NoPose::NoTarget;
         for way in ways {
-            let found = self.examine(way(), &mut reason)?;
-            if let Some(sight) = found {
+            if let Some(sight) = self.examine(way(), predicted, &mut reason)? {
                 return Ok(sight);
             }
         }
@@ -85,8 +131,13 @@ impl Recognition<'_> {
     }
 
     /// Chooses by structure: the candidate that has a cross's bars and marks around it.
-    fn examine(&self, found: Vec<Candidate>, reason: &mut NoPose) -> Result<Option<Sight>, NoPose> {
-        let mut chosen: Option<Sight> = None;
+    fn examine(
+        &self,
+        found: Vec<Candidate>,
+        predicted: Option<&Prediction>,
+        reason: &mut NoPose,
+    ) -> Result<Option<Sight>, NoPose> {
+        let mut sights: Vec<Sight> = Vec::new();
         let mut examined = 0;
         for candidate in found {
             if examined >= self.config.max_candidates {
@@ -97,20 +148,18 @@ impl Recognition<'_> {
             }
             examined += 1;
             match self.target_at(&candidate.seed) {
-                Ok(sight) => match &chosen {
-                    None => chosen = Some(sight),
-                    Some(first) => {
-                        let apart = (first.cross.seed.centre - sight.cross.seed.centre).norm();
-                        if apart > first.cross.seed.half_length_px.min(sight.cross.seed.half_length_px) {
-                            return Err(NoPose::AmbiguousTarget);
-                        }
-                    }
-                },
-                Err(NoPose::NoTarget) => {}
+                Ok(sight) if !sights.iter().any(|other| other.repeats(&sight)) => sights.push(sight),
+                Ok(_) | Err(NoPose::NoTarget) => {}
                 Err(why) => *reason = why,
             }
         }
-        Ok(chosen)
+        if sights.len() > 1 {
+            sights.retain(|sight| predicted.is_some_and(|prediction| sight.is_at(&prediction.cross)));
+            if sights.len() != 1 {
+                return Err(NoPose::AmbiguousTarget);
+            }
+        }
+        Ok(sights.pop())
     }
 
     fn in_window(&self, centre: Vector2<f64>) -> bool {

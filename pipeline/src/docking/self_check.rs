@@ -1,6 +1,6 @@
 //! Whether what was found has the structure that the scene must have.
 
-use contract::docking::{MarkUse, NoPose, TargetModel};
+use contract::docking::{MarkUse, NoPose, PoseEstimate, TargetModel};
 
 use super::contour;
 use super::cross::CrossFit;
@@ -67,27 +67,8 @@ pub(crate) fn docking_unit(
     docking_unit::find(view, lens, place, (0.12 * cross.levels.contrast()).max(8.0))
 }
 
-/// Whether the docking unit is on the right side. Cross and marks look the same upside down.
-///
-/// # Errors
-/// [`NoPose::Inconsistent`] when its disk is plainly seen on another side of the target and not where it should be.
-pub(crate) fn upright(
-    view: &View<'_>,
-    lens: &Lens,
-    model: &TargetModel,
-    cross: &CrossFit,
-    plane: &Plane,
-    nominal: &DiskEdge,
-) -> Result<(), NoPose> {
-    if nominal.share > 0.4 {
-        return Ok(());
-    }
-    let elsewhere = Side::OTHERS
-        .into_iter()
-        .map(|side| docking_unit(view, lens, model, cross, plane, side))
-        .any(|edge| edge.in_field > 0.6 && edge.share > 0.7);
-    if elsewhere { Err(NoPose::Inconsistent) } else { Ok(()) }
-}
+/// Largest standard deviation of the range as a part of it: three of them are 5 %.
+const MAX_RANGE_SIGMA: f64 = 1.0 / 60.0;
 
 /// Whether the station stands about a small target. In a few pixels a cross with marks is found in anything that has
 /// strokes: letters of an overlay, tiles of a thermal blanket.
@@ -110,6 +91,40 @@ pub(crate) fn on_station(
         Some(true) => Ok(()),
         _ => Err(NoPose::NoTarget),
     }
+}
+
+/// Whether the range of a small target is known at all, and is the one that the station's outline has where most of that is in the
+/// image. A pose of few pixels may be that of noise about a cross.
+///
+/// # Errors
+/// [`NoPose::TooFewFeatures`] when the range's standard deviation is larger than a sixtieth of it,
+/// [`NoPose::Inconsistent`] when the two ranges differ by more than three times their standard deviations.
+pub(crate) fn range(
+    view: &View<'_>,
+    lens: &Lens,
+    model: &TargetModel,
+    cross: &CrossFit,
+    plane: &Plane,
+    best: &PoseEstimate,
+) -> Result<(), NoPose> {
+    if model.mark_circle_radius_m * plane.scale_px_m > SMALL_CIRCLE_PX {
+        return Ok(());
+    }
+    let sigma_m = best.covariance[(2, 2)].max(0.0).sqrt();
+    if sigma_m > MAX_RANGE_SIGMA * best.pose.position_m.z {
+        return Err(NoPose::TooFewFeatures);
+    }
+    let centre = cross.seed.centre;
+    let place = docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
+    let Some(outline) = contour::measure_at(view, lens, place, MIN_OUTLINE_STEP) else { return Ok(()) };
+    let (focal_px, radius_px) = (lens.focal_px(), outline.circle.radius);
+    let Some((range_m, sigma_m)) = contour::range(&model.station, focal_px, radius_px, outline.sigma_px)
+    else {
+        return Ok(());
+    };
+    let sigma_m = libm::hypot(sigma_m, best.covariance[(2, 2)].max(0.0).sqrt());
+    let agrees = (best.pose.position_m.z - range_m).abs() <= 3.0 * sigma_m;
+    if agrees { Ok(()) } else { Err(NoPose::Inconsistent) }
 }
 
 /// Radius of the circle of the marks, px, up to which a target must have its station around it.

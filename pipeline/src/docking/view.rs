@@ -2,7 +2,7 @@
 
 use contract::docking::Field;
 use contract::{Camera, ContractError, PixelPoint};
-use imageproc::image::{GrayImage, Luma};
+use imageproc::image::GrayImage;
 use nalgebra::Vector2;
 
 use crate::CameraModel;
@@ -88,16 +88,22 @@ impl<'a> View<'a> {
     pub(crate) fn overview(&self) -> Overview {
         let rows_each = if self.step > 1.5 { 1 } else { 2 };
         let (width, height) = (self.columns() / 2, self.rows() / rows_each);
-        let mut grey = GrayImage::new(width as u32, height as u32);
-        let weight = 1.0 / (2 * rows_each) as f64;
+        let weight = self.scale / (2 * rows_each) as f64;
+        let dn = self.field.image().dn();
+        let mut pixels = Vec::with_capacity(width * height);
         for y in 0..height {
-            for x in 0..width {
-                let sum: f64 = (0..rows_each)
-                    .map(|k| self.at(2 * x, rows_each * y + k) + self.at(2 * x + 1, rows_each * y + k))
-                    .sum();
-                grey.put_pixel(x as u32, y as u32, Luma([(sum * weight + 0.5) as u8]));
-            }
+            let first = rows_each * y * self.columns();
+            let upper = &dn[first..first + 2 * width];
+            let last = first + (rows_each - 1) * self.columns();
+            let lower = &dn[last..last + 2 * width];
+            pixels.extend(upper.chunks_exact(2).zip(lower.chunks_exact(2)).map(|(upper, lower)| {
+                let sum: u32 = upper.iter().map(|v| u32::from(*v)).sum();
+                let below: u32 = lower.iter().map(|v| u32::from(*v)).sum();
+                let sum = if rows_each == 1 { sum } else { sum + below };
+                (f64::from(sum) * weight + 0.5) as u8
+            }));
         }
+        let grey = GrayImage::from_raw(width as u32, height as u32, pixels).unwrap_or_default();
         let first_y = if rows_each == 1 { self.first_row } else { 0.5 };
         Overview { grey, first_x: 0.5, first_y }
     }
@@ -115,6 +121,21 @@ pub(crate) struct Overview {
 impl Overview {
     /// Camera pixels along a side of a pixel.
     pub(crate) const PIXEL: f64 = 2.0;
+
+    /// The part within `half_side` camera pixels of a place along columns and rows.
+    pub(crate) fn around(&self, centre: PixelPoint, half_side: f64) -> Self {
+        let span = |middle: f64, first: f64, n: u32| {
+            let at = |v: f64| ((v - first) / Self::PIXEL).clamp(0.0, f64::from(n)) as u32;
+            (at((middle - half_side).floor()), at((middle + half_side).ceil()))
+        };
+        let (left, right) = span(centre.x, self.first_x, self.grey.width());
+        let (top, bottom) = span(centre.y, self.first_y, self.grey.height());
+        let grey = GrayImage::from_fn(right.saturating_sub(left), bottom.saturating_sub(top), |x, y| {
+            *self.grey.get_pixel(left + x, top + y)
+        });
+        let corner = self.to_camera(f64::from(left), f64::from(top));
+        Self { grey, first_x: corner.x, first_y: corner.y }
+    }
 
     /// The place in the camera of a place in the overview (centre of its first pixel: (0, 0)).
     pub(crate) fn to_camera(&self, x: f64, y: f64) -> PixelPoint {

@@ -1,0 +1,112 @@
+//! Whether a range can be reached from those told before: what is near and lost is not far.
+
+/// No approach is faster than this, m/s.
+const MAX_SPEED_M_S: f64 = 10.0;
+
+/// Part of the range by which two measurements of the same range may differ.
+const MAX_STEP: f64 = 0.2;
+
+/// So many measurements that agree with each other outweigh any memory.
+const ENOUGH: u32 = 10;
+
+/// A range that measurements have agreed on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Belief {
+    time_s: f64,
+    range_m: f64,
+    /// Measurements that agreed, up to [`ENOUGH`].
+    support: u32,
+}
+
+impl Belief {
+    fn new(time_s: f64, range_m: f64) -> Self {
+        Self { time_s, range_m, support: 1 }
+    }
+
+    fn admits(&self, time_s: f64, range_m: f64) -> bool {
+        let reach_m = MAX_STEP * self.range_m + MAX_SPEED_M_S * (time_s - self.time_s);
+        (range_m - self.range_m).abs() <= reach_m
+    }
+
+    fn agree(&mut self, time_s: f64, range_m: f64) {
+        *self = Self { time_s, range_m, support: (self.support + 1).min(ENOUGH) };
+    }
+}
+
+/// The range that is believed, and one that contradicts it.
+///
+/// A measurement that contradicts is refused until as many have contradicted alike as had agreed before: one wrong answer gives way
+/// to the next right one, and a range seen for long is not given up for a few wrong ones.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct RangeMemory {
+    believed: Option<Belief>,
+    contrary: Option<Belief>,
+}
+
+impl RangeMemory {
+    /// Takes a measurement; whether it may be told.
+    pub(crate) fn admit(&mut self, time_s: f64, range_m: f64) -> bool {
+        let Some(believed) = self.believed.as_mut().filter(|belief| time_s >= belief.time_s) else {
+            // Nothing was seen, or a sequence begins anew.
+            *self = Self { believed: Some(Belief::new(time_s, range_m)), contrary: None };
+            return true;
+        };
+        if believed.admits(time_s, range_m) {
+            believed.agree(time_s, range_m);
+            self.contrary = None;
+            return true;
+        }
+        let contrary = match self.contrary {
+            Some(mut contrary) if contrary.admits(time_s, range_m) => {
+                contrary.agree(time_s, range_m);
+                contrary
+            }
+            _ => Belief::new(time_s, range_m),
+        };
+        self.contrary = Some(contrary);
+        let is_outweighed = contrary.support >= believed.support;
+        if is_outweighed {
+            *self = Self { believed: Some(contrary), contrary: None };
+        }
+        is_outweighed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of ranges a fiftieth of a second apart.
+    fn told(ranges_m: &[f64]) -> Vec<bool> {
+        let mut memory = RangeMemory::default();
+        ranges_m.iter().enumerate().map(|(i, range_m)| memory.admit(0.02 * i as f64, *range_m)).collect()
+    }
+
+    #[test]
+    fn one_wrong_answer_among_right_ones_is_refused() {
+        assert_eq!(told(&[150.0, 150.1, 149.9, 36.0, 149.8]), [true, true, true, false, true]);
+    }
+
+    #[test]
+    fn one_wrong_answer_at_the_beginning_gives_way() {
+        assert_eq!(told(&[36.0, 150.1, 149.9]), [true, true, true]);
+        assert_eq!(told(&[36.0, 36.1, 149.9, 149.8, 149.7]), [true, true, false, true, true]);
+    }
+
+    #[test]
+    fn ten_that_agree_outweigh_any_memory() {
+        let mut ranges = vec![36.0; 100];
+        ranges.extend([150.0; 11]);
+        let told = told(&ranges);
+        assert!(told[100..109].iter().all(|said| !said) && told[109] && told[110], "{told:?}");
+    }
+
+    #[test]
+    fn a_sequence_that_begins_anew_has_no_memory() {
+        let mut memory = RangeMemory::default();
+        assert!(memory.admit(10.0, 5.0) && memory.admit(10.02, 5.0));
+        assert!(memory.admit(0.0, 400.0));
+        // What a minute lets the camera travel is no contradiction.
+        assert!(memory.admit(60.0, 20.0));
+    }
+}
