@@ -5,11 +5,13 @@
 //! what lies behind: neighbours leave no seam. Light is Lambert's: ρ (fill + E cos θ/π), where the light's part is weakened
 //! by the share of the pixel that lies in the shadow (`shadow`) of other parts.
 
+mod beam;
 mod body;
 mod clip;
 mod coverage;
 mod kept_light;
 mod lamp;
+mod loops;
 mod painting;
 mod planes;
 mod shadow;
