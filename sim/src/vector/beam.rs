@@ -73,6 +73,9 @@ impl Beam {
     /// the polygon covers nothing inside.
     pub(super) fn trim(&self, loops: &Loops, index: usize, kept: &mut Vec<Vector3<f64>>) {
         kept.clear();
+        if self.misses(loops.sphere(index)) {
+            return;
+        }
         // The sides beyond which all corners since the last one kept lie, and the last of them.
         let (mut common, mut last) = (0, None);
         let mut row = |first: &Vector3<f64>, end: Option<&Vector3<f64>>, outside: u8| {

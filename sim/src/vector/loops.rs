@@ -9,8 +9,14 @@ use super::planes::Sphere;
 pub(super) struct Loops {
     points: Vec<Vector3<f64>>,
     stretches: Vec<Stretch>,
-    /// Where the stretches of each polygon end.
-    ends: Vec<usize>,
+    polygons: Vec<Polygon>,
+}
+
+/// A sphere about a polygon, and where its stretches end.
+#[derive(Debug, Clone, Copy)]
+struct Polygon {
+    sphere: Sphere,
+    end: usize,
 }
 
 /// Neighbouring corners of a polygon.
@@ -29,30 +35,36 @@ impl Loops {
     pub(super) fn clear(&mut self) {
         self.points.clear();
         self.stretches.clear();
-        self.ends.clear();
+        self.polygons.clear();
     }
 
     /// How many polygons there are.
     pub(super) fn len(&self) -> usize {
-        self.ends.len()
+        self.polygons.len()
     }
 
     /// Adds a polygon.
     pub(super) fn push(&mut self, polygon: impl IntoIterator<Item = Vector3<f64>>) {
-        let start = self.points.len();
+        let first = self.points.len();
         self.points.extend(polygon);
-        for start in (start..self.points.len()).step_by(Self::STRETCH) {
+        for start in (first..self.points.len()).step_by(Self::STRETCH) {
             let end = self.points.len().min(start + Self::STRETCH);
             let sphere = Sphere::about(self.points[start..end].iter());
             self.stretches.push(Stretch { start, end, sphere });
         }
-        self.ends.push(self.stretches.len());
+        let sphere = Sphere::about(self.points[first..].iter());
+        self.polygons.push(Polygon { sphere, end: self.stretches.len() });
+    }
+
+    /// A sphere about a polygon.
+    pub(super) fn sphere(&self, index: usize) -> &Sphere {
+        &self.polygons[index].sphere
     }
 
     /// The stretches of a polygon, in order.
     pub(super) fn stretches(&self, index: usize) -> impl Iterator<Item = (&Sphere, &[Vector3<f64>])> {
-        let start = if index == 0 { 0 } else { self.ends[index - 1] };
-        self.of(&self.stretches[start..self.ends[index]])
+        let start = if index == 0 { 0 } else { self.polygons[index - 1].end };
+        self.of(&self.stretches[start..self.polygons[index].end])
     }
 
     /// The stretches of all polygons.

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use super::beam::Beam;
 use super::clip::keep_above;
 use super::coverage::Window;
-use super::planes::{Extent, Plane, Prepared};
+use super::planes::{Extent, Plane, Prepared, Sphere};
 use super::silhouette::Silhouette;
 use super::view::View;
 use crate::scene::docking::Facet;
@@ -47,26 +47,35 @@ impl Source {
         (facet.normal.dot(&self.from(corner)) <= 0.0) == dark_side
     }
 
-    /// Where the outline of what casts is, seen from a plane.
-    fn place(&self, outline: &Silhouette, plane: &Plane) -> Place {
+    /// Where the outline of what casts is, seen from a plane; `sphere` is about all of it.
+    fn place(&self, outline: &Silhouette, sphere: &Sphere, plane: &Plane) -> Place {
         let highest = match self {
             Self::Parallel(_) => f64::INFINITY,
             Self::Point(position) => Shadows::BELOW_LIGHT * plane.height(position),
         };
-        let (mut lowest, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (sphere, points) in outline.loops.all_stretches() {
+        // The corners need not be looked at where all of a sphere is on one side.
+        let sure = |sphere: &Sphere| {
             let height = plane.height(&sphere.centre);
             let (low, high) = (height - sphere.radius, height + sphere.radius);
-            if high < -Shadows::TOUCHING_M || (low > Shadows::TOUCHING_M && high < highest) {
-                (lowest, greatest) = (low.min(lowest), high.max(greatest));
-            } else {
-                for height in points.iter().map(|point| plane.height(point)) {
-                    (lowest, greatest) = (height.min(lowest), height.max(greatest));
+            let is_sure = high < -Shadows::TOUCHING_M || (low > Shadows::TOUCHING_M && high < highest);
+            is_sure.then_some((low, high))
+        };
+        let (mut lowest, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+        if let Some(heights) = sure(sphere) {
+            (lowest, greatest) = heights;
+        } else {
+            for (sphere, points) in outline.loops.all_stretches() {
+                if let Some((low, high)) = sure(sphere) {
+                    (lowest, greatest) = (low.min(lowest), high.max(greatest));
+                } else {
+                    for height in points.iter().map(|point| plane.height(point)) {
+                        (lowest, greatest) = (height.min(lowest), height.max(greatest));
+                    }
                 }
-            }
-            let is_across = lowest < -Shadows::TOUCHING_M && greatest > Shadows::TOUCHING_M;
-            if is_across {
-                break;
+                let is_across = lowest < -Shadows::TOUCHING_M && greatest > Shadows::TOUCHING_M;
+                if is_across {
+                    break;
+                }
             }
         }
         if greatest <= Shadows::TOUCHING_M {
@@ -165,7 +174,7 @@ impl Shadows {
             if index == plane.part || ready.casters.is_empty() || beam.misses(&ready.sphere) {
                 continue;
             }
-            match source.place(&casting.silhouette, plane) {
+            match source.place(&casting.silhouette, &ready.sphere, plane) {
                 Place::Behind => {}
                 Place::Between => {
                     let outlines = &casting.silhouette.loops;
@@ -178,7 +187,11 @@ impl Shadows {
                 }
                 Place::Across => {
                     for (facet, caster) in part.facets.iter().zip(&ready.casters) {
-                        if !source.casts(facet, casting.dark_side) || beam.misses(&caster.sphere) {
+                        let is_behind = plane.height(&caster.sphere.centre) < -caster.sphere.radius;
+                        if is_behind
+                            || !source.casts(facet, casting.dark_side)
+                            || beam.misses(&caster.sphere)
+                        {
                             continue;
                         }
                         for polygon in 0..caster.loops.len() {
