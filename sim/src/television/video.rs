@@ -60,8 +60,11 @@ impl VideoField {
         let full_scale = 255.0_f32;
         let slope = full_scale * digitiser.contrast as f32;
         let offset = full_scale * digitiser.brightness as f32;
-        let dn =
-            self.signal.iter().map(|s| ((slope * s + offset).clamp(0.0, full_scale) + 0.5) as u16).collect();
+        let dn = self
+            .signal
+            .iter()
+            .map(|s| ((slope * s + offset).clamp(0.0, full_scale) + 0.5) as i32 as u16)
+            .collect();
         Frame::new(self.number, self.columns, self.lines.rows(self.camera_rows), BIT_DEPTH, dn, None)
             .and_then(|image| Field::new(image, self.lines, self.camera_rows))
             .expect("the number of values was checked when the field was made")

@@ -52,8 +52,7 @@ impl Side {
 impl Beam {
     /// From a light that shines on the plane's front to what a window shows of the plane.
     pub(super) fn new(source: Source, receiver: &Plane, view: &View<'_>, window: Window) -> Self {
-        let sides =
-            view.borders(window).map(|border| Side::new(&border, source, receiver, &view.position));
+        let sides = view.borders(window).map(|border| Side::new(&border, source, receiver, &view.position));
         Self { sides }
     }
 

@@ -188,9 +188,7 @@ impl Shadows {
                 Place::Across => {
                     for (facet, caster) in part.facets.iter().zip(&ready.casters) {
                         let is_behind = plane.height(&caster.sphere.centre) < -caster.sphere.radius;
-                        if is_behind
-                            || !source.casts(facet, casting.dark_side)
-                            || beam.misses(&caster.sphere)
+                        if is_behind || !source.casts(facet, casting.dark_side) || beam.misses(&caster.sphere)
                         {
                             continue;
                         }
@@ -209,12 +207,7 @@ impl Shadows {
 }
 
 /// Puts what of a polygon lies between plane and light into `cut`, and leaves anything in the polygon.
-fn cut_between(
-    polygon: &mut Vec<Vector3<f64>>,
-    plane: &Plane,
-    source: Source,
-    cut: &mut Vec<Vector3<f64>>,
-) {
+fn cut_between(polygon: &mut Vec<Vector3<f64>>, plane: &Plane, source: Source, cut: &mut Vec<Vector3<f64>>) {
     keep_above(polygon, cut, |point| plane.height(point) - Shadows::TOUCHING_M);
     if let Source::Point(position) = source {
         let highest = Shadows::BELOW_LIGHT * plane.height(&position);
