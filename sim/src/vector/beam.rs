@@ -61,10 +61,9 @@ impl Beam {
         self.sides.iter().any(|side| side.beyond(&sphere.centre) > sphere.radius)
     }
 
-    /// Bit i: all of a sphere is beyond side i.
-    fn outside(&self, centre: &Vector3<f64>, radius: f64) -> u8 {
-        let bits = self.sides.iter().enumerate();
-        bits.fold(0, |bits, (i, side)| bits | u8::from(side.beyond(centre) > radius) << i)
+    /// The first side beyond which all of a sphere lies.
+    fn side_before(&self, centre: &Vector3<f64>, radius: f64) -> Option<&Side> {
+        self.sides.iter().find(|side| side.beyond(centre) > radius)
     }
 
     /// Puts a polygon into `kept` without the corners that do not matter inside: of corners in a row that are all beyond one
@@ -75,25 +74,28 @@ impl Beam {
         if self.misses(loops.sphere(index)) {
             return;
         }
-        // The sides beyond which all corners since the last one kept lie, and the last of them.
-        let (mut common, mut last) = (0, None);
-        let mut row = |first: &Vector3<f64>, end: Option<&Vector3<f64>>, outside: u8| {
-            if common & outside == 0 {
+        // The side beyond which all corners since the last one kept lie, and the last of them.
+        let (mut row, mut last) = (None::<&Side>, None);
+        for (sphere, points) in loops.stretches(index) {
+            if row.is_some_and(|side| side.beyond(&sphere.centre) > sphere.radius) {
+                last = points.last();
+                continue;
+            }
+            let side = self.side_before(&sphere.centre, sphere.radius);
+            if let ([first, .., end], Some(_)) = (points, side) {
                 kept.extend(last.take());
                 kept.push(*first);
-                common = outside;
-                last = end.copied();
-            } else {
-                common &= outside;
-                last = Some(*end.unwrap_or(first));
+                (row, last) = (side, Some(end));
+                continue;
             }
-        };
-        for (sphere, points) in loops.stretches(index) {
-            let outside = self.outside(&sphere.centre, sphere.radius);
-            if let ([first, .., end], true) = (points, outside != 0) {
-                row(first, Some(end), outside);
-            } else {
-                points.iter().for_each(|point| row(point, None, self.outside(point, 0.0)));
+            for point in points {
+                if row.is_some_and(|side| side.beyond(point) > 0.0) {
+                    last = Some(point);
+                } else {
+                    kept.extend(last.take());
+                    kept.push(*point);
+                    row = self.side_before(point, 0.0);
+                }
             }
         }
         kept.extend(last);
