@@ -10,7 +10,7 @@
 
 use std::path::Path;
 
-use boresight_sim::docking::{DockingSimulation, DockingSimulator, FieldMoment};
+use boresight_sim::docking::{DockingSimulation, DockingSimulator, FieldMoment, FloodlightConfig};
 use boresight_sim::optics::ImageBlur;
 use boresight_sim::scene::docking::DockingScene;
 use boresight_sim::television::TelevisionConfig;
@@ -74,7 +74,8 @@ fn chain_ms(simulation: &DockingSimulation, fields: &[FieldMoment], image: &Radi
 /// A simulation whose television does nothing but scale the light.
 fn bare(simulation: &DockingSimulation) -> DockingSimulation {
     let mut bare = simulation.clone();
-    bare.television = TelevisionConfig { interlace: bare.television.interlace, ..TelevisionConfig::default() };
+    bare.television =
+        TelevisionConfig { interlace: bare.television.interlace, ..TelevisionConfig::default() };
     bare.television.noise.sigma_dn8 = 0.0;
     bare
 }
@@ -84,7 +85,12 @@ fn by_range(simulation: &DockingSimulation, simulator: &DockingSimulator, ranges
     let empty = DockingScene { parts: Vec::new() };
     let mut unshaded = scene.clone();
     unshaded.parts.iter_mut().for_each(|part| part.casts_shadow = false);
-    println!("range m  lens  sky   facets  shadows  drawn   blur  truth  artefacts  digitiser  whole field, ms");
+    let mut lamp = simulation.clone();
+    lamp.lighting.floodlight = Some(FloodlightConfig::default());
+    let lamp = DockingSimulator::new(&lamp, Path::new(".")).unwrap();
+    println!(
+        "range m  lens  sky   facets  shadows  drawn  (with a lamp)   blur  truth  artefacts  digitiser  whole field, ms"
+    );
     for &range_m in ranges_m {
         let fields = fields_at(simulator, range_m);
         for (lens, camera) in simulator.setup().cameras.iter().enumerate() {
@@ -92,6 +98,7 @@ fn by_range(simulation: &DockingSimulation, simulator: &DockingSimulator, ranges
             let (sky, _) = drawing_ms(&mut drawer, &empty, &fields);
             let (facets, _) = drawing_ms(&mut drawer, &unshaded, &fields);
             let (drawn, image) = drawing_ms(&mut drawer, scene, &fields);
+            let (with_lamp, _) = drawing_ms(&mut drawer, scene, &fields_at(&lamp, range_m));
             let (mut blur, mut kept) = (ImageBlur::new(simulation.lens.blur_sigma_px), Vec::new());
             let blurred = least_ms(&fields, |field| {
                 kept = Vec::new();
@@ -105,7 +112,7 @@ fn by_range(simulation: &DockingSimulation, simulator: &DockingSimulator, ranges
                 exposure.video.digitise(&Digitiser::default());
             });
             println!(
-                "{range_m:7}  {lens:4}  {sky:4.2}  {:6.2}  {:7.2}  {drawn:5.2}  {blurred:5.2}  {:5.2}  {:9.2}  {digitised:9.2}  {:11.2}",
+                "{range_m:7}  {lens:4}  {sky:4.2}  {:6.2}  {:7.2}  {drawn:5.2}  {with_lamp:13.2}  {blurred:5.2}  {:5.2}  {:9.2}  {digitised:9.2}  {:11.2}",
                 facets - sky,
                 drawn - facets,
                 plain - blurred,

@@ -43,8 +43,8 @@ pub struct RadianceImage {
 
 /// Draws docking scenes as one camera sees them.
 ///
-/// It keeps its buffers from image to image, and the shadows from image to image as long as scene and light stay the same. What
-/// it draws depends on nothing but the arguments of [`Drawer::draw`].
+/// It keeps its buffers from image to image, and the outlines of what casts shadows as long as scene and light stay the same.
+/// What it draws depends on nothing but the arguments of [`Drawer::draw`].
 #[derive(Debug, Clone)]
 pub struct Drawer {
     lens: Lens,
