@@ -7,7 +7,7 @@ use contract::{Camera, Direction, PixelPoint};
 use nalgebra::Vector3;
 
 use super::glint::{GlintConfig, GlintImage};
-use super::occlusion::Occluders;
+use super::occlusion::{Nearby, Occluders, Region};
 use crate::SimError;
 use crate::optics::Projection;
 use crate::scene::docking::{DockingScene, Floodlight, Lighting, Sun};
@@ -87,6 +87,8 @@ pub(super) struct TargetGeometry {
     cross_ends: Vec<Vector3<f64>>,
     plate_rim: Vec<Vector3<f64>>,
     plate_places: Vec<Vector3<f64>>,
+    /// About the marks and the plate.
+    region: Region,
     shading: Occluders,
     hiding: Occluders,
 }
@@ -102,16 +104,20 @@ impl TargetGeometry {
             .map(|[y1, y2]| Vector3::new(y1, y2, height))
             .collect();
         let radius = model.plate_radius_m;
+        let marks: Vec<[Vector3<f64>; 4]> =
+            model.marks.iter().map(|mark| mark.map(|[y1, y2]| Vector3::new(y1, y2, 0.0))).collect();
+        let farthest = marks.iter().flatten().map(|corner| corner.norm()).fold(radius, f64::max);
         // Rings with points as their circumferences, so that each stands for the same area; 96 in all.
         let rings =
             [(0.25, 10), (0.5, 20), (0.75, 30), (0.95, 36)].map(|(share, n)| circle(share * radius, n));
         Self {
             mark_circle_radius_m: model.mark_circle_radius_m,
             cross_centre: Vector3::new(0.0, 0.0, height),
-            marks: model.marks.iter().map(|mark| mark.map(|[y1, y2]| Vector3::new(y1, y2, 0.0))).collect(),
+            marks,
             cross_ends,
             plate_rim: circle(radius, RIM_POINTS),
             plate_places: rings.into_iter().flatten().collect(),
+            region: Region { centre: Vector3::zeros(), radius_m: farthest },
             // What lies in or behind the plate's plane cannot shade it.
             shading: Occluders::new(scene.parts.iter().filter(|part| part.casts_shadow), |facet| {
                 facet.outer.iter().any(|corner| corner.z > 1e-6)
@@ -149,45 +155,37 @@ impl TargetGeometry {
 
     /// Bit i: some of mark i lacks the light of a source that shines on the target's side.
     pub(super) fn marks_shadowed(&self, lighting: &Lighting) -> u64 {
-        let (sun, lamp) = in_front(lighting);
-        self.bits(|mark| {
-            places(mark).any(|place| {
-                sun.is_some_and(|sun| !self.is_sunlit(&place, &sun))
-                    || lamp.is_some_and(|lamp| !self.is_lamplit(&place, &lamp))
-            })
-        })
+        let light = self.light(lighting);
+        self.bits(|mark| places(mark).any(|place| light.lacks_some(&place)))
     }
 
     /// Bit i: neither the Sun nor the lamp shines on any of mark i.
     pub(super) fn marks_dark(&self, lighting: &Lighting) -> u64 {
-        self.bits(|mark| !places(mark).any(|place| self.is_lit(&place, lighting)))
+        let light = self.light(lighting);
+        self.bits(|mark| !places(mark).any(|place| light.shines_on(&place)))
     }
 
     /// Bit i: something stands between the camera and some of mark i.
     pub(super) fn marks_hidden(&self, pose: &Pose) -> u64 {
-        self.bits(|mark| places(mark).any(|place| self.hiding.separate(&place, &pose.position_m)))
+        let hiding = self.hiding.before(&self.region, &pose.position_m);
+        self.bits(|mark| places(mark).any(|place| hiding.separate(&place, &pose.position_m)))
     }
 
     /// Share of the plate that the Sun or the lamp shines on.
     pub(super) fn plate_lit(&self, lighting: &Lighting) -> f64 {
-        let lit = self.plate_places.iter().filter(|place| self.is_lit(place, lighting)).count();
+        let light = self.light(lighting);
+        let lit = self.plate_places.iter().filter(|place| light.shines_on(place)).count();
         lit as f64 / self.plate_places.len().max(1) as f64
     }
 
-    fn is_lit(&self, place: &Vector3<f64>, lighting: &Lighting) -> bool {
-        let (sun, lamp) = in_front(lighting);
-        sun.is_some_and(|sun| self.is_sunlit(place, &sun))
-            || lamp.is_some_and(|lamp| self.is_lamplit(place, &lamp))
-    }
-
-    fn is_sunlit(&self, place: &Vector3<f64>, sun: &Vector3<f64>) -> bool {
-        !self.shading.hide(place, sun)
-    }
-
-    fn is_lamplit(&self, place: &Vector3<f64>, lamp: &Floodlight) -> bool {
-        let from_lamp = place - lamp.position_m;
-        let in_beam = from_lamp.dot(&lamp.axis) > from_lamp.norm() * libm::cos(lamp.outer_half_angle_rad);
-        in_beam && !self.shading.separate(place, &lamp.position_m)
+    /// The light on the plate's front, and what may stand in its way.
+    fn light(&self, lighting: &Lighting) -> LightOnPlate<'_> {
+        let sun = lighting.sun.map(|sun| sun.towards).filter(|towards| towards.z > 0.0);
+        let lamp = lighting.floodlight.filter(|lamp| lamp.position_m.z > 0.0 && lamp.intensity > 0.0);
+        LightOnPlate {
+            sun: sun.map(|towards| (towards, self.shading.along(&self.region, &towards))),
+            lamp: lamp.map(|lamp| (lamp, self.shading.before(&self.region, &lamp.position_m))),
+        }
     }
 
     fn bits(&self, holds: impl Fn(&[Vector3<f64>; 4]) -> bool) -> u64 {
@@ -203,6 +201,7 @@ impl TargetGeometry {
         }
         let aside = sun.cross(&if sun.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() }).normalize();
         let above = sun.cross(&aside);
+        let camera = Region { centre: pose.position_m, radius_m: 0.0 };
         let (mut places, mut seen) = (0_u32, 0_u32);
         let middle = SUN_PLACES / 2;
         for (i, j) in (0..SUN_PLACES).flat_map(|i| (0..SUN_PLACES).map(move |j| (i - middle, j - middle))) {
@@ -210,7 +209,8 @@ impl TargetGeometry {
             if u * u + v * v <= 1.0 {
                 places += 1;
                 let towards = (sun + (aside * u + above * v) * SUN_RADIUS_RAD).normalize();
-                seen += u32::from(!self.hiding.hide(&pose.position_m, &towards));
+                let hiding = self.hiding.along(&camera, &towards);
+                seen += u32::from(!hiding.hide(&pose.position_m, &towards));
             }
         }
         let ghost = PixelPoint::new(2.0 * eye.principal.x - centre.x, 2.0 * eye.principal.y - centre.y);
@@ -219,10 +219,34 @@ impl TargetGeometry {
     }
 }
 
-/// The direction of the Sun and the lamp, where they shine on the plate's front.
-fn in_front(lighting: &Lighting) -> (Option<Vector3<f64>>, Option<Floodlight>) {
-    let sun = lighting.sun.map(|sun| sun.towards).filter(|towards| towards.z > 0.0);
-    (sun, lighting.floodlight.filter(|lamp| lamp.position_m.z > 0.0 && lamp.intensity > 0.0))
+/// The Sun and the lamp, where they shine on the plate's front, each with what may stand in its way.
+struct LightOnPlate<'a> {
+    sun: Option<(Vector3<f64>, Nearby<'a>)>,
+    lamp: Option<(Floodlight, Nearby<'a>)>,
+}
+
+impl LightOnPlate<'_> {
+    /// Whether one of them shines on a place.
+    fn shines_on(&self, place: &Vector3<f64>) -> bool {
+        self.sunlit(place) == Some(true) || self.lamplit(place) == Some(true)
+    }
+
+    /// Whether one of them does not.
+    fn lacks_some(&self, place: &Vector3<f64>) -> bool {
+        self.sunlit(place) == Some(false) || self.lamplit(place) == Some(false)
+    }
+
+    fn sunlit(&self, place: &Vector3<f64>) -> Option<bool> {
+        self.sun.as_ref().map(|(towards, shading)| !shading.hide(place, towards))
+    }
+
+    fn lamplit(&self, place: &Vector3<f64>) -> Option<bool> {
+        self.lamp.as_ref().map(|(lamp, shading)| {
+            let from_lamp = place - lamp.position_m;
+            let in_beam = from_lamp.dot(&lamp.axis) > from_lamp.norm() * libm::cos(lamp.outer_half_angle_rad);
+            in_beam && !shading.separate(place, &lamp.position_m)
+        })
+    }
 }
 
 fn circle(radius_m: f64, points: u32) -> Vec<Vector3<f64>> {

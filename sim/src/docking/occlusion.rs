@@ -13,6 +13,19 @@ pub(super) struct Occluders {
     plates: Vec<Plate>,
 }
 
+/// Places that are looked at together: all within a distance of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Region {
+    pub(super) centre: Vector3<f64>,
+    pub(super) radius_m: f64,
+}
+
+/// Those of the occluders that can meet a ray from a region.
+#[derive(Debug, Clone)]
+pub(super) struct Nearby<'a> {
+    plates: Vec<&'a Plate>,
+}
+
 /// A facet, with its boundary as seen along the axis on which its normal is longest.
 #[derive(Debug, Clone, PartialEq)]
 struct Plate {
@@ -22,6 +35,9 @@ struct Plate {
     low: [f64; 2],
     high: [f64; 2],
     rings: Vec<Vec<[f64; 2]>>,
+    /// A sphere about it.
+    centre: Vector3<f64>,
+    radius_m: f64,
 }
 
 impl Occluders {
@@ -31,6 +47,31 @@ impl Occluders {
         Self { plates: facets.filter_map(Plate::new).collect() }
     }
 
+    /// Those that can meet a ray from a region along the unit vector `towards`.
+    pub(super) fn along(&self, region: &Region, towards: &Vector3<f64>) -> Nearby<'_> {
+        self.about(region, towards, f64::INFINITY)
+    }
+
+    /// Those that can stand between a region and a point.
+    pub(super) fn before(&self, region: &Region, point: &Vector3<f64>) -> Nearby<'_> {
+        let way = point - region.centre;
+        let length = way.norm();
+        self.about(region, &(way / length.max(f64::MIN_POSITIVE)), length)
+    }
+
+    /// Those that meet the capsule about the way of the region's centre.
+    fn about(&self, region: &Region, towards: &Vector3<f64>, length: f64) -> Nearby<'_> {
+        let meets = |plate: &&Plate| {
+            let from_region = plate.centre - region.centre;
+            let along = from_region.dot(towards).clamp(0.0, length);
+            let reach = region.radius_m + plate.radius_m + CLEARANCE_M;
+            (from_region - towards * along).norm_squared() <= reach * reach
+        };
+        Nearby { plates: self.plates.iter().filter(meets).collect() }
+    }
+}
+
+impl Nearby<'_> {
     /// Whether the ray from `from` along the unit vector `towards` meets one of them.
     pub(super) fn hide(&self, from: &Vector3<f64>, towards: &Vector3<f64>) -> bool {
         self.plates.iter().any(|plate| plate.meets(from, towards, f64::INFINITY))
@@ -58,12 +99,20 @@ impl Plate {
         let bound = |pick: fn(f64, f64) -> f64, start: f64| {
             [0, 1].map(|i| outer.iter().fold(start, |bound, corner| pick(bound, corner[i])))
         };
+        let first = facet.outer.first()?;
+        let (least, greatest) = facet
+            .outer
+            .iter()
+            .fold((*first, *first), |(least, greatest), corner| (least.inf(corner), greatest.sup(corner)));
+        let centre = 0.5 * (least + greatest);
         Some(Self {
             normal,
-            distance_m: normal.dot(facet.outer.first()?),
+            distance_m: normal.dot(first),
             axes,
             low: bound(f64::min, f64::INFINITY),
             high: bound(f64::max, f64::NEG_INFINITY),
+            centre,
+            radius_m: facet.outer.iter().map(|corner| (corner - centre).norm()).fold(0.0, f64::max),
             rings: std::iter::once(outer).chain(facet.holes.iter().map(flat)).collect(),
         })
     }
@@ -116,7 +165,10 @@ mod tests {
 
     #[test]
     fn a_frame_hides_but_not_through_its_hole_nor_behind() {
-        let frame = framed();
+        let occluders = framed();
+        let region = Region { centre: Vector3::zeros(), radius_m: 3.0 };
+        // With the whole frame within the region's reach nothing is left out.
+        let frame = occluders.along(&region, &Vector3::z());
         let up = Vector3::z();
         for (x, y, hidden) in [(0.75, 0.0, true), (0.0, -0.9, true), (0.2, 0.3, false), (1.1, 0.0, false)] {
             assert_eq!(frame.hide(&Vector3::new(x, y, 0.0), &up), hidden, "{x} {y}");
@@ -134,5 +186,24 @@ mod tests {
         assert!(frame.hide(&Vector3::zeros(), &slanting));
         assert!(!frame.hide(&Vector3::new(-0.5, 0.0, 0.0), &slanting));
         assert!(!frame.hide(&Vector3::zeros(), &Vector3::x()), "a ray along the plane");
+    }
+
+    #[test]
+    fn what_is_left_out_meets_no_ray_of_the_region() {
+        let frame = framed();
+        let region = Region { centre: Vector3::new(4.0, 0.0, 0.0), radius_m: 0.5 };
+        for i in 0..40 {
+            let (sin, cos) = libm::sincos(f64::from(i) * std::f64::consts::PI / 20.0);
+            let towards = Vector3::new(cos, 0.1, sin).normalize();
+            let point = region.centre + towards * 6.0;
+            for (dx, dy) in [(0.0, 0.0), (0.5, 0.0), (-0.35, 0.35), (0.0, -0.5)] {
+                let place = region.centre + Vector3::new(dx, dy, 0.0);
+                let all = frame.plates[0].meets(&place, &towards, f64::INFINITY);
+                assert_eq!(frame.along(&region, &towards).hide(&place, &towards), all, "{towards}");
+                let way = point - place;
+                let between = frame.plates[0].meets(&place, &way.normalize(), way.norm());
+                assert_eq!(frame.before(&region, &point).separate(&place, &point), between, "{towards}");
+            }
+        }
     }
 }

@@ -5,10 +5,32 @@ use contract::docking::Lines;
 /// How far a kernel reaches, in its standard deviations: 6e-5 of a Gaussian's light lies beyond on one axis.
 const REACH_SIGMAS: f64 = 4.0;
 
-/// Adds `kernel[j] × padded[x + j]` to `out[x]`, over all j. `padded` is `kernel.len()` − 1 longer than `out`.
+/// Values that are summed side by side: few enough for a processor's registers.
+const LANES: usize = 32;
+
+/// Puts the sum of `kernel[j] × padded[x + j]` over all j, in their order, into `out[x]`. `padded` is `kernel.len()` − 1 longer
+/// than `out`.
 pub(crate) fn correlate(padded: &[f32], kernel: &[f32], out: &mut [f32]) {
+    weighted_sum(kernel, |j| &padded[j..], out);
+}
+
+/// Puts the sum of `kernel[j] × row(j)[x]` over all j, in their order, into `out[x]`. Rows may be longer than `out`.
+fn weighted_sum<'a>(kernel: &[f32], row: impl Fn(usize) -> &'a [f32], out: &mut [f32]) {
+    let whole = out.len() - out.len() % LANES;
+    let (blocks, rest) = out.split_at_mut(whole);
+    for (i, block) in blocks.chunks_exact_mut(LANES).enumerate() {
+        let mut sums = [0.0_f32; LANES];
+        for (j, &weight) in kernel.iter().enumerate() {
+            let values = &row(j)[i * LANES..][..LANES];
+            for (sum, &value) in sums.iter_mut().zip(values) {
+                *sum += weight * value;
+            }
+        }
+        block.copy_from_slice(&sums);
+    }
+    rest.fill(0.0);
     for (j, &weight) in kernel.iter().enumerate() {
-        for (sum, &value) in out.iter_mut().zip(&padded[j..]) {
+        for (sum, &value) in rest.iter_mut().zip(&row(j)[whole..]) {
             *sum += weight * value;
         }
     }
@@ -63,14 +85,8 @@ impl ImageBlur {
         self.column.resize(columns, 0.0);
         for (k, out) in kept.chunks_exact_mut(columns).enumerate() {
             let y = lines.camera_row(k);
-            self.column.fill(0.0);
-            for (j, &weight) in self.kernel.iter().enumerate() {
-                let from = (y + j).saturating_sub(reach).min(camera_rows - 1);
-                let row = &image[from * columns..(from + 1) * columns];
-                for (sum, &value) in self.column.iter_mut().zip(row) {
-                    *sum += weight * value;
-                }
-            }
+            let row = |j: usize| &image[(y + j).saturating_sub(reach).min(camera_rows - 1) * columns..];
+            weighted_sum(&self.kernel, row, &mut self.column);
             pad(&self.column, reach, reach, &mut self.padded);
             correlate(&self.padded, &self.kernel, out);
         }

@@ -15,6 +15,16 @@ const TAIL_FROM: f64 = 3.654_152_885_361_009;
 #[derive(Debug, Clone)]
 pub(crate) struct Ziggurat {
     layers: Box<[Layer; LAYERS]>,
+    short: Box<[ShortLayer; LAYERS]>,
+}
+
+/// What a word of 32 bits needs of a layer.
+#[derive(Debug, Clone, Copy, Default)]
+struct ShortLayer {
+    /// The width of a step.
+    width: f32,
+    /// Fewer steps than this lie below the curve.
+    sure: f32,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -43,7 +53,12 @@ impl Default for Ziggurat {
             let top = density(inner) + area / inner;
             inner = if i + 2 < LAYERS { libm::sqrt(-2.0 * libm::log(top)) } else { 0.0 };
         }
-        Self { layers }
+        let short = layers.map(|layer| ShortLayer {
+            width: (layer.width / SHORT_STEPS) as f32,
+            // Rounded down to a whole step: what is doubtful is decided in double precision.
+            sure: (layer.inner / layer.width * SHORT_STEPS).floor() as f32,
+        });
+        Self { layers, short: Box::new(short) }
     }
 }
 
@@ -59,6 +74,19 @@ impl Ziggurat {
         let layer = &self.layers[(word % LAYERS as u64) as usize];
         let x = signed_unit(word) * layer.width;
         if x.abs() < layer.inner { x } else { self.draw_on(word, &mut more()) }
+    }
+
+    /// As [`Ziggurat::draw`] from a word of 32 bits: the lowest eight choose the layer, the others the number, in steps of 2⁻²³ of
+    /// the layer's width.
+    #[inline(always)]
+    pub(crate) fn draw_short(&self, word: u32, more: impl FnOnce() -> Stream) -> f32 {
+        let layer = &self.short[(word % LAYERS as u32) as usize];
+        let steps = (word as i32 >> 8) as f32 + 0.5;
+        if steps.abs() < layer.sure {
+            steps * layer.width
+        } else {
+            self.draw_on(widened(word), &mut more()) as f32
+        }
     }
 
     /// The number when the first word lies outside of the sure part of its layer.
@@ -80,6 +108,14 @@ impl Ziggurat {
             word = stream.next_u64();
         }
     }
+}
+
+/// Steps of a word of 32 bits on each side of a layer.
+const SHORT_STEPS: f64 = 8_388_608.0;
+
+/// The word of 64 bits with the layer and the number of one of 32: in the middle of the step.
+fn widened(word: u32) -> u64 {
+    u64::from(word >> 8) << 40 | 1 << 39 | u64::from(word % LAYERS as u32)
 }
 
 /// A uniform number in (−1, 1) of the highest 53 bits.

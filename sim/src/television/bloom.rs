@@ -50,17 +50,21 @@ impl Bloom {
         let rows_a_cell = CELL_PX / step;
         let rows = signal.len() / columns;
         let (across, down) = (columns.div_ceil(CELL_PX), rows.div_ceil(rows_a_cell));
-        if !signal.iter().any(|&s| s > 1.0) {
+        if !signal.chunks(columns).any(is_bright) {
             return;
         }
         self.cells.clear();
-        self.cells.resize(across * down, 0.0);
         let share = config.share as f32 / (CELL_PX * rows_a_cell) as f32;
-        for (y, row) in signal.chunks_exact(columns).enumerate() {
-            let cells = &mut self.cells[y / rows_a_cell * across..][..across];
-            for (cell, pixels) in cells.iter_mut().zip(row.chunks(CELL_PX)) {
-                *cell += share * pixels.iter().map(|s| (s - 1.0).clamp(0.0, MOST_EXCESS)).sum::<f32>();
+        for rows in signal.chunks(rows_a_cell * columns) {
+            // First down the columns, which need not wait for each other.
+            self.along.clear();
+            self.along.resize(columns, 0.0);
+            for row in rows.chunks_exact(columns) {
+                for (sum, s) in self.along.iter_mut().zip(row) {
+                    *sum += (s - 1.0).clamp(0.0, MOST_EXCESS);
+                }
             }
+            self.cells.extend(self.along.chunks(CELL_PX).map(|sums| share * sums.iter().sum::<f32>()));
         }
         self.spread(&gaussian_kernel(config.sigma_px / CELL_PX as f64), across, down);
         for (y, row) in signal.chunks_exact_mut(columns).enumerate() {
@@ -69,10 +73,7 @@ impl Bloom {
             let (top, bottom) =
                 (&self.cells[above * across..][..across], &self.cells[below * across..][..across]);
             self.along.extend(top.iter().zip(bottom).map(|(a, b)| a + v * (b - a)));
-            for (x, pixel) in row.iter_mut().enumerate() {
-                let (left, right, u) = between(x, CELL_PX, across);
-                *pixel += self.along[left] + u * (self.along[right] - self.along[left]);
-            }
+            add_between_cells(&self.along, row);
         }
     }
 
@@ -81,18 +82,34 @@ impl Bloom {
         let reach = kernel.len() / 2;
         for row in self.cells.chunks_exact_mut(across) {
             dark_pad(row, reach, &mut self.padded);
-            row.fill(0.0);
             correlate(&self.padded, kernel, row);
         }
         for x in 0..across {
             self.along.clear();
             self.along.extend((0..down).map(|y| self.cells[y * across + x]));
             dark_pad(&self.along, reach, &mut self.padded);
-            self.along.fill(0.0);
             correlate(&self.padded, kernel, &mut self.along);
             for (y, value) in self.along.iter().enumerate() {
                 self.cells[y * across + x] = *value;
             }
+        }
+    }
+}
+
+/// Whether some of a row is above white. It looks at all of it: a search that may end early looks at one at a time.
+fn is_bright(row: &[f32]) -> bool {
+    row.iter().fold(0.0_f32, |most, &s| if s > most { s } else { most }) > 1.0
+}
+
+/// Adds the cells of a row to its pixels, linearly between the cells' centres and as they are beyond the outer ones.
+fn add_between_cells(cells: &[f32], row: &mut [f32]) {
+    let (before, after) = row.split_at_mut((CELL_PX / 2).min(row.len()));
+    let first = cells.first().copied().unwrap_or(0.0);
+    before.iter_mut().for_each(|pixel| *pixel += first);
+    let next = cells.iter().skip(1).chain(cells.last());
+    for ((left, right), pixels) in cells.iter().zip(next).zip(after.chunks_mut(CELL_PX)) {
+        for (i, pixel) in pixels.iter_mut().enumerate() {
+            *pixel += left + (i as f32 + 0.5) / CELL_PX as f32 * (right - left);
         }
     }
 }
@@ -104,9 +121,9 @@ fn dark_pad(row: &[f32], reach: usize, padded: &mut Vec<f32>) {
     padded[end..].fill(0.0);
 }
 
-/// The two cells whose centres a pixel lies between, and how far.
-fn between(pixel: usize, side: usize, cells: usize) -> (usize, usize, f32) {
-    let place = ((pixel as f32 + 0.5) / side as f32 - 0.5).clamp(0.0, (cells - 1) as f32);
+/// The two cells whose centres a row lies between, and how far.
+fn between(row: usize, side: usize, cells: usize) -> (usize, usize, f32) {
+    let place = ((row as f32 + 0.5) / side as f32 - 0.5).clamp(0.0, (cells - 1) as f32);
     let first = place as usize;
     (first, (first + 1).min(cells - 1), place - first as f32)
 }

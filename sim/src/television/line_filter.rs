@@ -106,17 +106,21 @@ impl LineFilter {
         let after = self.kernel.len() - 1 - self.before;
         for row in signal.chunks_exact_mut(columns) {
             pad(row, self.before, after, &mut self.padded);
-            row.fill(0.0);
             correlate(&self.padded, &self.kernel, row);
         }
     }
 }
 
+/// What weighs less than this in a filter is left out: less than the rounding of its sum in single precision.
+const LEAST_WEIGHT: f64 = 1e-8;
+
 /// exp(−σ²) I_n(σ²) for n from −N to N, of unit sum; less than 1e-7 of it lies beyond.
 fn discrete_gaussian(sigma_px: f64) -> Vec<f64> {
     let variance = sigma_px * sigma_px;
-    let reach = (6.0 * sigma_px).ceil() as i32 + if sigma_px > 0.0 { 3 } else { 0 };
-    let half: Vec<f64> = (0..=reach).map(|n| scaled_bessel(n, variance)).collect();
+    let most = (6.0 * sigma_px).ceil() as i32 + if sigma_px > 0.0 { 3 } else { 0 };
+    let half: Vec<f64> =
+        (0..=most).map(|n| scaled_bessel(n, variance)).take_while(|weight| *weight > LEAST_WEIGHT).collect();
+    let reach = half.len() as i32 - 1;
     let weights = (-reach..=reach).map(|n| half[n.unsigned_abs() as usize]);
     let sum: f64 = weights.clone().sum();
     weights.map(|w| w / sum).collect()

@@ -29,8 +29,8 @@ impl VideoNoiseConfig {
         require("television.noise.sigma_dn8", self.sigma_dn8, "0 to 100", |v| (0.0..=100.0).contains(&v))
     }
 
-    /// Adds noise to the lines of a field. A row of the camera has one stream, at place = row, of which every pixel takes one
-    /// word; one whose word does not decide goes on at an address of its own.
+    /// Adds noise to the lines of a field. A row of the camera has one stream, at place = row, of which every two pixels take one
+    /// word, the left one its lower half; one whose half does not decide goes on at an address of its own.
     pub(super) fn apply(
         &self,
         ziggurat: &Ziggurat,
@@ -43,14 +43,23 @@ impl VideoNoiseConfig {
         if self.sigma_dn8 == 0.0 {
             return;
         }
-        let sigma = self.sigma_dn8 / 255.0;
+        let sigma = (self.sigma_dn8 / 255.0) as f32;
         let streams = seed.streams(field, Effect::VideoNoise);
         for (k, row) in signal.chunks_exact_mut(columns).enumerate() {
             let y = lines.camera_row(k) as u64;
             let mut stream = streams.at(y);
-            for (x, value) in (0..).zip(row) {
-                let own = contract::Camera::MAX_SIDE_PX as u64 * (y + 1) + x;
-                *value += (sigma * ziggurat.draw(stream.next_u64(), || streams.at(own))) as f32;
+            let add = |x: usize, value: &mut f32, half: u32| {
+                let more = || streams.at(contract::Camera::MAX_SIDE_PX as u64 * (y + 1) + x as u64);
+                *value += sigma * ziggurat.draw_short(half, more);
+            };
+            let mut pairs = row.chunks_exact_mut(2);
+            for (pair, values) in pairs.by_ref().enumerate() {
+                let word = stream.next_u64();
+                add(2 * pair, &mut values[0], word as u32);
+                add(2 * pair + 1, &mut values[1], (word >> 32) as u32);
+            }
+            if let [value] = pairs.into_remainder() {
+                add(columns - 1, value, stream.next_u64() as u32);
             }
         }
     }
@@ -78,5 +87,35 @@ mod tests {
         assert!((moment(&|s| s * s) - 1.0).abs() < 0.0121);
         assert!((moment(&|s| s * s * s * s) - 3.0).abs() < 0.084);
         assert!(lagged(1).abs() < 0.0086 && lagged(columns).abs() < 0.0086);
+        // Two pixels share a word: what is large in one must not tell what is large in the other.
+        let square = |s: f32| f64::from(s) * f64::from(s) * 85.0 * 85.0 - 1.0;
+        let pairs = signal.chunks_exact(2).map(|pair| square(pair[0]) * square(pair[1])).sum::<f64>();
+        // Standard error 2/√(n/2); four of them.
+        assert!((pairs / (n / 2.0)).abs() < 0.024, "{pairs}");
+    }
+
+    #[test]
+    fn its_tails_are_those_of_the_normal_law() {
+        let (columns, rows) = (768, 576);
+        let seed = Seed { seed: 4, case: 0 };
+        let mut counts = [0_u32; 4];
+        let fields = 8;
+        for field in 0..fields {
+            let mut signal = vec![0.0_f32; columns * rows];
+            let config = VideoNoiseConfig { sigma_dn8: 1.0 };
+            config.apply(&Ziggurat::default(), &seed, field, Lines::All, &mut signal, columns);
+            for s in signal {
+                for (count, beyond) in counts.iter_mut().zip([1.0_f32, 2.0, 3.0, 4.0]) {
+                    *count += u32::from(s.abs() * 255.0 > beyond);
+                }
+            }
+        }
+        let n = (columns * rows) as f64 * fields as f64;
+        // erfc(k/√2); binomial, four standard deviations.
+        for (count, k) in counts.iter().zip([1.0, 2.0, 3.0, 4.0]) {
+            let p = libm::erfc(k * std::f64::consts::FRAC_1_SQRT_2);
+            let off = (f64::from(*count) - n * p) / (n * p * (1.0 - p)).sqrt();
+            assert!(off.abs() < 4.0, "{count} beyond {k} σ: {off} σ");
+        }
     }
 }

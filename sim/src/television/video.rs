@@ -60,12 +60,32 @@ impl VideoField {
         let full_scale = 255.0_f32;
         let slope = full_scale * digitiser.contrast as f32;
         let offset = full_scale * digitiser.brightness as f32;
-        let dn =
-            self.signal.iter().map(|s| ((slope * s + offset).clamp(0.0, full_scale) + 0.5) as u16).collect();
-        Frame::new(self.number, self.columns, self.lines.rows(self.camera_rows), BIT_DEPTH, dn, None)
-            .and_then(|image| Field::new(image, self.lines, self.camera_rows))
-            .expect("the number of values was checked when the field was made")
+        let dn = self.signal.iter().map(|s| {
+            let level = slope * s + offset;
+            // Not by `clamp`: what is no number is black.
+            let level = if level > 0.0 { level } else { 0.0 };
+            whole_part(if level < full_scale { level } else { full_scale } + 0.5)
+        });
+        Frame::new(
+            self.number,
+            self.columns,
+            self.lines.rows(self.camera_rows),
+            BIT_DEPTH,
+            dn.collect(),
+            None,
+        )
+        .and_then(|image| Field::new(image, self.lines, self.camera_rows))
+        .expect("the number of values was checked when the field was made")
     }
+}
+
+/// The whole part of 0 to 65535. By additions, which a processor does for many numbers at once, as it does not a cast that must
+/// look for what does not fit: at 2²³ the last bit of single precision is worth 1.
+fn whole_part(value: f32) -> u16 {
+    const ONES: f32 = 8_388_608.0;
+    let nearest = (value + ONES) - ONES;
+    let whole = if nearest > value { nearest - 1.0 } else { nearest };
+    (whole + ONES).to_bits() as u16
 }
 
 #[cfg(test)]
@@ -83,6 +103,15 @@ mod tests {
         assert_eq!(digits(&signal, 1.0, 0.0), [0, 0, 0, 1, 128, 255, 255]);
         assert_eq!(digits(&[0.1, 0.2, 0.6], 2.0, -0.2), [0, 51, 255]);
         assert_eq!(digits(&[f32::NAN], 1.0, 0.0), [0]);
+    }
+
+    #[test]
+    fn a_whole_part_is_that_of_a_cast() {
+        for i in 0..65_535_u32 {
+            for value in [i as f32, i as f32 + 0.5, (i as f32 + 1.0).next_down()] {
+                assert_eq!(u32::from(whole_part(value)), i, "{value}");
+            }
+        }
     }
 
     #[test]

@@ -29,6 +29,8 @@ pub(super) enum Run<'a> {
 pub(super) struct Coverage {
     columns: usize,
     rows: usize,
+    /// From one row of the steps to the next: a step more than pixels, for what is left beyond the last of them.
+    stride: usize,
     /// What a pixel adds to the sums of the pixels before it in its row.
     steps: Vec<[f32; 2]>,
     /// A bit for each block of a row that has a step.
@@ -52,7 +54,8 @@ impl Coverage {
         Self {
             columns,
             rows,
-            steps: vec![[0.0; 2]; columns * rows],
+            stride: columns + 1,
+            steps: vec![[0.0; 2]; (columns + 1) * rows],
             touched: vec![0; rows],
             shift,
             window: Window { left: 0, right: columns, top: 0, bottom: rows },
@@ -80,7 +83,7 @@ impl Coverage {
     }
 
     fn add_edge(&mut self, from: [f64; 2], to: [f64; 2], weights: [f32; 2]) {
-        let (upper, lower, sign) = if from[1] < to[1] { (from, to, 1.0) } else { (to, from, -1.0) };
+        let (upper, lower, sign) = if from[1] < to[1] { (from, to, 1.0_f32) } else { (to, from, -1.0_f32) };
         let top = upper[1].max(self.window.top as f64);
         let bottom = lower[1].min(self.window.bottom as f64);
         // Said this way round, a coordinate that is no number adds nothing.
@@ -91,10 +94,13 @@ impl Coverage {
         let per_row = (lower[0] - upper[0]) / (lower[1] - upper[1]);
         let x_at = |y: f64| if y == lower[1] { lower[0] } else { upper[0] + (y - upper[1]) * per_row };
         let (x_top, x_bottom) = (x_at(top), x_at(bottom));
-        let weights = [sign * f64::from(weights[0]), sign * f64::from(weights[1])];
+        let weights = weights.map(|weight| sign * weight);
         let (left, right) = (self.window.left as f64, self.window.right as f64);
         if x_top >= left && x_bottom >= left && x_top <= right && x_bottom <= right {
-            self.add_inside([x_top, top], [x_bottom, bottom], weights);
+            self.add_inside([x_top, top], [x_bottom, bottom], per_row, weights);
+            return;
+        }
+        if x_top >= right && x_bottom >= right {
             return;
         }
         // Cut where it enters and leaves the window. What is to the left of the window covers its rows whole; what is to
@@ -113,46 +119,41 @@ impl Coverage {
             let x_end = if end == bottom { x_bottom } else { x_at(end) };
             let middle = 0.5 * (x + x_end);
             if end > y && middle < right {
-                self.add_inside([x.clamp(left, right), y], [x_end.clamp(left, right), end], weights);
+                let (from, to) = (x.clamp(left, right), x_end.clamp(left, right));
+                self.add_inside([from, y], [to, end], (to - from) / (end - y), weights);
             }
             (y, x) = (end, x_end);
         }
     }
 
-    /// An edge that lies in the window, `from` above `to`.
-    fn add_inside(&mut self, from: [f64; 2], to: [f64; 2], weights: [f64; 2]) {
-        let per_row = (to[0] - from[0]) / (to[1] - from[1]);
+    /// An edge that lies in the window, `from` above `to`, and its x a row.
+    fn add_inside(&mut self, from: [f64; 2], to: [f64; 2], per_row: f64, weights: [f32; 2]) {
         let (low, high) = if from[0] < to[0] { (from[0], to[0]) } else { (to[0], from[0]) };
         let mut row = (from[1] as usize).min(self.window.bottom - 1);
+        let last_row = (to[1] as usize).min(self.window.bottom - 1);
         let [mut x, mut y] = from;
-        while row < self.window.bottom {
+        while row < last_row {
             let floor = (row + 1) as f64;
-            let (next_x, next_y) = if floor < to[1] {
-                ((from[0] + (floor - from[1]) * per_row).clamp(low, high), floor)
-            } else {
-                (to[0], to[1])
-            };
-            self.add_in_row(row, x, next_x, next_y - y, weights);
-            if floor >= to[1] {
-                break;
-            }
-            (x, y) = (next_x, next_y);
+            let next = (from[0] + (floor - from[1]) * per_row).clamp(low, high);
+            self.add_in_row(row, x, next, floor - y, weights);
+            (x, y) = (next, floor);
             row += 1;
         }
+        self.add_in_row(row, x, to[0], to[1] - y, weights);
     }
 
     /// A piece of an edge within one row, of this height, from x `a` to `b`.
-    fn add_in_row(&mut self, row: usize, a: f64, b: f64, height: f64, weights: [f64; 2]) {
+    #[inline(always)]
+    fn add_in_row(&mut self, row: usize, a: f64, b: f64, height: f64, weights: [f32; 2]) {
         let (low, high) = if a < b { (a, b) } else { (b, a) };
         let right = self.window.right;
         let first = (low as usize).min(right - 1);
-        let steps = &mut self.steps[row * self.columns..][..right];
+        let start = row * self.stride;
+        // One more than the window's, for what is left beyond it.
+        let steps = &mut self.steps[start..start + right + 1];
         let mut step = |column: usize, area: f64| {
-            // Beyond the window there is nothing to sum.
-            if let Some(step) = steps.get_mut(column) {
-                step[0] += (area * weights[0]) as f32;
-                step[1] += (area * weights[1]) as f32;
-            }
+            let (step, area) = (&mut steps[column], area as f32);
+            *step = [step[0] + area * weights[0], step[1] + area * weights[1]];
         };
         let end = (first + 1) as f64;
         let mut last = first;
@@ -191,7 +192,9 @@ impl Coverage {
             if touched == 0 {
                 continue;
             }
-            let steps = &mut self.steps[row * self.columns..(row + 1) * self.columns];
+            let start = row * self.stride;
+            let steps = &mut self.steps[start..start + right + 1];
+            steps[right] = [0.0; 2];
             let mut sums = [0.0_f32; 2];
             let mut column = left;
             while column < right {

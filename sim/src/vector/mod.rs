@@ -5,11 +5,13 @@
 //! what lies behind: neighbours leave no seam. Light is Lambert's: ρ (fill + E cos θ/π), where the light's part is weakened
 //! by the share of the pixel that lies in the shadow (`shadow`) of other parts.
 
+mod beam;
 mod body;
 mod clip;
 mod coverage;
 mod kept_light;
 mod lamp;
+mod loops;
 mod painting;
 mod planes;
 mod shadow;
@@ -41,8 +43,8 @@ pub struct RadianceImage {
 
 /// Draws docking scenes as one camera sees them.
 ///
-/// It keeps its buffers from image to image, and the shadows from image to image as long as scene and light stay the same. What
-/// it draws depends on nothing but the arguments of [`Drawer::draw`].
+/// It keeps its buffers from image to image, and the outlines of what casts shadows as long as scene and light stay the same.
+/// What it draws depends on nothing but the arguments of [`Drawer::draw`].
 #[derive(Debug, Clone)]
 pub struct Drawer {
     lens: Lens,

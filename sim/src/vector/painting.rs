@@ -301,18 +301,18 @@ impl Painting {
         within: Window,
         canvas: &Canvas<'_>,
     ) -> Option<Window> {
-        self.shadow.clear();
+        let outlines = &mut self.shadow;
+        outlines.clear();
         let mut bounds = Bounds::EMPTY;
-        shadows.find(plane, canvas.prepared);
-        for polygon in shadows.on(plane) {
-            let start = self.shadow.len();
-            let bounds_of_polygon = self.shadow.push(&canvas.view, polygon);
+        shadows.find(&canvas.prepared.planes[plane], canvas.prepared, &canvas.view, within, |polygon| {
+            let start = outlines.len();
+            let bounds_of_polygon = outlines.push(&canvas.view, polygon);
             if bounds_of_polygon.window(within).is_some() {
                 bounds = bounds.with(bounds_of_polygon);
             } else {
-                self.shadow.truncate(start);
+                outlines.truncate(start);
             }
-        }
+        });
         bounds.window(within)
     }
 }

@@ -1,9 +1,10 @@
-//! A scene made ready to be drawn: its facets by the planes in which they lie, each in a sphere.
+//! A scene made ready to be drawn: its facets by the planes in which they lie, with bounds of everything.
 
 use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::loops::Loops;
 use super::silhouette::FacetEdges;
 use crate::scene::docking::{DockingScene, Facet, Part};
 
@@ -40,7 +41,7 @@ pub(super) struct Sphere {
 
 impl Sphere {
     /// About the middle of the points' extent along the axes; about the origin where there are no points.
-    fn about<'a>(points: impl Iterator<Item = &'a Vector3<f64>> + Clone) -> Self {
+    pub(super) fn about<'a>(points: impl Iterator<Item = &'a Vector3<f64>> + Clone) -> Self {
         let Extent { low, high } = Extent::of(points.clone());
         let centre = if low.x <= high.x { 0.5 * (low + high) } else { Vector3::zeros() };
         let radius = points.map(|point| (point - centre).norm()).fold(0.0, f64::max);
@@ -58,7 +59,6 @@ pub(super) struct Plane {
     pub(super) offset: f64,
     /// Places of its facets in the part.
     pub(super) facets: Vec<usize>,
-    pub(super) sphere: Sphere,
     pub(super) extent: Extent,
 }
 
@@ -75,6 +75,8 @@ pub(super) struct Caster {
     pub(super) sphere: Sphere,
     /// Area, m².
     pub(super) area: f64,
+    /// Its boundary and its holes.
+    pub(super) loops: Loops,
 }
 
 /// A part made ready.
@@ -162,16 +164,13 @@ fn planes_of(part: &Part, index_of_part: usize) -> Vec<Plane> {
                 normal: facet.normal,
                 offset,
                 facets: vec![index],
-                sphere: Sphere { centre: *point, radius: 0.0 },
                 extent: Extent { low: *point, high: *point },
             }),
         }
     }
     for plane in &mut planes {
         let facets = plane.facets.iter().map(|index| &part.facets[*index]);
-        let points = facets.flat_map(|facet| &facet.outer);
-        plane.sphere = Sphere::about(points.clone());
-        plane.extent = Extent::of(points);
+        plane.extent = Extent::of(facets.flat_map(|facet| &facet.outer));
     }
     planes
 }
@@ -190,5 +189,9 @@ fn caster(facet: &Facet) -> Caster {
             0.5 * sum.dot(&facet.normal)
         })
         .sum();
-    Caster { sphere: Sphere::about(facet.outer.iter()), area: signed.abs() }
+    let mut loops = Loops::default();
+    for polygon in std::iter::once(&facet.outer).chain(&facet.holes) {
+        loops.push(polygon.iter().copied());
+    }
+    Caster { sphere: Sphere::about(facet.outer.iter()), area: signed.abs(), loops }
 }

@@ -1,17 +1,18 @@
 //! Cast shadows: the outlines of what casts, projected along the light onto the planes that it falls on.
 //!
-//! They lie in the target's frame and know no camera, so that they stay while the light stays; they are found for a plane
-//! when it is first seen. A body's shadow is that of its lit side, or of its dark side where that is the larger (a sheet
+//! Only what falls into the window of the image in which the plane is seen is cast ([`Beam`]): the outlines of what casts have
+//! thousands of corners, and most planes are small. The outlines know no camera and stay while the light stays. A body's shadow is that of its lit side, or of its dark side where that is the larger (a sheet
 //! seen by the light from behind): of a closed body both are the same, and both together would count its outline twice.
 //! Where all of it stands over the plane its [`silhouette`](super::silhouette) casts it, else each facet, cut at the plane.
 
-use std::ops::Range;
-
 use nalgebra::Vector3;
 
+use super::beam::Beam;
 use super::clip::keep_above;
+use super::coverage::Window;
 use super::planes::{Extent, Plane, Prepared, Sphere};
 use super::silhouette::Silhouette;
+use super::view::View;
 use crate::scene::docking::Facet;
 
 /// Where light comes from.
@@ -46,16 +47,37 @@ impl Source {
         (facet.normal.dot(&self.from(corner)) <= 0.0) == dark_side
     }
 
-    /// Where the outline of what casts is, seen from a plane.
-    fn place(&self, outline: &Silhouette, plane: &Plane) -> Place {
-        let heights = outline.polygons().flatten().map(|point| plane.height(point));
-        let nothing = (f64::INFINITY, f64::NEG_INFINITY);
-        let (lowest, greatest) =
-            heights.fold(nothing, |(low, high), height| (height.min(low), height.max(high)));
+    /// Where the outline of what casts is, seen from a plane; `sphere` is about all of it.
+    fn place(&self, outline: &Silhouette, sphere: &Sphere, plane: &Plane) -> Place {
         let highest = match self {
             Self::Parallel(_) => f64::INFINITY,
             Self::Point(position) => Shadows::BELOW_LIGHT * plane.height(position),
         };
+        // The corners need not be looked at where all of a sphere is on one side.
+        let sure = |sphere: &Sphere| {
+            let height = plane.height(&sphere.centre);
+            let (low, high) = (height - sphere.radius, height + sphere.radius);
+            let is_sure = high < -Shadows::TOUCHING_M || (low > Shadows::TOUCHING_M && high < highest);
+            is_sure.then_some((low, high))
+        };
+        let (mut lowest, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+        if let Some(heights) = sure(sphere) {
+            (lowest, greatest) = heights;
+        } else {
+            for (sphere, points) in outline.loops.all_stretches() {
+                if let Some((low, high)) = sure(sphere) {
+                    (lowest, greatest) = (low.min(lowest), high.max(greatest));
+                } else {
+                    for height in points.iter().map(|point| plane.height(point)) {
+                        (lowest, greatest) = (height.min(lowest), height.max(greatest));
+                    }
+                }
+                let is_across = lowest < -Shadows::TOUCHING_M && greatest > Shadows::TOUCHING_M;
+                if is_across {
+                    break;
+                }
+            }
+        }
         if greatest <= Shadows::TOUCHING_M {
             Place::Behind
         } else if lowest >= -Shadows::TOUCHING_M && greatest <= highest {
@@ -63,22 +85,6 @@ impl Source {
         } else {
             Place::Across
         }
-    }
-
-    /// Whether one sphere may stand between another and the light.
-    fn may_shade(&self, caster: &Sphere, receiver: &Sphere) -> bool {
-        let reach = caster.radius + receiver.radius;
-        let from_receiver = caster.centre - receiver.centre;
-        let way = self.from(&receiver.centre);
-        let (length, longest) = match self {
-            Self::Parallel(_) => (1.0, f64::INFINITY),
-            Self::Point(_) => (way.norm(), way.norm()),
-        };
-        if length == 0.0 {
-            return true;
-        }
-        let along = (from_receiver.dot(&way) / length).clamp(0.0, longest);
-        (from_receiver - way * (along / length)).norm_squared() <= reach * reach
     }
 }
 
@@ -100,18 +106,15 @@ struct Casting {
     silhouette: Silhouette,
 }
 
-/// The shadows on the planes of a scene from one light.
+/// The shadows in a scene from one light.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Shadows {
     source: Option<Source>,
-    points: Vec<Vector3<f64>>,
-    /// Where each polygon ends among the points.
-    ends: Vec<usize>,
-    /// Of each plane, its polygons; `None` where they have not been asked for.
-    of_plane: Vec<Option<Range<usize>>>,
     /// Of each part.
     casting: Vec<Casting>,
+    trimmed: Vec<Vector3<f64>>,
     cut: Vec<Vector3<f64>>,
+    shadow: Vec<Vector3<f64>>,
 }
 
 impl Shadows {
@@ -127,25 +130,12 @@ impl Shadows {
         self.source = None;
     }
 
-    /// The polygons of the shadows on a plane that were found, anticlockwise as seen from its front.
-    pub(super) fn on(&self, plane: usize) -> impl Iterator<Item = &[Vector3<f64>]> {
-        let range = self.of_plane.get(plane).cloned().flatten().unwrap_or(0..0);
-        range.map(|index| {
-            let start = if index == 0 { 0 } else { self.ends[index - 1] };
-            &self.points[start..self.ends[index]]
-        })
-    }
-
-    /// Turns to a light, unless it is the last one: then what was found stays.
+    /// Turns to a light, unless it is the last one: then the outlines of what casts stay.
     pub(super) fn update(&mut self, prepared: &Prepared, source: Source) {
         if self.source == Some(source) {
             return;
         }
         self.source = Some(source);
-        self.points.clear();
-        self.ends.clear();
-        self.of_plane.clear();
-        self.of_plane.resize(prepared.planes.len(), None);
         self.casting.resize_with(prepared.parts.len(), Casting::default);
         let parts = prepared.scene.parts.iter().zip(&prepared.parts);
         for ((part, ready), casting) in parts.zip(&mut self.casting) {
@@ -167,85 +157,94 @@ impl Shadows {
         }
     }
 
-    /// Finds the shadows on a plane, unless that is done.
-    pub(super) fn find(&mut self, index: usize, prepared: &Prepared) {
-        let Some(source) = self.source else { return };
-        if self.of_plane.get(index).is_none_or(Option::is_some) {
-            return;
-        }
-        let (plane, start) = (&prepared.planes[index], self.ends.len());
-        if source.lights(plane) {
-            // Taken out, so that the rest can be written to meanwhile.
-            let casting = std::mem::take(&mut self.casting);
-            self.cast_on(plane, &casting, prepared, source);
-            self.casting = casting;
-        }
-        self.of_plane[index] = Some(start..self.ends.len());
-    }
-
-    fn cast_on(&mut self, plane: &Plane, casting: &[Casting], prepared: &Prepared, source: Source) {
-        let parts = prepared.scene.parts.iter().zip(&prepared.parts).zip(casting);
+    /// Hands the polygons of the shadows on a plane to `take`, anticlockwise as seen from its front: right inside a window of
+    /// the image, and outside of it as it happens.
+    pub(super) fn find(
+        &mut self,
+        plane: &Plane,
+        prepared: &Prepared,
+        view: &View<'_>,
+        window: Window,
+        mut take: impl FnMut(&[Vector3<f64>]),
+    ) {
+        let Some(source) = self.source.filter(|source| source.lights(plane)) else { return };
+        let beam = Beam::new(source, plane, view, window);
+        let parts = prepared.scene.parts.iter().zip(&prepared.parts).zip(&self.casting);
         for (index, ((part, ready), casting)) in parts.enumerate() {
-            if index == plane.part
-                || ready.casters.is_empty()
-                || !source.may_shade(&ready.sphere, &plane.sphere)
-            {
+            if index == plane.part || ready.casters.is_empty() || beam.misses(&ready.sphere) {
                 continue;
             }
-            match source.place(&casting.silhouette, plane) {
-                Place::Behind => continue,
+            match source.place(&casting.silhouette, &ready.sphere, plane) {
+                Place::Behind => {}
                 Place::Between => {
-                    for outline in casting.silhouette.polygons() {
-                        self.cut.clear();
-                        self.cut.extend_from_slice(outline);
-                        self.cast(plane, source, casting.dark_side);
+                    let outlines = &casting.silhouette.loops;
+                    for outline in 0..outlines.len() {
+                        beam.trim(outlines, outline, &mut self.cut);
+                        if cast(&self.cut, plane, source, casting.dark_side, &mut self.shadow) {
+                            take(&self.shadow);
+                        }
                     }
-                    continue;
                 }
-                Place::Across => {}
-            }
-            for (facet, caster) in part.facets.iter().zip(&ready.casters) {
-                if !source.casts(facet, casting.dark_side) || !source.may_shade(&caster.sphere, &plane.sphere)
-                {
-                    continue;
-                }
-                for polygon in std::iter::once(&facet.outer).chain(&facet.holes) {
-                    keep_above(polygon, &mut self.cut, |point| plane.height(point) - Self::TOUCHING_M);
-                    if let Source::Point(position) = source {
-                        let highest = Self::BELOW_LIGHT * plane.height(&position);
-                        let upper = std::mem::take(&mut self.cut);
-                        keep_above(&upper, &mut self.cut, |point| highest - plane.height(point));
+                Place::Across => {
+                    for (facet, caster) in part.facets.iter().zip(&ready.casters) {
+                        let is_behind = plane.height(&caster.sphere.centre) < -caster.sphere.radius;
+                        if is_behind || !source.casts(facet, casting.dark_side) || beam.misses(&caster.sphere)
+                        {
+                            continue;
+                        }
+                        for polygon in 0..caster.loops.len() {
+                            beam.trim(&caster.loops, polygon, &mut self.trimmed);
+                            cut_between(&mut self.trimmed, plane, source, &mut self.cut);
+                            if cast(&self.cut, plane, source, casting.dark_side, &mut self.shadow) {
+                                take(&self.shadow);
+                            }
+                        }
                     }
-                    self.cast(plane, source, casting.dark_side);
                 }
             }
         }
     }
+}
 
-    /// Adds the shadow of the polygon in `cut`, which lies between plane and light.
-    fn cast(&mut self, plane: &Plane, source: Source, dark_side: bool) {
-        let start = self.points.len();
-        match source {
-            Source::Parallel(towards) => {
-                let climb = plane.normal.dot(&towards);
-                let shadow = |point: &Vector3<f64>| point - towards * (plane.height(point) / climb);
-                self.points.extend(self.cut.iter().map(shadow));
-            }
-            Source::Point(position) => {
-                let height = plane.height(&position);
-                let shadow = |point: &Vector3<f64>| {
-                    position + (point - position) * (height / (height - plane.height(point)))
-                };
-                self.points.extend(self.cut.iter().map(shadow));
-            }
-        }
-        if !plane.extent.meets(&Extent::of(&self.points[start..])) {
-            self.points.truncate(start);
-            return;
-        }
-        if dark_side {
-            self.points[start..].reverse();
-        }
-        self.ends.push(self.points.len());
+/// Puts what of a polygon lies between plane and light into `cut`, and leaves anything in the polygon.
+fn cut_between(polygon: &mut Vec<Vector3<f64>>, plane: &Plane, source: Source, cut: &mut Vec<Vector3<f64>>) {
+    keep_above(polygon, cut, |point| plane.height(point) - Shadows::TOUCHING_M);
+    if let Source::Point(position) = source {
+        let highest = Shadows::BELOW_LIGHT * plane.height(&position);
+        std::mem::swap(polygon, cut);
+        keep_above(polygon, cut, |point| highest - plane.height(point));
     }
+}
+
+/// Puts the shadow of a polygon between plane and light into `shadow`; whether it may fall on the plane's facets. Where it
+/// passes by these it must not shade the pixels that they have on their border.
+fn cast(
+    polygon: &[Vector3<f64>],
+    plane: &Plane,
+    source: Source,
+    dark_side: bool,
+    shadow: &mut Vec<Vector3<f64>>,
+) -> bool {
+    shadow.clear();
+    if polygon.len() < 3 {
+        return false;
+    }
+    match source {
+        Source::Parallel(towards) => {
+            let climb = plane.normal.dot(&towards);
+            let along = |point: &Vector3<f64>| point - towards * (plane.height(point) / climb);
+            shadow.extend(polygon.iter().map(along));
+        }
+        Source::Point(position) => {
+            let height = plane.height(&position);
+            let along = |point: &Vector3<f64>| {
+                position + (point - position) * (height / (height - plane.height(point)))
+            };
+            shadow.extend(polygon.iter().map(along));
+        }
+    }
+    if dark_side {
+        shadow.reverse();
+    }
+    plane.extent.meets(&Extent::of(shadow.iter()))
 }

@@ -7,6 +7,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::loops::Loops;
 use crate::scene::docking::Part;
 
 /// The edges of a part's facets, by the places of their ends in a list of its corners.
@@ -60,9 +61,9 @@ impl FacetEdges {
 /// The outline of some facets of a part: closed polygons, not flat in general, that run as the facets' boundaries do.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Silhouette {
+    pub(super) loops: Loops,
+    /// The polygon being put together.
     points: Vec<Vector3<f64>>,
-    /// Where each polygon ends among the points.
-    ends: Vec<usize>,
     chosen: Vec<bool>,
     /// Of each corner, the edges of the outline that leave it, and have not been gone along.
     leaving: Vec<Vec<u32>>,
@@ -71,8 +72,7 @@ pub(super) struct Silhouette {
 impl Silhouette {
     /// Finds the outline of the facets that `is_chosen` names by their places in the part.
     pub(super) fn find(&mut self, facets: &FacetEdges, is_chosen: impl Fn(usize) -> bool) {
-        self.points.clear();
-        self.ends.clear();
+        self.loops.clear();
         self.chosen.clear();
         self.chosen.resize(facets.edges.len(), false);
         for (index, edges) in facets.of_facet.iter().enumerate() {
@@ -90,23 +90,16 @@ impl Silhouette {
         for start in 0..facets.corners.len() {
             while let Some(first) = self.leaving[start].pop() {
                 let mut next = Some(first);
+                self.points.clear();
                 // As many edges leave a corner as come to it, so that the way ends where it began.
                 while let Some(edge) = next {
                     let [from, to] = facets.edges[edge as usize].map(|corner| corner as usize);
                     self.points.push(facets.corners[from]);
                     next = if to == start { None } else { self.leaving[to].pop() };
                 }
-                self.ends.push(self.points.len());
+                self.loops.push(self.points.drain(..));
             }
         }
-    }
-
-    /// The polygons.
-    pub(super) fn polygons(&self) -> impl Iterator<Item = &[Vector3<f64>]> {
-        self.ends.iter().enumerate().map(|(index, end)| {
-            let start = if index == 0 { 0 } else { self.ends[index - 1] };
-            &self.points[start..*end]
-        })
     }
 }
 
@@ -138,11 +131,12 @@ mod tests {
                     area(polygon).dot(&light)
                 })
                 .sum();
-            let outline: f64 = silhouette
-                .polygons()
-                .map(|polygon| {
+            let outline: f64 = (0..silhouette.loops.len())
+                .map(|index| {
+                    let corners = silhouette.loops.stretches(index).flat_map(|(_, points)| points).copied();
+                    let polygon: Vec<_> = corners.collect();
                     left += polygon.len();
-                    area(polygon).dot(&light)
+                    area(&polygon).dot(&light)
                 })
                 .sum();
             // Areas of up to 10³ m² from corners at up to 60 m: rounding.

@@ -94,6 +94,17 @@ impl Lens {
         Vector3::new(u / self.focal_px[0], v / self.focal_px[1], 1.0)
     }
 
+    /// The least and the greatest undistorted offsets from the principal point in a window, px; with distortion not less than
+    /// that.
+    fn offsets_of(&self, window: Window) -> ([f64; 2], [f64; 2]) {
+        let low = [window.left as f64, window.top as f64];
+        let high = [window.right as f64, window.bottom as f64];
+        let Some(grid) = &self.offsets else {
+            return (self.offset_of(low), self.offset_of(high));
+        };
+        grid.reach(low, high)
+    }
+
     fn place(&self, [u, v]: [f64; 2]) -> [f64; 2] {
         if self.reach.is_none() {
             return [self.principal[0] + u, self.principal[1] + v];
@@ -114,6 +125,8 @@ struct OffsetGrid {
 
 impl OffsetGrid {
     const CELL_PX: usize = 16;
+    /// What a rectangle's offsets are widened by, px: more than the grid is off, and than a border bends within a cell.
+    const MARGIN_PX: f64 = 2.0;
 
     fn new(lens: &Lens, camera: &Camera) -> Self {
         let cells = [camera.columns, camera.rows].map(|side| side.div_ceil(Self::CELL_PX));
@@ -123,6 +136,23 @@ impl OffsetGrid {
             .map(|point| lens.offset_of(point))
             .collect();
         Self { step, cells, nodes }
+    }
+
+    /// Offsets that enclose those of a rectangle: of its border, at the grid's distances.
+    fn reach(&self, low: [f64; 2], high: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+        let places = |axis: usize| {
+            let steps = ((high[axis] - low[axis]) / self.step[axis]).ceil().max(1.0);
+            (0..=steps as usize).map(move |i| low[axis] + (high[axis] - low[axis]) * i as f64 / steps)
+        };
+        let across = places(0).flat_map(|x| [[x, low[1]], [x, high[1]]]);
+        let down = places(1).flat_map(|y| [[low[0], y], [high[0], y]]);
+        let nothing = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        across.chain(down).map(|point| self.at(point)).fold(nothing, |(low, high), offset| {
+            (
+                [0, 1].map(|axis| low[axis].min(offset[axis] - Self::MARGIN_PX)),
+                [0, 1].map(|axis| high[axis].max(offset[axis] + Self::MARGIN_PX)),
+            )
+        })
     }
 
     fn at(&self, point: [f64; 2]) -> [f64; 2] {
@@ -157,6 +187,20 @@ impl<'a> View<'a> {
         let ideal = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
         let attitude = ideal * Rotation3::new(pose.phi_rad).into_inner();
         Self { lens, position: pose.position_m, attitude, camera_from_target: attitude.transpose() }
+    }
+
+    /// The borders of a window of the image as planes through the camera: their normals outwards, target frame. With distortion
+    /// they enclose the window with some pixels to spare.
+    pub(super) fn borders(&self, window: Window) -> [Vector3<f64>; 4] {
+        let ([left, top], [right, bottom]) = self.lens.offsets_of(window);
+        let [fx, fy] = self.lens.focal_px;
+        [
+            Vector3::new(-fx, 0.0, left),
+            Vector3::new(fx, 0.0, -right),
+            Vector3::new(0.0, -fy, top),
+            Vector3::new(0.0, fy, -bottom),
+        ]
+        .map(|normal| self.attitude * normal)
     }
 
     /// Whether something in a sphere may lie in front of the camera.
