@@ -120,7 +120,7 @@ fn a_picture_without_the_target_gives_no_pose() {
 
 /// What is said of a dataset's pictures turned by half a turn, as no approach may be.
 fn upside_down(bench: &Bench, approach: &str, fields: u64) -> Vec<String> {
-    bench.write("approach.toml", approach.to_owned());
+    bench.write("approach.toml", approach);
     bench.boresight(&format!("render approach.toml --frames 0..{fields} --out set")).done();
     for number in 0..fields {
         let path = bench.path(&format!("set/frames/{number:06}.png"));

@@ -270,4 +270,3 @@ impl Observer {
 
 /// A field of which more than this share is at full scale shows nothing.
 const MAX_SATURATED_SHARE: f64 = 0.6;
-
