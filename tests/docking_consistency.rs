@@ -5,6 +5,10 @@
 #[path = "../examples/docking_consistency/approaches.rs"]
 #[allow(dead_code, reason = "the example flies swinging approaches too")]
 mod approaches;
+#[path = "../examples/docking_random/mod.rs"]
+mod docking_random;
+#[path = "../examples/docking_random/in_field.rs"]
+mod in_field;
 #[path = "../examples/docking_consistency/tally.rs"]
 #[allow(dead_code, reason = "the example prints more than is checked here")]
 mod tally;
