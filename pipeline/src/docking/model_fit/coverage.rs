@@ -40,7 +40,7 @@ impl MarkImage {
     }
 
     pub(super) fn at(&self, tables: &Tables, u: f64, v: f64) -> Coverage {
-        let steps = [0, 1, 2, 3].map(|k: usize| self.edges[k].step(tables, u, v));
+        let steps = self.steps(tables, u, v);
         let across = [steps[0].inside + steps[2].inside - 1.0, steps[1].inside + steps[3].inside - 1.0];
         let mut coverage = Coverage { value: across[0] * across[1], by: [0.0; GLOBALS] };
         for k in 0..4 {
@@ -50,9 +50,17 @@ impl MarkImage {
         coverage
     }
 
+    fn steps(&self, tables: &Tables, u: f64, v: f64) -> [Step; 4] {
+        let mut steps = [Step::default(); 4];
+        for (step, edge) in steps.iter_mut().zip(&self.edges) {
+            *step = edge.step(tables, u, v);
+        }
+        steps
+    }
+
     /// The coverage alone.
     pub(super) fn value_at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
-        let steps = [0, 1, 2, 3].map(|k: usize| self.edges[k].step(tables, u, v));
+        let steps = self.steps(tables, u, v);
         let corners: f64 =
             (0..4).map(|k| self.correlations[k] * steps[k].density * steps[(k + 1) % 4].density).sum();
         (steps[0].inside + steps[2].inside - 1.0) * (steps[1].inside + steps[3].inside - 1.0) + corners

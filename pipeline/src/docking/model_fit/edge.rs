@@ -1,5 +1,6 @@
 //! A straight edge of a feature in the image, blurred.
 
+use super::gaussian::LIMIT;
 use super::sampled::{SampledProfiles, Tables};
 use crate::docking::geometry::Seen;
 
@@ -135,6 +136,10 @@ impl Edge {
     pub(super) fn step(&self, tables: &Tables, u: f64, v: f64) -> Step {
         let distance = self.normal.0 * u + self.normal.1 * v + self.offset;
         let z = distance * self.per_sigma;
+        if z.abs() >= LIMIT {
+            // Most edges are far from most pixels.
+            return Step { z, inside: if z > 0.0 { 1.0 } else { 0.0 }, density: 0.0, by_grid: 0.0 };
+        }
         let (below, density) = tables.gaussian.at(z);
         let mut step =
             Step { z, inside: below + self.kurtosis * z * (z * z - 3.0) * density, density, by_grid: 0.0 };
@@ -149,11 +154,11 @@ impl Edge {
 
     /// Adds `weight` × the derivative of the step.
     pub(super) fn add_derivative(&self, step: &Step, u: f64, v: f64, weight: f64, sum: &mut ByGlobals) {
-        let slope = weight * step.density;
-        sum[GRID] += weight * step.by_grid;
-        if slope == 0.0 {
+        if step.density == 0.0 {
             return;
         }
+        let slope = weight * step.density;
+        sum[GRID] += weight * step.by_grid;
         let tau = self.along.0 * u + self.along.1 * v + self.along_offset;
         let (a, b) = (slope * self.per_sigma * (1.0 - tau), slope * self.per_sigma * tau);
         for (sum, (by_a, by_b)) in sum.iter_mut().zip(self.by_pose[0].iter().zip(&self.by_pose[1])) {

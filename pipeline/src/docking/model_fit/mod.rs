@@ -47,8 +47,14 @@ const NEAR_SLACK_PX: f64 = 3.0;
 const NEAR_COARSE: [(f64, usize); 5] = [(9.0, 0), (4.0, 2), (1.0, 2), (1.0, 0), (0.0, 0)];
 const NEAR_REACH: f64 = 0.013;
 
-/// Pixels are thinned to about this many in the coarse stages.
+/// Pixels that are collected at most, roughly, for the coarse stages and for the answer; more are thinned evenly.
+const COLLECTED_COARSE: f64 = 6_000.0;
+const COLLECTED: f64 = 48_000.0;
+
+/// Pixels are thinned to about this many in the coarse stages …
 const COARSE_SAMPLES: usize = 1500;
+/// … and to this many while blur and brightness of the side faces are first looked for.
+const MIDDLE_SAMPLES: usize = 5000;
 
 /// A residual beyond this many σ is not noise.
 const PIXEL_GATE: f64 = 4.5;
@@ -191,8 +197,8 @@ impl ModelFit {
         let scene = Scene { camera, target, tables: &self.tables };
         let samples = &mut self.samples;
         let wide = Blur::new(self.blur.x + 0.5, self.blur.y + 0.5);
-        collect(samples, field, &scene, &globals, wide, slack_px)?;
-        let stride = samples.pixels.len().div_ceil(COARSE_SAMPLES).min(4);
+        collect(samples, field, &scene, &globals, wide, slack_px, COLLECTED_COARSE)?;
+        let stride = samples.pixels.len().div_ceil(COARSE_SAMPLES);
         let mut noise = 4.0;
         for (extra_blur_px2, held) in coarse.iter().copied() {
             let search = Search { extra_blur_px2, free: held..POSE, stride, steps: 6, decrement: 1.0 };
@@ -204,10 +210,16 @@ impl ModelFit {
         prepare(&mut self.tables, camera, target, &globals)?;
         let scene = Scene { camera, target, tables: &self.tables };
         let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
-        collect(samples, field, &scene, &globals, blur, 0.0)?;
+        collect(samples, field, &scene, &globals, blur, 0.0, COLLECTED)?;
         let view = View::new(camera, &to_pose(&globals));
         samples.shade(&mut self.shadows, field, camera, target, &self.tables, &view, blur);
-        let search = Search { extra_blur_px2: 0.0, free: 0..GLOBALS, stride: 1, steps: 12, decrement: 1e-3 };
+        let search = Search { extra_blur_px2: 0.0, free: 0..GLOBALS, stride: 1, steps: 12, decrement: 1e-2 };
+        let stride = samples.pixels.len().div_ceil(MIDDLE_SAMPLES);
+        if stride > 1 {
+            noise = solve(&scene, samples, &mut globals, &Search { stride, ..search.clone() }, noise)
+                .ok_or(NoPose::TooFewFeatures)?
+                .variance();
+        }
         let mut evaluation =
             solve(&scene, samples, &mut globals, &search, noise).ok_or(NoPose::TooFewFeatures)?;
         // The first field of a video finds its blur only now.
@@ -250,10 +262,11 @@ fn collect(
     globals: &Globals,
     blur: Blur,
     slack_px: f64,
+    most: f64,
 ) -> Result<(), NoPose> {
     let view = View::new(scene.camera, &to_pose(globals));
     samples
-        .collect(field, scene.camera, scene.target, scene.tables, &view, blur, slack_px)
+        .collect(field, scene.camera, scene.target, scene.tables, &view, blur, slack_px, most)
         .ok_or(NoPose::Inconsistent)?;
     if samples.patches.is_empty() { Err(too_few(samples)) } else { Ok(()) }
 }

@@ -61,8 +61,10 @@ pub(super) struct Patch {
 /// Pixels below which a patch says nothing beyond its own levels.
 const LEAST_SAMPLES: usize = 10;
 
-/// Pixels looked at in a field at most, roughly; more are thinned evenly.
-const MOST_SAMPLES: f64 = 48_000.0;
+/// Where an edge's blur has fallen off so far, in σ, pixels tell of the levels alone: where there are many, a few of them do.
+const FLAT_FROM: f64 = 1.7;
+const MANY_SAMPLES: f64 = 6_000.0;
+const FLAT_THIN: usize = 4;
 
 /// Arms shorter than this share one patch; longer ones are cut into pieces of about twice this, px.
 const SHORT_ARM_PX: f64 = 15.0;
@@ -104,14 +106,17 @@ struct Search<'a> {
     side_px: f64,
     /// The post between plate and cross, where it comes out from behind the cross: two image points and half its width.
     post: Option<[(f64, f64); 2]>,
+    /// Every how many pixels is taken, at the edges and in the outer part of the bands, which is so wide on either side, px.
     thin: usize,
+    flat_thin: usize,
+    flat_px: f64,
     /// Marks so near the cross in the image that each must keep off the other.
     crowded: Vec<usize>,
 }
 
 impl Samples {
-    /// Collects the pixels within `slack_px` + the blur's reach of an edge, as seen from a pose. `None` when the features are
-    /// not in front of the camera.
+    /// Collects the pixels within `slack_px` + the blur's reach of an edge, as seen from a pose, about `most` of them. `None` when
+    /// the features are not in front of the camera.
     #[allow(clippy::too_many_arguments, reason = "the scene, and how closely to look at it")]
     pub(super) fn collect(
         &mut self,
@@ -122,6 +127,7 @@ impl Samples {
         view: &View,
         blur: Blur,
         slack_px: f64,
+        most: f64,
     ) -> Option<()> {
         let image = field.image();
         self.taken.resize(image.columns() * image.rows(), 0);
@@ -133,7 +139,7 @@ impl Samples {
         self.pixels.clear();
         self.patches.clear();
         self.marks.clear();
-        let search = Search::new(field, camera, target, view, tables, blur, slack_px)?;
+        let search = Search::new(field, camera, target, view, tables, blur, slack_px, most)?;
         for index in 0..target.marks.len() {
             let usage = self.collect_mark(&search, index);
             self.marks.push(usage);
@@ -155,7 +161,9 @@ impl Samples {
         view: &View,
         blur: Blur,
     ) {
-        let Some(search) = Search::new(field, camera, target, view, tables, blur, 0.0) else { return };
+        let Some(search) = Search::new(field, camera, target, view, tables, blur, 0.0, MANY_SAMPLES) else {
+            return;
+        };
         let is_clear = |u: f64, v: f64, y1: f64, y2: f64| {
             let inside_px = (target.plate_radius_m - libm::hypot(y1, y2)) * search.plate_scale;
             inside_px > search.reach_px
@@ -331,7 +339,9 @@ impl Samples {
                 continue;
             }
             for x in span.0.ceil() as usize..=span.1.floor() as usize {
-                if !(x + row).is_multiple_of(search.thin) {
+                let across = (x as f64 - from.x) * ty - y * tx;
+                let is_flat = across.abs() > reach_px - search.flat_px;
+                if !(x + row).is_multiple_of(if is_flat { search.flat_thin } else { search.thin }) {
                     continue;
                 }
                 let taken = &mut self.taken[row * image.columns() + x];
@@ -376,6 +386,7 @@ fn narrow(span: &mut (f64, f64), slope: f64, offset: f64, low: f64, high: f64) {
 }
 
 impl<'a> Search<'a> {
+    #[allow(clippy::too_many_arguments, reason = "the scene, and how closely to look at it")]
     fn new(
         field: &'a Field,
         camera: &'a CameraModel,
@@ -384,6 +395,7 @@ impl<'a> Search<'a> {
         tables: &'a Tables,
         blur: Blur,
         slack_px: f64,
+        most: f64,
     ) -> Option<Self> {
         let cross = &target.cross;
         let at = |y1: f64, y2: f64, y3: f64| view.see(&Vector3::new(y1, y2, y3)).map(|seen| (seen.u, seen.v));
@@ -410,8 +422,9 @@ impl<'a> Search<'a> {
             .map(|[a, _, c, _]| 2.8 * libm::hypot(a[0] - c[0], a[1] - c[1]) * plate_scale)
             .sum();
         let edges_px = mark_px + 8.0 * length * cross_scale;
-        let thin =
-            (edges_px * 2.0 * (reach_px + side_px) / field.lines().step() as f64 / MOST_SAMPLES).ceil();
+        let expected = edges_px * 2.0 * (reach_px + side_px) / field.lines().step() as f64;
+        let thin = ((expected / most).ceil() as usize).max(1);
+        let blur_px = (0.5 * (blur.x + blur.y) + BOX_VARIANCE).sqrt();
         let mut search = Self {
             field,
             camera,
@@ -419,12 +432,14 @@ impl<'a> Search<'a> {
             view,
             tables,
             reach_px,
-            blur_px: (0.5 * (blur.x + blur.y) + BOX_VARIANCE).sqrt(),
+            blur_px,
             plate_scale,
             cross_scale,
             side_px,
             post: (post_px > (half - 0.5 * cross.post_width_m) * cross_scale).then_some(post),
-            thin: (thin as usize).max(1),
+            thin,
+            flat_thin: if expected > MANY_SAMPLES { FLAT_THIN * thin } else { thin },
+            flat_px: (reach_px - slack_px - FLAT_FROM * blur_px).max(0.0),
             crowded: Vec::new(),
         };
         search.crowded = (0..target.marks.len())

@@ -32,6 +32,9 @@ const LONGEST_STEP_PX: f64 = 1.5;
 /// Coordinates within a patch are counted in these, px: levels and slopes are then alike in size.
 const PATCH_UNIT_PX: f64 = 10.0;
 
+/// Pixels of a patch that are looked at in any case.
+const LEAST_OF_PATCH: usize = 3 * LOCALS;
+
 /// Columns of a row of the equations: DN, plate, two slopes, beyond the rim, coverage; then derivatives of the coverage.
 const ROW: usize = 1 + LOCALS + GLOBALS;
 const COVERAGE: usize = LOCALS;
@@ -136,6 +139,8 @@ pub(super) fn solve(
         let mut step = inverse(&damped)? * now.gradient;
         let promised = step.dot(&now.gradient);
         if promised <= search.decrement * now.variance() {
+            // The last step is taken on trust: what it changes in the residuals is less than can be seen.
+            *globals = bounded(&(*globals + step));
             break;
         }
         let shift = images.shift(&step.into());
@@ -244,7 +249,9 @@ fn evaluate(
         let known = patch.levels[COVERAGE - 1];
         let mut gram = [[0.0; ROW]; ROW];
         patch.used_samples = 0;
-        for pixel in pixels[patch.first..patch.end].iter_mut().step_by(search.stride) {
+        // A small patch keeps enough to know its levels by.
+        let stride = search.stride.min((patch.end - patch.first) / LEAST_OF_PATCH).max(1);
+        for pixel in pixels[patch.first..patch.end].iter_mut().step_by(stride) {
             let (u, v) = (pixel.u, pixel.v);
             let coverage: Coverage = match patch.feature {
                 Feature::Mark(index) => images.marks[index].as_ref()?.at(scene.tables, u, v),
