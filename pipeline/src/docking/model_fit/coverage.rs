@@ -155,8 +155,11 @@ impl CrossImage {
 
     pub(super) fn at(&self, tables: &Tables, u: f64, v: f64) -> Coverage {
         let mut front = [Step::default(); 8];
+        // Most edges are far away: only where two are near is a corner.
+        let mut near = 0;
         for (step, edge) in front.iter_mut().zip(&self.front) {
             *step = edge.step(tables, u, v);
+            near += usize::from(step.density != 0.0);
         }
         let mut back = front;
         for (step, edge) in back.iter_mut().zip(&self.back) {
@@ -183,8 +186,10 @@ impl CrossImage {
                 + h_ends * h_across,
             by: [0.0; GLOBALS],
         };
-        for ((i, j, _), correlation) in CORNERS.iter().zip(self.correlations) {
-            coverage.value += correlation * front[*i].density * front[*j].density;
+        if near > 1 {
+            for ((i, j, _), correlation) in CORNERS.iter().zip(&self.correlations) {
+                coverage.value += correlation * front[*i].density * front[*j].density;
+            }
         }
         let by_v_across = v_open - h_sides + v_ends;
         let by_v_along = v_across + v_sides;

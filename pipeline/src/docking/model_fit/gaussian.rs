@@ -34,8 +34,8 @@ impl Gaussian {
         if z.is_nan() || z <= -LIMIT {
             return (0.0, 0.0);
         }
-        let k = ((z + LIMIT) * NODES).round();
-        let at = k / NODES - LIMIT;
+        let k = ((z + LIMIT) * NODES + 0.5) as u32;
+        let at = f64::from(k) / NODES - LIMIT;
         let (below, density) = self.nodes[k as usize];
         let d = z - at;
         let second = at * at - 1.0;

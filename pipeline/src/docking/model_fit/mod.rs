@@ -49,12 +49,12 @@ const NEAR_REACH: f64 = 0.013;
 
 /// Pixels that are collected at most, roughly, for the coarse stages and for the answer; more are thinned evenly.
 const COLLECTED_COARSE: f64 = 6_000.0;
-const COLLECTED: f64 = 48_000.0;
+const COLLECTED: f64 = 30_000.0;
 
 /// Pixels are thinned to about this many in the coarse stages …
 const COARSE_SAMPLES: usize = 1500;
 /// … and to this many while blur and brightness of the side faces are first looked for.
-const MIDDLE_SAMPLES: usize = 5000;
+const MIDDLE_SAMPLES: usize = 4000;
 
 /// A residual beyond this many σ is not noise.
 const PIXEL_GATE: f64 = 4.5;
@@ -73,6 +73,9 @@ const FAINTEST_MARK: f64 = 0.15;
 
 /// The middle feature's level over the noise below which nothing is seen at all.
 const FAINTEST_LEVEL: f64 = 4.0;
+
+/// One pixel of so many more or less changes nothing that can be seen.
+const UNSEEN: usize = 2000;
 
 /// Rounds of rejection.
 const ROUNDS: usize = 3;
@@ -271,7 +274,7 @@ fn collect(
     if samples.patches.is_empty() { Err(too_few(samples)) } else { Ok(()) }
 }
 
-/// Rejects pixels, then patches, by the residuals of the last evaluation; whether anything changed.
+/// Rejects pixels, then patches, by the residuals of the last evaluation; whether anything changed that can be seen.
 fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPose> {
     let freedom = |used: usize| (used as f64 - samples::LOCALS as f64 - 1.0).max(1.0);
     variances.clear();
@@ -285,7 +288,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
     );
     let usual_mark = median(mark_levels).unwrap_or(0.0);
 
-    let mut is_changed = false;
+    let (mut is_changed, mut changed) = (false, 0);
     for patch in patches.iter_mut() {
         let level = patch.levels[samples::LOCALS - 1];
         let tolerated = typical + MODEL_ERROR * MODEL_ERROR * level * level;
@@ -296,7 +299,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
             let residual = residual(patch, pixel);
             let square = residual * residual;
             let is_used = square <= gate;
-            is_changed |= is_used != pixel.is_used;
+            changed += usize::from(is_used != pixel.is_used);
             pixel.is_used = is_used;
             if is_used {
                 squares += square;
@@ -315,7 +318,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
         is_changed |= is_used != patch.is_used;
         patch.is_used = is_used;
     }
-    Ok(is_changed)
+    Ok(is_changed || changed > pixels.len() / UNSEEN)
 }
 
 /// The answer, if what was used determines a pose and enough of what is seen looks like the target.
