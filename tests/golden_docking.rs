@@ -39,7 +39,7 @@ const TWO_EDGES: [(&str, Kind, [f64; 2]); 4] = [
     ("wide-20", Kind::Disk, [0.08, 0.022]),
     ("narrow-20", Kind::Disk, [0.035, AGREE_PX]),
     ("wide-5-night", Kind::Disk, [0.035, AGREE_PX]),
-    ("narrow-2", Kind::Marks, [0.03, 0.03]),
+    ("narrow-2", Kind::Marks, [0.03, AGREE_PX]),
 ];
 
 /// How far over a surface Mitsuba starts its rays at the origin, m: 1500 × 2⁻²⁴ (`RayEpsilon` of its float variants).
