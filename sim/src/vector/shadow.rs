@@ -1,8 +1,8 @@
 //! Cast shadows: the outlines of what casts, projected along the light onto the planes that it falls on.
 //!
 //! Only what falls into the window of the image in which the plane is seen is cast ([`Beam`]): the outlines of what casts have
-//! thousands of corners, and most planes are small. The outlines know no camera and stay while the light stays. A body's shadow is that of its lit side, or of its dark side where that is the larger (a sheet
-//! seen by the light from behind): of a closed body both are the same, and both together would count its outline twice.
+//! thousands of corners, and most planes are small. The outlines know no camera and stay while the light stays. A body's shadow is that of its lit side, or of its dark side where that is much the larger
+//! (a sheet seen by the light from behind): of a closed body both are the same, and both together would count its outline twice.
 //! Where all of it stands over the plane its [`silhouette`](super::silhouette) casts it, else each facet, cut at the plane.
 
 use nalgebra::Vector3;
@@ -122,8 +122,10 @@ impl Shadows {
     const TOUCHING_M: f64 = 1e-6;
     /// What lies higher than this share of a near light's height above a plane casts none: its shadow would have no end.
     const BELOW_LIGHT: f64 = 0.999;
-    /// By how much the dark side must be the larger to cast, against rounding.
-    const LARGER: f64 = 1.0 + 1e-6;
+    /// How many times the lit side the dark side must be to cast: a sheet seen from behind has next to no lit side. A tube, such
+    /// as the rim of a plate whose faces are parts of their own, has both, of which a near light sees the dark one a little the
+    /// larger; but that one's shadow lies within that of the face towards the light, and the lit one's beside it.
+    const LARGER: f64 = 2.0;
 
     /// Forgets all.
     pub(super) fn forget(&mut self) {
