@@ -3,6 +3,7 @@
 mod airy;
 mod config;
 mod defocus;
+mod error_function;
 mod gaussians;
 mod moffat;
 mod sampled;
@@ -151,9 +152,8 @@ impl Psf {
             }
         }
         for pixel in &mut stamp.electrons {
-            if *pixel < floor_e {
-                *pixel = 0.0;
-            }
+            // A choice and not a branch, for many pixels at once.
+            *pixel = if *pixel < floor_e { 0.0 } else { *pixel };
         }
     }
 
