@@ -141,30 +141,27 @@ impl Stamp {
     pub fn truth(&self, background_e: f64, readout_noise_e: f64) -> StampTruth {
         let variance = background_e + readout_noise_e * readout_noise_e;
         let noise_e = variance.sqrt();
-        // Four sums side by side: one after the other each sum would wait for the one before.
+        // Four sums side by side: one after the other each sum would wait for the one before. Where there is neither light nor
+        // noise the quotient is 0, not no number.
+        let variance = variance.max(f64::MIN_POSITIVE);
         let (mut electrons, mut snr2) = ([0.0; 4], [0.0; 4]);
-        let (fours, rest) = self.electrons.as_chunks::<4>();
-        let mut add = |lane: usize, signal: f64| {
-            let lit = if signal > 0.0 { signal } else { 0.0 };
-            electrons[lane] += lit;
-            // Where there is neither light nor noise, the quotient is no number and counts nothing.
-            let quotient = lit / (lit + variance);
-            snr2[lane] += lit * if lit > 0.0 { quotient } else { 0.0 };
-        };
-        for four in fours {
-            for (lane, &signal) in four.iter().enumerate() {
-                add(lane, signal);
+        let mut add = |signals: [f64; 4]| {
+            for lane in 0..4 {
+                let lit = if signals[lane] > 0.0 { signals[lane] } else { 0.0 };
+                electrons[lane] += lit;
+                snr2[lane] += lit * (lit / (lit + variance));
             }
-        }
-        for (lane, &signal) in rest.iter().enumerate() {
-            add(lane, signal);
-        }
+        };
+        let (fours, rest) = self.electrons.as_chunks::<4>();
+        fours.iter().for_each(|four| add(*four));
+        add(std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0)));
         let sum = |lanes: [f64; 4]| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+        let peak_electrons = self.peak_e();
         StampTruth {
             electrons: sum(electrons),
-            peak_electrons: self.peak_e(),
+            peak_electrons,
             snr: sum(snr2).sqrt(),
-            radius_px: self.radius_px(noise_e),
+            radius_px: if peak_electrons > noise_e { self.radius_px(noise_e) } else { 0.5 },
         }
     }
 
@@ -172,7 +169,7 @@ impl Stamp {
     fn radius_px(&self, electrons: f64) -> f64 {
         let mut radius2 = 0.25_f64;
         for (x, y, row) in self.rows() {
-            // A row is convex: its first and its last such pixel are the farthest.
+            // Of the pixels of a row the first or the last is the farthest.
             let Some(first) = row.iter().position(|&signal| signal > electrons) else { continue };
             let last = row.iter().rposition(|&signal| signal > electrons).unwrap_or(first);
             let dy = y as f64 - self.centre.y;

@@ -239,6 +239,41 @@ mod tests {
         }
     }
 
+    /// Half-way between the nodes of the grid n is least certain. Pearson's test against the exact law, its tails joined to
+    /// ten expected numbers; draws of a row each.
+    fn assert_the_law_midway(draws: usize) {
+        let law = law();
+        let mut tables = OwnMeans::new(&law);
+        let mut row = vec![0; 1000];
+        for i in 0..20_u64 {
+            let quarters = (4.0 * 0.1 * libm::pow(2550.0, i as f64 / 19.0)).floor();
+            let mean_e = 0.25 * quarters + 0.125;
+            let streams = Seed { seed: 26, case: i }.streams(0, Effect::PixelNoise);
+            let means = vec![mean_e; row.len()];
+            let mut counts = vec![0; 4096];
+            for y in 0..(draws / row.len()) as u64 {
+                let own = |x: usize| streams.at((1 << 40) + (y << 10) + x as u64);
+                tables.draw_row(&means, Lanes::at(&streams, y), &mut row, own);
+                row.iter().for_each(|&dn| counts[usize::from(dn)] += 1);
+            }
+            let p = chi_square_p(&counts, &from_zero(&law.probabilities(mean_e, 0)));
+            // Twenty tests.
+            assert!(p > 1e-4, "mean {mean_e}: p = {p}");
+        }
+    }
+
+    #[test]
+    fn midway_between_nodes_the_law_is_exact() {
+        assert_the_law_midway(1_000_000);
+    }
+
+    /// In full: `cargo test --release -p boresight-sim midway -- --ignored`.
+    #[test]
+    #[ignore = "2e9 draws: for a scheduled job"]
+    fn midway_between_nodes_the_law_is_exact_in_a_hundred_million_draws() {
+        assert_the_law_midway(100_000_000);
+    }
+
     #[test]
     fn what_is_kept_changes_nothing() {
         let law = law();

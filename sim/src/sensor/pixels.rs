@@ -249,6 +249,30 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_registers_of_the_machine_change_no_bit() {
+        let config = even(20.0, 0.0, 0.02);
+        let sensor = Sensor::new(&config, 301, 40).unwrap();
+        let mut image = sensor.new_expected();
+        image.clear(sensor.sky_electrons(1.0));
+        (0..40).for_each(|y| image.add_pixel(7 * y, y, libm::exp(0.3 * y as f64)));
+        let charge = sensor.collect(&mut image, &opening(1.0));
+        let streams = SEED.streams(3, crate::randomness::Effect::PixelNoise);
+        let draw = |widest: bool| {
+            let (mut raw, mut laws) = (sensor.new_raw(), FlatLaws::new());
+            let tables = laws.own_means(&sensor.law);
+            let expected = charge.expected();
+            let frame = OwnMeansFrame { expected, streams: &streams, tables, raw: &mut raw };
+            if widest {
+                pulp::Arch::new().dispatch(frame);
+            } else {
+                pulp::WithSimd::with_simd(frame, pulp::Scalar::new());
+            }
+            raw.dn
+        };
+        assert_eq!(draw(true), draw(false));
+    }
+
     /// The pixels themselves are frozen: this must hold on every machine, and a change here changes every result of such
     /// detectors and belongs in CHANGELOG.md.
     #[test]

@@ -3,6 +3,7 @@
 //! A Gaussian over a rectangle is the product of two differences of error functions, one a column and one a row,
 //! so that an image costs as many error functions as it has columns and rows.
 
+use super::condense::condensed;
 use super::error_function::ErrorFunction;
 use super::pixels_within;
 use crate::optics::{ImagePoint, Stamp};
@@ -74,6 +75,8 @@ impl Gaussians {
             if own_px == 0.0 {
                 continue;
             }
+            let condensed = condensed(points, component.sigma_px);
+            let points = condensed.as_ref().map_or(points, |(few, count)| &few[..*count]);
             for point in points {
                 let own_x = pixels_within((point.position.x, point.position.x), own_px, right);
                 let own_y = pixels_within((point.position.y, point.position.y), own_px, bottom);

@@ -1,6 +1,7 @@
 //! The point-spread function, integrated over pixels.
 
 mod airy;
+mod condense;
 mod config;
 mod defocus;
 mod error_function;
