@@ -8,7 +8,7 @@ use std::hint::black_box;
 
 use boresight_pipeline::far_range::{FarRange, FarRangeConfig};
 use contract::{Camera, Frame, Pipeline, Rotation, Setup, Telemetry};
-use criterion::{BenchmarkId, Criterion};
+use criterion::Criterion;
 use hifitime::{Epoch, Unit};
 
 const COLUMNS: usize = 752;
@@ -60,7 +60,7 @@ fn main() {
         let frames: Vec<Frame> = (0..8).map(|number| frame(number, stars)).collect();
         let mut pipeline = FarRange::new(FarRangeConfig::default(), &setup()).unwrap();
         let mut number = 0_u64;
-        criterion.bench_function(&BenchmarkId::new("process", stars).to_string(), |b| {
+        criterion.bench_function(&format!("process, {stars} stars"), |b| {
             b.iter(|| {
                 number += 1;
                 let telemetry = Telemetry {
