@@ -1,24 +1,125 @@
 //! The expected image: photo-electrons before any noise.
 
 use crate::optics::Stamp;
+use crate::pixel_factors::PixelFactors;
+use crate::smooth_field::SmoothField;
 
-/// Expected photo-electrons of a frame: a flat level, a field where the background is not flat, and signal where
-/// something was drawn.
+/// Expected photo-electrons of a frame: a flat level, what makes the background uneven, and signal where something was drawn.
 ///
-/// Most pixels of a star field hold the flat level and nothing else. The image knows which ones do not, so that
-/// clearing it, and drawing the noise, cost as much as there is signal. It is reused from frame to frame.
-#[derive(Debug, Clone, PartialEq)]
+/// The background is kept as it was told, in layers, and made row by row when it is asked for: an image is not walked through
+/// for each of them. The image knows the pixels where something was drawn, so that clearing it, and drawing the noise of a flat
+/// background, cost as much as there is signal. It is reused from frame to frame.
+#[derive(Debug, Clone)]
 pub struct ExpectedImage {
     columns: usize,
     rows: usize,
-    flat_e: f64,
-    /// Background above the flat level, row by row; empty when there is none.
-    field: Vec<f64>,
+    background: Background,
     /// Electrons of what was drawn, above the background, row by row.
     signal: Vec<f64>,
     /// One bit a pixel, `words_per_row` words a row: whether something was drawn there.
     drawn: Vec<u64>,
     words_per_row: usize,
+}
+
+/// The background of every pixel: (light + smooth + field) · response + dark + pattern.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Background {
+    /// Electrons of flat light.
+    light_e: f64,
+    /// A smooth field of light and the factor that makes it electrons.
+    smooth: Option<(SmoothField, f64)>,
+    /// Electrons of light above those, row by row; empty when there are none.
+    field: Vec<f64>,
+    /// Factors of the light, row by row; where it ends they are 1.
+    response: Option<PixelFactors>,
+    /// Flat electrons that no response changes.
+    dark_e: f64,
+    /// Electrons that no response changes, and a factor of each pixel for them, row by row; where it ends there are none.
+    pattern: Option<(f64, PixelFactors)>,
+}
+
+impl Background {
+    /// The background of the pixels of a row of `out.len()` columns.
+    #[inline(always)]
+    fn row(&self, y: usize, out: &mut [f64]) {
+        let pixels = y * out.len()..(y + 1) * out.len();
+        match &self.smooth {
+            Some((smooth, scale)) => {
+                out.fill(0.0);
+                smooth.row(y, out);
+                for out in out.iter_mut() {
+                    *out = self.light_e + scale * *out;
+                }
+            }
+            None => out.fill(self.light_e),
+        }
+        if let Some(field) = self.field.get(pixels.clone()) {
+            for (out, field) in out.iter_mut().zip(field) {
+                *out += field;
+            }
+        }
+        if let Some(response) = self.response.as_ref().and_then(|response| response.get(pixels.clone())) {
+            for (out, &response) in out.iter_mut().zip(response) {
+                *out *= f64::from(response);
+            }
+        }
+        match self.pattern.as_ref().and_then(|(e, factors)| Some((e, factors.get(pixels)?))) {
+            Some((electrons, factors)) => {
+                for (out, &factor) in out.iter_mut().zip(factors) {
+                    *out += self.dark_e + electrons * f64::from(factor);
+                }
+            }
+            None => {
+                for out in out.iter_mut() {
+                    *out += self.dark_e;
+                }
+            }
+        }
+    }
+
+    /// [`Background::row`] of one pixel of an image of `columns`, by the same steps.
+    fn at(&self, x: usize, y: usize, columns: usize) -> f64 {
+        let index = y * columns + x;
+        // A pattern ends at the end of a row, as `row` takes it.
+        let of_row = |length: usize| length >= (y + 1) * columns;
+        let mut electrons = match &self.smooth {
+            Some((smooth, scale)) => self.light_e + scale * smooth.at(x, y),
+            None => self.light_e,
+        };
+        if let Some(field) = self.field.get(index).filter(|_| of_row(self.field.len())) {
+            electrons += field;
+        }
+        if let Some(response) = self.response.as_ref().filter(|response| of_row(response.len())) {
+            electrons *= f64::from(response[index]);
+        }
+        match self.pattern.as_ref().filter(|(_, factors)| of_row(factors.len())) {
+            Some((e, factors)) => electrons + (self.dark_e + e * f64::from(factors[index])),
+            None => electrons + self.dark_e,
+        }
+    }
+
+    /// No pixel has more.
+    fn bound_e(&self) -> f64 {
+        let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.largest());
+        let field_e = self.field.iter().copied().fold(0.0, f64::max);
+        let response = self.response.as_ref().map_or(1.0, |response| response.largest().max(1.0));
+        let pattern_e =
+            self.pattern.as_ref().map_or(0.0, |(electrons, factors)| electrons * factors.largest());
+        // A part in 10^12 for what rounding adds on the way.
+        ((self.light_e + smooth_e + field_e) * response + self.dark_e + pattern_e) * (1.0 + 1e-12)
+    }
+
+    /// Whether it may differ from pixel to pixel.
+    fn is_uneven(&self) -> bool {
+        self.smooth.is_some() || !self.field.is_empty() || self.response.is_some() || self.pattern.is_some()
+    }
+}
+
+/// Images are equal that have the same electrons in every pixel, however they were told.
+impl PartialEq for ExpectedImage {
+    fn eq(&self, other: &Self) -> bool {
+        self.size() == other.size() && self.drawn == other.drawn && self.iter().eq(other.iter())
+    }
 }
 
 impl ExpectedImage {
@@ -28,8 +129,7 @@ impl ExpectedImage {
         Self {
             columns,
             rows,
-            flat_e: 0.0,
-            field: Vec::new(),
+            background: Background::default(),
             signal: vec![0.0; columns * rows],
             drawn: vec![0; words_per_row * rows],
             words_per_row,
@@ -41,7 +141,7 @@ impl ExpectedImage {
         (self.columns, self.rows)
     }
 
-    /// Takes away everything drawn and the field, and sets the flat level, electrons a pixel.
+    /// Takes away everything drawn and all that is uneven, and sets the flat level, electrons a pixel.
     pub fn clear(&mut self, flat_e: f64) {
         for (row, words) in self
             .signal
@@ -55,57 +155,70 @@ impl ExpectedImage {
                 }
             }
         }
-        self.flat_e = flat_e;
-        self.field.clear();
+        let mut field = std::mem::take(&mut self.background.field);
+        field.clear();
+        self.background = Background { light_e: flat_e, field, ..Background::default() };
     }
 
-    /// Sets a background that varies from pixel to pixel: `scale` · `field`, electrons above the flat level, row by row;
+    /// Sets light that varies from pixel to pixel: `scale` · `field`, electrons above the flat level, row by row;
     /// `None` takes it away. Where `field` is too short, there is none.
     pub fn set_field(&mut self, field: Option<&[f64]>, scale: f64) {
-        self.field.clear();
+        let held = &mut self.background.field;
+        held.clear();
         if let Some(field) = field {
-            self.field.extend(field.iter().take(self.signal.len()).map(|electrons| scale * electrons));
-            self.field.resize(self.signal.len(), 0.0);
+            held.extend(field.iter().take(self.signal.len()).map(|electrons| scale * electrons));
+            held.resize(self.signal.len(), 0.0);
         }
+    }
+
+    /// Sets smooth light: `scale` · `smooth`, electrons above the flat level.
+    pub(crate) fn set_smooth(&mut self, smooth: &SmoothField, scale: f64) {
+        self.background.smooth = Some((smooth.clone(), scale));
     }
 
     /// Whether the background varies from pixel to pixel.
     pub fn has_field(&self) -> bool {
-        !self.field.is_empty()
+        self.background.is_uneven()
     }
 
-    /// The field, of zeros if there was none, for the effects of the detector.
-    fn field_mut(&mut self) -> &mut [f64] {
-        self.field.resize(self.signal.len(), 0.0);
-        &mut self.field
+    /// Makes one field of all layers of the background, the flat level being kept: for a step that is not a layer.
+    fn flatten(&mut self) {
+        let flat_e = self.flat_e();
+        let mut field = vec![0.0; self.signal.len()];
+        for (y, row) in field.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            self.background.row(y, row);
+            row.iter_mut().for_each(|electrons| *electrons -= flat_e);
+        }
+        self.background = Background { light_e: flat_e, field, ..Background::default() };
     }
 
     /// Multiplies the light of every pixel, background and signal, by its response.
-    pub(crate) fn respond(&mut self, response: &[f32]) {
-        let flat_e = self.flat_e;
-        if self.field.is_empty() {
-            let pixels = response.iter().take(self.signal.len());
-            self.field.extend(pixels.map(|&response| flat_e * f64::from(response) - flat_e));
-            self.field.resize(self.signal.len(), 0.0);
-        } else {
-            for (field, &response) in self.field.iter_mut().zip(response) {
-                *field = (flat_e + *field) * f64::from(response) - flat_e;
-            }
+    pub(crate) fn respond(&mut self, response: &PixelFactors) {
+        let Background { response: other, pattern, dark_e, .. } = &self.background;
+        if other.is_some() || pattern.is_some() || *dark_e != 0.0 {
+            self.flatten();
         }
+        self.background.response = Some(response.clone());
         // Where nothing was drawn there is nothing to multiply.
-        for index in drawn_pixels(&self.drawn, self.columns, self.words_per_row) {
-            if let (Some(signal), Some(&response)) = (self.signal.get_mut(index), response.get(index)) {
-                *signal *= f64::from(response);
+        let rows = self.signal.chunks_exact_mut(self.columns.max(1));
+        let words = self.drawn.chunks_exact(self.words_per_row.max(1));
+        for ((signal, response), words) in rows.zip(response.chunks(self.columns.max(1))).zip(words) {
+            for ((signal, response), word) in signal.chunks_mut(64).zip(response.chunks(64)).zip(words) {
+                if *word != 0 {
+                    for (signal, &response) in signal.iter_mut().zip(response) {
+                        *signal *= f64::from(response);
+                    }
+                }
             }
         }
     }
 
     /// Adds `electrons` to every pixel, times a factor of its own.
-    pub(crate) fn add_pattern(&mut self, electrons: f64, factors: &[f32]) {
-        self.flat_e += electrons;
-        for (field, &factor) in self.field_mut().iter_mut().zip(factors) {
-            *field += electrons * (f64::from(factor) - 1.0);
+    pub(crate) fn add_pattern(&mut self, electrons: f64, factors: &PixelFactors) {
+        if self.background.pattern.is_some() {
+            self.flatten();
         }
+        self.background.pattern = Some((electrons, factors.clone()));
     }
 
     /// Adds to every pixel `share` of the light of all other pixels of its column; tells what a pixel gains, the mean over
@@ -118,10 +231,10 @@ impl ExpectedImage {
                 *sum += own;
             }
         }
-        self.field_mut();
+        self.flatten();
         for y in 0..self.rows {
             self.row(y, &mut own);
-            let field = self.field.iter_mut().skip(y * self.columns);
+            let field = self.background.field.iter_mut().skip(y * self.columns);
             for ((field, own), sum) in field.zip(&own).zip(&sums) {
                 *field += share * (sum - own);
             }
@@ -138,14 +251,14 @@ impl ExpectedImage {
         self.mark(y, x, x + 1);
     }
 
-    /// Expected electrons of the background in a pixel: flat level and field.
+    /// Expected electrons of the background in a pixel.
     pub fn background_at(&self, x: usize, y: usize) -> f64 {
-        self.flat_e + self.field.get(y * self.columns + x).copied().unwrap_or(0.0)
+        self.background.at(x, y, self.columns)
     }
 
-    /// Raises the flat level of every pixel, electrons.
+    /// Raises the flat level of every pixel, electrons; no response changes them.
     pub fn add_flat(&mut self, electrons: f64) {
-        self.flat_e += electrons;
+        self.background.dark_e += electrons;
     }
 
     /// Adds the image of an object. Pixels of the stamp that lie off the image are left out.
@@ -175,9 +288,10 @@ impl ExpectedImage {
         }
     }
 
-    /// The flat level, electrons a pixel.
+    /// The flat level, electrons a pixel: all of the background where it does not vary.
     pub fn flat_e(&self) -> f64 {
-        self.flat_e
+        let pattern_e = self.background.pattern.as_ref().map_or(0.0, |(electrons, _)| *electrons);
+        self.background.light_e + (self.background.dark_e + pattern_e)
     }
 
     /// Expected electrons of a pixel, background included.
@@ -187,23 +301,52 @@ impl ExpectedImage {
 
     /// Expected electrons of all pixels, row by row, background included.
     pub fn iter(&self) -> impl Iterator<Item = f64> {
-        let field = self.field.iter().copied().chain(std::iter::repeat(0.0));
-        self.signal.iter().zip(field).map(|(signal, field)| self.flat_e + field + signal)
+        (0..self.rows).flat_map(|y| {
+            let mut row = vec![0.0; self.columns];
+            self.row(y, &mut row);
+            row
+        })
     }
 
     /// Expected electrons of the pixels of a row, background included; `out` is as long as a row.
+    #[inline(always)]
     pub(crate) fn row(&self, y: usize, out: &mut [f64]) {
-        let pixels = y * self.columns..(y + 1) * self.columns;
-        let signal = self.signal.get(pixels.clone()).unwrap_or_default();
-        match self.field.get(pixels) {
-            Some(field) => {
-                for ((out, signal), field) in out.iter_mut().zip(signal).zip(field) {
-                    *out = self.flat_e + field + signal;
+        self.background.row(y, out);
+        let signal = self.signal.chunks_exact(self.columns.max(1)).nth(y).unwrap_or_default();
+        let words = self.drawn.chunks_exact(self.words_per_row.max(1)).nth(y).unwrap_or_default();
+        for ((out, signal), word) in out.chunks_mut(64).zip(signal.chunks(64)).zip(words) {
+            if *word != 0 {
+                for (out, signal) in out.iter_mut().zip(signal) {
+                    *out += signal;
                 }
             }
-            None => {
-                for (out, signal) in out.iter_mut().zip(signal) {
-                    *out = self.flat_e + signal;
+        }
+    }
+
+    /// Marks in `columns` those that hold a pixel with more than `limit_e` expected electrons.
+    pub(crate) fn columns_above(&self, limit_e: f64, columns: &mut [bool]) {
+        let bound_e = self.background.bound_e();
+        if bound_e > limit_e {
+            let mut row = vec![0.0; self.columns];
+            for y in 0..self.rows {
+                self.row(y, &mut row);
+                for (column, &electrons) in columns.iter_mut().zip(&row) {
+                    *column |= electrons > limit_e;
+                }
+            }
+            return;
+        }
+        // Then only something drawn can be above it.
+        let rows = self.signal.chunks_exact(self.columns.max(1));
+        for (y, (row, words)) in rows.zip(self.drawn.chunks_exact(self.words_per_row.max(1))).enumerate() {
+            for (w, (signal, _)) in row.chunks(64).zip(words).enumerate().filter(|(_, (_, word))| **word != 0)
+            {
+                // Without an early exit, for many pixels at once.
+                let may = signal.iter().fold(false, |may, signal_e| may | (bound_e + signal_e > limit_e));
+                if may {
+                    for (x, column) in columns.iter_mut().enumerate().skip(w * 64).take(signal.len()) {
+                        *column |= self.at(x, y) > limit_e;
+                    }
                 }
             }
         }

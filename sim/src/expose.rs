@@ -46,7 +46,7 @@ pub struct SimulatedCamera<'a> {
     laws: FlatLaws,
     raw: RawImage,
     regions: Option<RoiExtractor>,
-    /// Background of the scene, electrons a second, pixel by pixel; in the second place that of the second field.
+    /// Background of an interlaced scene, electrons a second, pixel by pixel: of the first field, and of the second.
     backgrounds: [Vec<f64>; 2],
     stamps: Vec<Stamp>,
     /// The image of an object as the scene was in the first and in the second field.
@@ -212,18 +212,20 @@ impl<'a> SimulatedCamera<'a> {
 
         image.clear(sensor.sky_electrons(opening.exposure_s));
         let [background, later] = backgrounds;
-        let has_background = match drawn {
-            Drawn::Whole => view.background_e_per_s(background),
+        match drawn {
+            Drawn::Whole => {
+                if let Some(background) = &view.background {
+                    image.set_smooth(background.smooth(), opening.exposure_s);
+                }
+            }
             Drawn::Fields(interlace, fields) => {
                 let [first, second] = &**fields;
-                let has_background = first.background_e_per_s(background) && second.background_e_per_s(later);
-                if has_background {
+                if first.background_e_per_s(background) && second.background_e_per_s(later) {
                     interlace.weave(background, later, columns);
+                    image.set_field(Some(background), opening.exposure_s);
                 }
-                has_background
             }
-        };
-        image.set_field(has_background.then_some(background), opening.exposure_s);
+        }
         let mut paint = |view: &View, index: usize, stamp: &mut Stamp| {
             let source = &view.sources[index];
             let transmission = simulator.vignetting.transmission(source.position);

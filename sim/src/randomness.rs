@@ -93,7 +93,12 @@ pub struct Streams {
 impl Streams {
     /// The stream at a place, the same as [`Seed::stream`].
     pub fn at(&self, place: u64) -> Stream {
-        Stream::seed_from_u64(split_mix(self.key ^ place))
+        Stream::seed_from_u64(self.key_of(place))
+    }
+
+    /// What keys the generators at a place.
+    pub(crate) fn key_of(&self, place: u64) -> u64 {
+        split_mix(self.key ^ place)
     }
 
     /// A single word of 64 random bits at a place, without the cost of a generator. Not a number of the stream
@@ -104,9 +109,13 @@ impl Streams {
     }
 }
 
+/// By how much the state of SplitMix64 grows from one number to the next.
+pub(crate) const GOLDEN_GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;
+
 /// One step of SplitMix64: a bijection that spreads every bit.
-fn split_mix(word: u64) -> u64 {
-    let mut z = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
+#[inline(always)]
+pub(crate) fn split_mix(word: u64) -> u64 {
+    let mut z = word.wrapping_add(GOLDEN_GAMMA);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)

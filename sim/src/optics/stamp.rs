@@ -91,6 +91,29 @@ impl Stamp {
         }
     }
 
+    /// Multiplies every pixel by its factor of a detector of `columns`, whose factors stand row by row; beyond them it stays.
+    pub(crate) fn respond(&mut self, factors: &[f32], columns: usize) {
+        let (x, y) = (self.x, self.y);
+        for (j, row) in self.electrons.chunks_exact_mut(self.columns.max(1)).enumerate() {
+            let factors = factors.get((y + j) * columns + x..).unwrap_or_default();
+            for (electrons, &factor) in row.iter_mut().zip(factors) {
+                *electrons *= f64::from(factor);
+            }
+        }
+    }
+
+    /// Its brightest pixel, electrons; 0 without light.
+    pub(crate) fn peak_e(&self) -> f64 {
+        let (fours, rest) = self.electrons.as_chunks::<4>();
+        let mut peaks = [0.0; 4];
+        for four in fours {
+            for (peak, &signal) in peaks.iter_mut().zip(four) {
+                *peak = if signal > *peak { signal } else { *peak };
+            }
+        }
+        peaks.iter().chain(rest).copied().fold(0.0, f64::max)
+    }
+
     /// Where the light of the undisturbed image has its mean, off the detector included.
     pub fn centre(&self) -> PixelPoint {
         self.centre
@@ -118,22 +141,44 @@ impl Stamp {
     pub fn truth(&self, background_e: f64, readout_noise_e: f64) -> StampTruth {
         let variance = background_e + readout_noise_e * readout_noise_e;
         let noise_e = variance.sqrt();
-        let (mut electrons, mut peak_electrons, mut snr2, mut radius2) = (0.0, 0.0_f64, 0.0, 0.25_f64);
+        // Four sums side by side: one after the other each sum would wait for the one before. Where there is neither light nor
+        // noise the quotient is 0, not no number.
+        let variance = variance.max(f64::MIN_POSITIVE);
+        let (mut electrons, mut snr2) = ([0.0; 4], [0.0; 4]);
+        let mut add = |signals: [f64; 4]| {
+            for lane in 0..4 {
+                let lit = if signals[lane] > 0.0 { signals[lane] } else { 0.0 };
+                electrons[lane] += lit;
+                snr2[lane] += lit * (lit / (lit + variance));
+            }
+        };
+        let (fours, rest) = self.electrons.as_chunks::<4>();
+        fours.iter().for_each(|four| add(*four));
+        add(std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0)));
+        let sum = |lanes: [f64; 4]| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+        let peak_electrons = self.peak_e();
+        StampTruth {
+            electrons: sum(electrons),
+            peak_electrons,
+            snr: sum(snr2).sqrt(),
+            radius_px: if peak_electrons > noise_e { self.radius_px(noise_e) } else { 0.5 },
+        }
+    }
+
+    /// Distance from the centre to the farthest pixel centre with more than `electrons`, px; at least 0.5.
+    fn radius_px(&self, electrons: f64) -> f64 {
+        let mut radius2 = 0.25_f64;
         for (x, y, row) in self.rows() {
+            // Of the pixels of a row the first or the last is the farthest.
+            let Some(first) = row.iter().position(|&signal| signal > electrons) else { continue };
+            let last = row.iter().rposition(|&signal| signal > electrons).unwrap_or(first);
             let dy = y as f64 - self.centre.y;
-            for (i, &signal) in row.iter().enumerate() {
-                if signal > 0.0 {
-                    electrons += signal;
-                    peak_electrons = peak_electrons.max(signal);
-                    snr2 += signal * (signal / (signal + variance));
-                }
-                if signal > noise_e {
-                    let dx = (x + i) as f64 - self.centre.x;
-                    radius2 = radius2.max(dx * dx + dy * dy);
-                }
+            for i in [first, last] {
+                let dx = (x + i) as f64 - self.centre.x;
+                radius2 = radius2.max(dx * dx + dy * dy);
             }
         }
-        StampTruth { electrons, peak_electrons, snr: snr2.sqrt(), radius_px: radius2.sqrt() }
+        radius2.sqrt()
     }
 
     /// Distance along the columns from the centre to the farthest pixel centre with more than `electrons`, px; 0 when there is
@@ -159,16 +204,38 @@ impl Stamp {
         if touched.iter().any(covers) {
             return 0.0;
         }
+        if touched.is_empty() {
+            return if self.electrons.iter().any(|&signal| signal > 0.0) { 1.0 } else { 0.0 };
+        }
         let (mut total, mut lost) = (0.0, 0.0);
         for (x, y, row) in self.rows() {
-            for (i, &signal) in row.iter().enumerate() {
-                total += signal;
-                if !touched.iter().any(|window| window.contains(x + i, y)) {
-                    lost += signal;
+            // From the left: what lies before the next window that begins, and so on, windows that overlap counting once.
+            let mut from = 0;
+            total += row.iter().sum::<f64>();
+            while from < row.len() {
+                let covered_to = touched
+                    .iter()
+                    .filter(|w| w.contains(x + from, y))
+                    .map(|w| w.x + w.columns - x)
+                    .max()
+                    .unwrap_or(from)
+                    .min(row.len());
+                if covered_to > from {
+                    from = covered_to;
+                    continue;
                 }
+                let next = touched
+                    .iter()
+                    .filter(|w| w.contains(w.x, y) && w.x > x + from)
+                    .map(|w| w.x - x)
+                    .min()
+                    .unwrap_or(row.len())
+                    .min(row.len());
+                lost += row[from..next].iter().sum::<f64>();
+                from = next;
             }
         }
-        if total > 0.0 { lost / total } else { 0.0 }
+        if total > 0.0 { (lost / total).min(1.0) } else { 0.0 }
     }
 }
 

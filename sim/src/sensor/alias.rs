@@ -24,9 +24,14 @@ impl AliasTable {
     /// The table of the law that gives `first` + i with probability `probabilities[i]`. They need not add up to 1.
     /// At most 65,536 of them; none of them, or nothing but zeros, gives `first` for certain.
     pub(super) fn new(first: u16, probabilities: &[f64]) -> Self {
+        Self::with_cells(2, first, probabilities)
+    }
+
+    /// [`AliasTable::new`] with at least `cells` cells, a power of two and more than one: the size of a single one, 2^32,
+    /// would not fit its threshold.
+    pub(super) fn with_cells(cells: usize, first: u16, probabilities: &[f64]) -> Self {
         let mut weights = whole_weights(probabilities);
-        // Two cells at least: the size of a single one, 2^32, would not fit its threshold.
-        let count = weights.len().next_power_of_two().max(2);
+        let count = weights.len().next_power_of_two().max(cells);
         weights.resize(count, 0);
         let cell_weight = (1_u64 << 32) / count as u64;
         let number = |i: usize| first.saturating_add(u16::try_from(i).unwrap_or(u16::MAX));
@@ -47,6 +52,16 @@ impl AliasTable {
             }
         }
         Self { cells, shift: 32 - count.trailing_zeros(), side_mask: cell_weight as u32 - 1 }
+    }
+
+    /// Its cells as words, lowest bits first: 32 of the threshold, 16 of the number below it, 16 of the other. No word is 0: a
+    /// cell whose threshold is 0 is told with its sides exchanged.
+    pub(super) fn packed(&self) -> impl ExactSizeIterator<Item = u64> {
+        self.cells.iter().map(|cell| {
+            let (threshold, own) =
+                if cell.threshold > 0 { (cell.threshold, cell.own) } else { (self.side_mask, cell.other) };
+            u64::from(threshold) | u64::from(own) << 32 | u64::from(cell.other) << 48
+        })
     }
 
     /// The digital number of a uniform word.

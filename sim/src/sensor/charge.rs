@@ -79,7 +79,7 @@ impl Sensor {
         let pattern = self.pattern();
         let columns = self.size().0;
         if !pattern.response.is_empty() {
-            stamp.scale(|x, y| pattern.response.get(y * columns + x).map_or(1.0, |&r| f64::from(r)));
+            stamp.respond(&pattern.response, columns);
         }
         if !pattern.dead.is_empty() {
             stamp.scale(|x, y| if pattern.is_dead(x, y) { 0.0 } else { 1.0 });
@@ -111,8 +111,7 @@ impl Sensor {
         let full_well_e = self.config().full_well_e;
         let Some(blooming) = &self.config().blooming else { return false };
         let Some(window) = stamp.window() else { return false };
-        let overflows = |&electrons: &f64| electrons + background_e > full_well_e;
-        if !stamp.rows().any(|(_, _, row)| row.iter().any(overflows)) {
+        if stamp.peak_e() + background_e <= full_well_e {
             return false;
         }
         let rows = self.size().1;

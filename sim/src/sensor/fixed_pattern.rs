@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::SimError;
 use crate::error::require;
+use crate::pixel_factors::PixelFactors;
 use crate::randomness::{Effect, Seed, Streams, normal};
 
 /// The law of the dark currents of ordinary pixels.
@@ -54,9 +55,9 @@ impl FixedPatternConfig {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct FixedPattern {
     /// Sensitivity of each pixel, of mean 1.
-    pub(super) response: Vec<f32>,
+    pub(super) response: PixelFactors,
     /// Dark current of each pixel as a multiple of the mean.
-    pub(super) dark: Vec<f32>,
+    pub(super) dark: PixelFactors,
     /// Offset of each column, electrons.
     pub(super) column_offsets_e: Vec<f64>,
     /// Column and row of each dead pixel, dead columns included, in the order of the image.
@@ -187,7 +188,7 @@ mod tests {
             let config =
                 FixedPatternConfig { prnu_fraction: 0.3, dsnu_fraction: 2.0, dsnu_law, ..Default::default() };
             let pattern = FixedPattern::new(&config, 100, 100).unwrap();
-            assert!(pattern.response.iter().chain(&pattern.dark).all(|&factor| factor >= 0.0));
+            assert!(pattern.response.iter().chain(pattern.dark.iter()).all(|&factor| factor >= 0.0));
         }
     }
 
@@ -219,9 +220,9 @@ mod tests {
         let pattern = |config: &FixedPatternConfig| FixedPattern::new(config, 30, 20).unwrap();
         let (with, without) =
             (pattern(&all), pattern(&FixedPatternConfig { prnu_fraction: 0.0, ..all.clone() }));
-        assert_eq!(without, FixedPattern { response: vec![], ..with.clone() });
+        assert_eq!(without, FixedPattern { response: PixelFactors::default(), ..with.clone() });
         let without =
             pattern(&FixedPatternConfig { dsnu_fraction: 0.0, column_offset_e: 0.0, ..all.clone() });
-        assert_eq!(without, FixedPattern { dark: vec![], column_offsets_e: vec![], ..with });
+        assert_eq!(without, FixedPattern { dark: PixelFactors::default(), column_offsets_e: vec![], ..with });
     }
 }

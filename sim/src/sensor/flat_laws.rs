@@ -20,7 +20,7 @@ pub struct FlatLaws {
     law: Option<PixelLaw>,
     /// By the bits of the mean.
     means: BTreeMap<u64, FlatLaw>,
-    own_means: OwnMeans,
+    own_means: Option<OwnMeans>,
     digits: PoissonDigits,
     normal: Ziggurat,
 }
@@ -49,7 +49,7 @@ impl FlatLaws {
         if self.law != Some(*law) {
             self.forget(law);
         }
-        &mut self.own_means
+        self.own_means.get_or_insert_with(|| OwnMeans::new(law))
     }
 
     /// The tables of numbers of electrons and of the read noise, for pixels whose law no table holds.
@@ -59,7 +59,7 @@ impl FlatLaws {
 
     fn forget(&mut self, law: &PixelLaw) {
         self.means.clear();
-        self.own_means = OwnMeans::default();
+        self.own_means = None;
         self.law = Some(*law);
     }
 }

@@ -69,7 +69,7 @@ pub(super) fn few(mean: f64, word: u32) -> usize {
 }
 
 /// [`few`] where the bounds leave it open.
-fn by_inversion(mean: f64, u: f64) -> usize {
+pub(super) fn by_inversion(mean: f64, u: f64) -> usize {
     let (mut n, mut left, mut probability) = (0, u, libm::exp(-mean));
     while left > probability && n < FEW {
         left -= probability;

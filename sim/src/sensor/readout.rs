@@ -171,18 +171,8 @@ impl Sensor {
         raw: &mut RawImage,
     ) {
         let threshold_e = self.law.may_overflow_from_e();
-        let mut overflows = vec![expected.flat_e() > threshold_e; self.columns];
-        if expected.has_field() {
-            for (index, _) in expected.iter().enumerate().filter(|(_, mean_e)| *mean_e > threshold_e) {
-                overflows[index % self.columns] = true;
-            }
-        } else {
-            for (index, _) in
-                expected.drawn().filter(|(_, signal_e)| expected.flat_e() + signal_e > threshold_e)
-            {
-                overflows[index % self.columns] = true;
-            }
-        }
+        let mut overflows = vec![false; self.columns];
+        expected.columns_above(threshold_e, &mut overflows);
         let (mut collected, mut held) = (Vec::with_capacity(self.rows), Vec::with_capacity(self.rows));
         for x in (0..self.columns).filter(|&x| overflows[x]) {
             let stream = |y: usize| streams.at((self.rows + y * self.columns + x) as u64);

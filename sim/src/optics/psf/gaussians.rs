@@ -3,6 +3,8 @@
 //! A Gaussian over a rectangle is the product of two differences of error functions, one a column and one a row,
 //! so that an image costs as many error functions as it has columns and rows.
 
+use super::condense::condensed;
+use super::error_function::ErrorFunction;
 use super::pixels_within;
 use crate::optics::{ImagePoint, Stamp};
 
@@ -73,6 +75,8 @@ impl Gaussians {
             if own_px == 0.0 {
                 continue;
             }
+            let condensed = condensed(points, component.sigma_px);
+            let points = condensed.as_ref().map_or(points, |(few, count)| &few[..*count]);
             for point in points {
                 let own_x = pixels_within((point.position.x, point.position.x), own_px, right);
                 let own_y = pixels_within((point.position.y, point.position.y), own_px, bottom);
@@ -134,7 +138,8 @@ impl Component {
     /// Shares of the flux in each pixel of a range along one axis.
     fn profile(&self, centre: f64, range: (usize, usize), shares: &mut Vec<f64>) {
         let scale = 1.0 / (self.sigma_px * std::f64::consts::SQRT_2);
-        let edge = |i: usize| libm::erf((i as f64 - 0.5 - centre) * scale);
+        let erf = ErrorFunction::shared();
+        let edge = |i: usize| erf.at((i as f64 - 0.5 - centre) * scale);
         shares.clear();
         let mut left = edge(range.0);
         for i in range.0..range.1 {

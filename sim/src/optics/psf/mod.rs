@@ -1,8 +1,10 @@
 //! The point-spread function, integrated over pixels.
 
 mod airy;
+mod condense;
 mod config;
 mod defocus;
+mod error_function;
 mod gaussians;
 mod moffat;
 mod sampled;
@@ -151,9 +153,8 @@ impl Psf {
             }
         }
         for pixel in &mut stamp.electrons {
-            if *pixel < floor_e {
-                *pixel = 0.0;
-            }
+            // A choice and not a branch, for many pixels at once.
+            *pixel = if *pixel < floor_e { 0.0 } else { *pixel };
         }
     }
 

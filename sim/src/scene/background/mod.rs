@@ -3,9 +3,12 @@
 //! All of it is smooth: it is evaluated at the nodes of a grid over the detector and interpolated between them.
 
 mod stray;
+mod transmittance_table;
 mod zodiacal;
 
 pub use stray::StrayLightConfig;
+
+use std::sync::Arc;
 
 use contract::{Camera, CameraFrame, Icrs, PixelPoint, Rotation};
 use hifitime::Epoch;
@@ -18,9 +21,11 @@ use crate::constants::AU_KM;
 use crate::error::require;
 use crate::optics::{Projection, Radiometry, SUN_V_MAG_AT_1_AU, Vignetting};
 use crate::sensor::Switch;
+use crate::smooth_field::{NODES, NodeGrid, SmoothField};
 use crate::truth::moon::{MOON_MEAN_DISTANCE_KM, MOON_RADIUS_KM};
 use crate::truth::{clock, moon, shadow};
 use stray::Ray;
+use transmittance_table::TransmittanceTable;
 
 /// Square degrees in a steradian.
 const SQUARE_DEGREES_PER_SR: f64 = (180.0 / std::f64::consts::PI) * (180.0 / std::f64::consts::PI);
@@ -105,19 +110,15 @@ impl BackgroundConfig {
     }
 }
 
-/// Nodes along each side of the detector.
-const NODES: usize = 17;
-
 /// The background of a camera, prepared.
 #[derive(Debug, Clone)]
 pub struct Background {
     config: BackgroundConfig,
-    columns: usize,
-    rows: usize,
+    grid: Arc<NodeGrid>,
+    /// Of the grid, row by row.
     nodes: Vec<Node>,
-    /// Share of each node, along columns and along rows, in the mean over all pixels.
-    column_weights: [f64; NODES],
-    row_weights: [f64; NODES],
+    /// Of the Earth's light, which comes in many rays.
+    earth_transmittance: Option<TransmittanceTable>,
     /// Electrons a second and pixel of 1 S10, by a steradian of the pixel.
     s10_e_per_s_sr: f64,
     /// Electrons a second and pixel when sunlight as at 1 au falls on the bare detector; `None` when the aperture is unknown.
@@ -161,9 +162,10 @@ impl Background {
             });
         }
         let (columns, rows) = projection.detector();
+        let grid = Arc::new(NodeGrid::new(columns, rows));
         let nodes = (0..NODES * NODES)
             .map(|i| {
-                let (x, y) = (place(i % NODES, columns), place(i / NODES, rows));
+                let (x, y) = grid.place(i);
                 Node::new(projection, x, y).ok_or_else(|| SimError::Parameter {
                     field: "camera",
                     value: format!("no direction for pixel ({x}, {y})"),
@@ -172,12 +174,10 @@ impl Background {
             })
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Some(Self {
+            earth_transmittance: config.earth.as_ref().map(|earth| TransmittanceTable::new(&earth.scatter)),
             config: config.clone(),
-            columns,
-            rows,
+            grid,
             nodes,
-            column_weights: mean_weights(columns),
-            row_weights: mean_weights(rows),
             s10_e_per_s_sr: radiometry.sunlit(10.0) * SQUARE_DEGREES_PER_SR,
             bare_sun_e_per_s,
         }))
@@ -187,8 +187,8 @@ impl Background {
     /// other ways.
     pub fn vignetted(mut self, vignetting: &Vignetting) -> Self {
         for (i, node) in self.nodes.iter_mut().enumerate() {
-            let at = PixelPoint::new(place(i % NODES, self.columns), place(i / NODES, self.rows));
-            node.pixel_sr *= vignetting.transmission(at);
+            let (x, y) = self.grid.place(i);
+            node.pixel_sr *= vignetting.transmission(PixelPoint::new(x, y));
         }
         self
     }
@@ -215,23 +215,22 @@ impl Background {
                 s10 += zodiacal::zodiacal_s10(&direction, &sun);
             }
             let mut suns = 0.0;
-            for (law, rays) in [
-                (self.config.sun.as_ref(), &sun_rays),
-                (self.config.earth.as_ref().map(|earth| &earth.scatter), &earth_rays),
-                (self.config.moon.as_ref(), &moon_rays),
-            ] {
+            for (law, rays) in
+                [(self.config.sun.as_ref(), &sun_rays), (self.config.moon.as_ref(), &moon_rays)]
+            {
                 let Some(law) = law else { continue };
                 for ray in rays {
                     suns += ray.suns * law.transmittance(&direction, &ray.direction);
                 }
             }
+            if let Some(transmittance) = &self.earth_transmittance {
+                for ray in &earth_rays {
+                    suns += ray.suns * transmittance.at_cos(direction.dot(&ray.direction));
+                }
+            }
             s10 * self.s10_e_per_s_sr * pixel_sr + suns * self.bare_sun_e_per_s.unwrap_or(0.0)
         });
-        let mut mean_e_per_s = 0.0;
-        for (i, value) in e_per_s.iter().enumerate() {
-            mean_e_per_s += self.column_weights[i % NODES] * self.row_weights[i / NODES] * value;
-        }
-        BackgroundField { columns: self.columns, rows: self.rows, e_per_s, mean_e_per_s }
+        BackgroundField { e_per_s: SmoothField::new(Arc::clone(&self.grid), e_per_s) }
     }
 
     /// The light that reaches the aperture from Sun, Earth and Moon; none of those that are off.
@@ -285,61 +284,30 @@ impl Node {
     }
 }
 
-/// The pixel on which node `i` lies, of `n` pixels.
-fn place(i: usize, n: usize) -> f64 {
-    i as f64 * (n as f64 - 1.0) / (NODES - 1) as f64
-}
-
-/// The node before pixel `i` of `n`, and how far it is to the next, 0 to 1.
-fn between_nodes(i: usize, n: usize) -> (usize, f64) {
-    let at = i as f64 * (NODES - 1) as f64 / (n as f64 - 1.0).max(1.0);
-    let before = (at as usize).min(NODES - 2);
-    (before, at - before as f64)
-}
-
-/// Share of each node in the mean over `n` pixels in a line.
-fn mean_weights(n: usize) -> [f64; NODES] {
-    let mut weights = [0.0; NODES];
-    for i in 0..n {
-        let (before, part) = between_nodes(i, n);
-        weights[before] += (1.0 - part) / n as f64;
-        weights[before + 1] += part / n as f64;
-    }
-    weights
-}
-
 /// The background of one frame: electrons a second in each pixel, bilinear between the nodes of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BackgroundField {
-    columns: usize,
-    rows: usize,
-    /// At the nodes, row by row.
-    e_per_s: [f64; NODES * NODES],
-    mean_e_per_s: f64,
+    e_per_s: SmoothField,
 }
 
 impl BackgroundField {
     /// Photo-electrons a second and pixel, the mean over the detector.
     pub fn mean_e_per_s(&self) -> f64 {
-        self.mean_e_per_s
+        self.e_per_s.mean()
+    }
+
+    /// Photo-electrons a second as a field over the detector.
+    pub(crate) fn smooth(&self) -> &SmoothField {
+        &self.e_per_s
     }
 
     /// Photo-electrons a second of every pixel, row by row; what `out` held is replaced.
     pub fn electrons_per_s(&self, out: &mut Vec<f64>) {
+        let (columns, rows) = self.e_per_s.size();
         out.clear();
-        out.reserve(self.columns * self.rows);
-        let columns: Vec<(usize, f64)> = (0..self.columns).map(|x| between_nodes(x, self.columns)).collect();
-        for y in 0..self.rows {
-            let (row, down) = between_nodes(y, self.rows);
-            let line: [f64; NODES] = std::array::from_fn(|i| {
-                let (above, below) = (self.e_per_s[row * NODES + i], self.e_per_s[(row + 1) * NODES + i]);
-                above + down * (below - above)
-            });
-            out.extend(
-                columns
-                    .iter()
-                    .map(|&(column, across)| line[column] + across * (line[column + 1] - line[column])),
-            );
+        out.resize(columns * rows, 0.0);
+        for (y, row) in out.chunks_exact_mut(columns.max(1)).enumerate() {
+            self.e_per_s.row(y, row);
         }
     }
 }

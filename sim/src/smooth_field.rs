@@ -1,0 +1,181 @@
+//! A smooth field over the detector, told by its values at the nodes of a grid and bilinear between them.
+//!
+//! A row of it is a few straight pieces: it is made when it is needed, row by row, and never stored for a whole image.
+
+use std::sync::Arc;
+
+/// Nodes along each side of the detector.
+pub(crate) const NODES: usize = 17;
+
+/// The grid of nodes over a detector of so many columns and rows.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct NodeGrid {
+    columns: usize,
+    rows: usize,
+    /// Of each column, how far it is from the node before to the next, 0 to 1.
+    across: Vec<f64>,
+    /// The first column after each node.
+    starts: [usize; NODES],
+    /// Share of each node, along columns and along rows, in the mean over all pixels.
+    column_weights: [f64; NODES],
+    row_weights: [f64; NODES],
+}
+
+impl NodeGrid {
+    pub(crate) fn new(columns: usize, rows: usize) -> Self {
+        let before = |x: usize| between_nodes(x, columns).0;
+        Self {
+            columns,
+            rows,
+            across: (0..columns).map(|x| between_nodes(x, columns).1).collect(),
+            starts: std::array::from_fn(|node| (0..columns).find(|&x| before(x) >= node).unwrap_or(columns)),
+            column_weights: mean_weights(columns),
+            row_weights: mean_weights(rows),
+        }
+    }
+
+    /// The place of node `i` of the grid, counted row by row: column and row, px.
+    pub(crate) fn place(&self, i: usize) -> (f64, f64) {
+        (place(i % NODES, self.columns), place(i / NODES, self.rows))
+    }
+}
+
+/// A field over the detector, bilinear between its nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SmoothField {
+    grid: Arc<NodeGrid>,
+    /// At the nodes, row by row.
+    values: [f64; NODES * NODES],
+}
+
+impl SmoothField {
+    pub(crate) fn new(grid: Arc<NodeGrid>, values: [f64; NODES * NODES]) -> Self {
+        Self { grid, values }
+    }
+
+    /// Columns and rows.
+    pub(crate) fn size(&self) -> (usize, usize) {
+        (self.grid.columns, self.grid.rows)
+    }
+
+    /// The mean over all pixels.
+    pub(crate) fn mean(&self) -> f64 {
+        let mut mean = 0.0;
+        for (i, value) in self.values.iter().enumerate() {
+            mean += self.grid.column_weights[i % NODES] * self.grid.row_weights[i / NODES] * value;
+        }
+        mean
+    }
+
+    /// The largest value: that of a node.
+    pub(crate) fn largest(&self) -> f64 {
+        self.values.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The field at a pixel; 0 outside the detector.
+    pub(crate) fn at(&self, x: usize, y: usize) -> f64 {
+        let Some(&across) = self.grid.across.get(x).filter(|_| y < self.grid.rows) else { return 0.0 };
+        let (before, _) = between_nodes(x, self.grid.columns);
+        let (row, down) = between_nodes(y, self.grid.rows);
+        let (from, to) = (self.in_line(row, down, before), self.in_line(row, down, before + 1));
+        from + across * (to - from)
+    }
+
+    /// The field of the pixels of a row; `out` is left as it is outside the detector.
+    #[inline(always)]
+    pub(crate) fn row(&self, y: usize, out: &mut [f64]) {
+        let line = self.line(y);
+        for node in 0..NODES - 1 {
+            let columns = self.grid.starts[node]..self.grid.starts[node + 1];
+            let (from, step) = (line[node], line[node + 1] - line[node]);
+            let Some((out, across)) = out.get_mut(columns.clone()).zip(self.grid.across.get(columns)) else {
+                return;
+            };
+            for (out, across) in out.iter_mut().zip(across) {
+                *out = from + across * step;
+            }
+        }
+    }
+
+    /// The field at the columns of the nodes, in a row of pixels.
+    #[inline(always)]
+    fn line(&self, y: usize) -> [f64; NODES] {
+        let (row, down) = between_nodes(y, self.grid.rows);
+        std::array::from_fn(|i| self.in_line(row, down, i))
+    }
+
+    /// The field at the column of node `i`, `down` of the way from a row of nodes to the next.
+    #[inline(always)]
+    fn in_line(&self, row: usize, down: f64, i: usize) -> f64 {
+        let (above, below) = (self.values[row * NODES + i], self.values[(row + 1) * NODES + i]);
+        above + down * (below - above)
+    }
+}
+
+/// The pixel on which node `i` lies, of `n` pixels.
+fn place(i: usize, n: usize) -> f64 {
+    i as f64 * (n as f64 - 1.0) / (NODES - 1) as f64
+}
+
+/// The node before pixel `i` of `n`, and how far it is to the next, 0 to 1.
+fn between_nodes(i: usize, n: usize) -> (usize, f64) {
+    let at = i as f64 * (NODES - 1) as f64 / (n as f64 - 1.0).max(1.0);
+    let before = (at as usize).min(NODES - 2);
+    (before, at - before as f64)
+}
+
+/// Share of each node in the mean over `n` pixels in a line.
+fn mean_weights(n: usize) -> [f64; NODES] {
+    let mut weights = [0.0; NODES];
+    for i in 0..n {
+        let (before, part) = between_nodes(i, n);
+        weights[before] += (1.0 - part) / n as f64;
+        weights[before + 1] += part / n as f64;
+    }
+    weights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x² + 3y at the nodes.
+    fn field(columns: usize, rows: usize) -> SmoothField {
+        let grid = Arc::new(NodeGrid::new(columns, rows));
+        let values = std::array::from_fn(|i| {
+            let (x, y) = grid.place(i);
+            x * x + 3.0 * y
+        });
+        SmoothField::new(grid, values)
+    }
+
+    #[test]
+    fn a_row_has_the_values_of_its_pixels_whatever_the_size() {
+        for (columns, rows) in [(752, 580), (17, 17), (16, 5), (2, 1), (1, 1), (300, 200)] {
+            let field = field(columns, rows);
+            let mut row = vec![f64::NAN; columns];
+            let mut sum = 0.0;
+            for y in 0..rows {
+                field.row(y, &mut row);
+                for (x, value) in row.iter().enumerate() {
+                    assert_eq!(*value, field.at(x, y), "({x}, {y}) of {columns} × {rows}");
+                }
+                sum += row.iter().sum::<f64>();
+            }
+            let mean = sum / (columns * rows) as f64;
+            assert!((field.mean() - mean).abs() <= 1e-12 * mean, "{columns} × {rows}");
+        }
+    }
+
+    /// A parabola lies below its chord by at most step²/4; a plane is met to the bit of a rounding.
+    #[test]
+    fn between_nodes_the_field_is_bilinear() {
+        let field = field(161, 81);
+        for (x, y) in [(0, 0), (10, 5), (7, 33), (160, 80)] {
+            let exact = (x * x + 3 * y) as f64;
+            assert!((0.0..=25.0 + 1e-9).contains(&(field.at(x, y) - exact)), "({x}, {y})");
+        }
+        assert!((field.at(7, 33) - (70.0 + 99.0)).abs() < 1e-9);
+        assert_eq!((field.at(161, 0), field.at(0, 81)), (0.0, 0.0));
+    }
+}
