@@ -19,6 +19,9 @@ use crate::docking::geometry::View;
 /// The filter reaches this many pixels to each side.
 const REACH: usize = TAPS - 1;
 
+/// Of a mark narrower than this the share of the blur that acts on pixels is not known well enough to correct by.
+const NARROWEST_PX: f64 = 1.0;
+
 /// Exact shares of pixels; owns its buffers.
 #[derive(Debug, Default)]
 pub(super) struct SampledMarks {
@@ -55,6 +58,13 @@ impl SampledMarks {
             let corners = &target.marks[index];
             let Some(image) = MarkImage::new(corners, &view, blur, tables) else { continue };
             let Some(sides) = sides(corners, &view) else { continue };
+            let across = |k: usize| {
+                // Normals inwards and opposite: the offsets' sum is the distance, for sides that are about parallel.
+                sides[k].2 + sides[k + 2].2
+            };
+            if across(0).min(across(1)) < NARROWEST_PX {
+                continue;
+            }
             let pixels = &mut pixels[patch.first..patch.end];
             let places = || pixels.iter().map(|pixel| (pixel.column, lines.camera_row(pixel.row)));
             let ends = |of: &dyn Fn((usize, usize)) -> usize| {
