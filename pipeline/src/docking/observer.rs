@@ -227,7 +227,8 @@ impl Observer {
         }
         let mut features = evidence::evidence(lens, sight, &unit);
         features.station = evidence::station(sheet.view, lens, &self.target, sight);
-        let best = match self.fit.fit(sheet.field, lens.model(), &self.target, &paper) {
+        let aimed = measurement.aimed_pose(&target)?;
+        let best = match self.fit.fit(sheet.field, lens.model(), &self.target, &aimed) {
             Ok(fitted) => {
                 evidence::refine(&mut features, &fitted);
                 fitted.estimate

@@ -3,6 +3,8 @@
 use contract::docking::{NoPose, Pose, TargetModel};
 use nalgebra::Vector3;
 
+use super::geometry::{exponential, phi_of, target_from_camera};
+
 /// What 3.1 works on: cross and circle in the image without distortion, from the principal point.
 ///
 /// Coordinates are (f x1/x3, f x2/x3) with one f, the focal length along columns: pixels that are not square are
@@ -59,6 +61,29 @@ impl PaperMeasurement {
             && self.radius_px > 0.0
             && pose.position_m.iter().chain(pose.phi_rad.iter()).all(|value| value.is_finite());
         if is_sound { Ok(pose) } else { Err(NoPose::Inconsistent) }
+    }
+
+    /// The pose of 3.1, turned so that by exact geometry the cross is where it is seen.
+    ///
+    /// The formulas take angles for small: at 3° of roll and of tilt cross and circle are both 4 px of a narrow lens off (φ is a
+    /// rotation vector; φ3 × φ1/2 turns the line of sight), which is farther than a fit finds back from.
+    ///
+    /// # Errors
+    /// Those of [`PaperMeasurement::pose`].
+    pub fn aimed_pose(&self, target: &PaperTarget) -> Result<Pose, NoPose> {
+        let pose = self.pose(target)?;
+        let attitude = target_from_camera(&pose.phi_rad);
+        let cross = Vector3::new(0.0, 0.0, target.height_m);
+        let expected = (attitude.transpose() * (cross - pose.position_m)).normalize();
+        let seen = Vector3::new(self.cross[0], self.cross[1], self.focal_px).normalize();
+        // The small turn that brings what is seen to what is expected.
+        let turn = exponential(&seen.cross(&expected));
+        let aimed = Pose { phi_rad: phi_of(&(attitude * turn)), ..pose };
+        if aimed.phi_rad.iter().all(|value| value.is_finite()) {
+            Ok(aimed)
+        } else {
+            Err(NoPose::Inconsistent)
+        }
     }
 
     /// What 3.1 expects at a pose: its simplified forms, not the exact projection.
@@ -124,6 +149,26 @@ mod tests {
         let seen = geometry::project(lens.model(), pose, &point_m.into()).unwrap();
         let ideal = lens.to_ideal(seen).unwrap();
         PixelPoint::new(ideal.x, ideal.y)
+    }
+
+    #[test]
+    fn an_aimed_pose_shows_the_cross_where_it_is_seen() {
+        let truth = pose([0.0, 0.0, 18.0], [3.0, -3.0, 3.0]);
+        let camera = camera([0.0; 3], 10.0);
+        let (centre, radius_px) = exact_circle(&camera, &truth);
+        let cross = exact(&camera, &truth, [0.0, 0.0, TARGET.height_m]);
+        let right = exact(&camera, &truth, [0.1, 0.0, TARGET.height_m]);
+        let seen = PaperMeasurement {
+            focal_px: NARROW_PX,
+            cross: [cross.x, cross.y],
+            slope: (right.y - cross.y) / (right.x - cross.x),
+            circle: [centre.x, centre.y],
+            radius_px,
+        };
+        let off = |pose: &Pose| exact(&camera, pose, [0.0, 0.0, TARGET.height_m]).distance(cross);
+        // What the sine of the turn leaves of it is third order.
+        let (before, after) = (off(&seen.pose(&TARGET).unwrap()), off(&seen.aimed_pose(&TARGET).unwrap()));
+        assert!(before > 3.0 && after < 1e-3, "{before} {after}");
     }
 
     /// Least-squares circle through the exact images of 72 points of the mark circle.

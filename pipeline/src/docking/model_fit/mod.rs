@@ -11,6 +11,7 @@ mod gaussian;
 mod lines;
 mod near;
 mod sampled;
+mod sampled_marks;
 mod samples;
 mod shadow;
 mod solve;
@@ -25,6 +26,7 @@ use nalgebra::{Matrix6, Vector3};
 use self::edge::{BLUR, Blur, GLOBALS, GRID, POSE};
 use self::lines::Lines;
 use self::sampled::Tables;
+use self::sampled_marks::SampledMarks;
 use self::samples::{Feature, Samples};
 use self::shadow::ShadowFinder;
 use self::solve::{Evaluation, Globals, Scene, Search, covariance, normals, residual, solve};
@@ -110,6 +112,7 @@ pub struct ModelFit {
     tables: Tables,
     samples: Samples,
     shadows: ShadowFinder,
+    marks: SampledMarks,
     lines: Lines,
     variances: Vec<f64>,
     blur: Blur,
@@ -128,6 +131,7 @@ impl ModelFit {
             tables: Tables::new(),
             samples: Samples::default(),
             shadows: ShadowFinder::default(),
+            marks: SampledMarks::default(),
             lines: Lines::default(),
             variances: Vec::new(),
             blur: Blur::new(FIRST_BLUR_PX2, FIRST_BLUR_PX2),
@@ -225,10 +229,12 @@ impl ModelFit {
         }
         let mut evaluation =
             solve(&scene, samples, &mut globals, &search, noise).ok_or(NoPose::TooFewFeatures)?;
-        // The first field of a video finds its blur only now.
+        // The first field of a video finds its blur only now, and the marks' corners ask for the pose to a hundredth of a pixel.
         let is_renewed = prepare(&mut self.tables, camera, target, &globals)?;
         let scene = Scene { camera, target, tables: &self.tables };
-        if is_renewed {
+        let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
+        let is_corrected = self.marks.correct(samples, field, &scene, &to_pose(&globals), blur);
+        if is_renewed || is_corrected {
             evaluation = solve(&scene, samples, &mut globals, &search, evaluation.variance())
                 .ok_or(NoPose::TooFewFeatures)?;
         }

@@ -14,7 +14,7 @@ const NODES: f64 = 32.0;
 const REACH_PX: f64 = 4.0;
 
 /// Above this variance a sampled Gaussian is as good as a continuous one, px².
-const SMOOTH_PX2: f64 = 1.5;
+pub(super) const SMOOTH_PX2: f64 = 1.5;
 
 /// A table is made when there is none within so much of an edge's normal, and of its blur, px² …
 const SAME_NORMAL: f64 = 0.004;
@@ -144,7 +144,7 @@ fn sampled((nx, ny): (f64, f64), taps: &[[f64; TAPS]; 2], distance: f64) -> f64 
 }
 
 /// Share of a pixel inside a half plane whose border is so far from its centre: the integral of a trapezoid.
-fn covered(nx: f64, ny: f64, distance: f64) -> f64 {
+pub(super) fn covered(nx: f64, ny: f64, distance: f64) -> f64 {
     let (a, b) = (nx.max(ny), nx.min(ny).max(1e-4));
     let square = |x: f64| if x > 0.0 { x * x } else { 0.0 };
     let (wide, narrow) = (0.5 * (a + b), 0.5 * (a - b));

@@ -18,13 +18,16 @@ pub(super) struct Sample {
     /// Ideal image coordinates, px.
     pub(super) u: f64,
     pub(super) v: f64,
-    /// Row of the field.
+    /// Column, and row of the field.
+    pub(super) column: usize,
     pub(super) row: usize,
     pub(super) dn: f64,
     /// Blurred share of what lies beyond the plate's rim.
     pub(super) beyond_rim: f64,
     /// How much darker a shadow makes the plate, DN.
     pub(super) shadow_dn: f64,
+    /// How much more a blur on pixels alone shows of the mark than its profiles say.
+    pub(super) corner: f64,
     /// Coverage at the last evaluation.
     pub(super) coverage: f64,
     pub(super) is_used: bool,
@@ -74,6 +77,10 @@ const BEYOND_RIM_PX: f64 = 0.8;
 
 /// A mark of which a shadow takes more than this part anywhere is in shadow.
 const SHADED: f64 = 0.02;
+
+/// A pixel of a mark's patch of which a shadow takes more than this part says nothing: beside the mark the shadow takes a little of
+/// the plate, on it twenty times as much of the mark.
+const TOUCHED: f64 = 5e-4;
 
 /// Shares of the shadow between which a pixel is at its edge. Where that edge meets the cross's, the blurred part of the shadow
 /// that the cross leaves open is not the product of the two blurred shares: for parallel edges it is off by a quarter.
@@ -193,9 +200,14 @@ impl Samples {
         }
         let edge_px = search.reach_px;
         self.leave_out(|patch, pixel| {
-            patch.feature == Feature::Cross
-                && EDGE_OF_SHADOW.contains(&shadow.at(tables, pixel.u, pixel.v))
-                && search.beside_cross_px(pixel.u, pixel.v).abs() < edge_px
+            let share = shadow.at(tables, pixel.u, pixel.v);
+            match patch.feature {
+                Feature::Mark(_) => share > TOUCHED,
+                Feature::Cross => {
+                    EDGE_OF_SHADOW.contains(&share)
+                        && search.beside_cross_px(pixel.u, pixel.v).abs() < edge_px
+                }
+            }
         });
     }
 
@@ -361,10 +373,12 @@ impl Samples {
                 self.pixels.push(Sample {
                     u,
                     v,
+                    column: x,
                     row,
                     dn,
                     beyond_rim,
                     shadow_dn: 0.0,
+                    corner: 0.0,
                     coverage: 0.0,
                     is_used: true,
                 });

@@ -193,10 +193,12 @@ pub(super) fn covariance(
     for patch in samples.patches.iter().filter(|patch| patch.is_used) {
         let level = patch.levels[COVERAGE - 1];
         for pixel in samples.pixels[patch.first..patch.end].iter().filter(|pixel| pixel.is_used) {
-            let coverage = match patch.feature {
+            let mut coverage = match patch.feature {
                 Feature::Mark(index) => images.marks[index].as_ref()?.at(scene.tables, pixel.u, pixel.v),
                 Feature::Cross => images.cross.at(scene.tables, pixel.u, pixel.v),
             };
+            coverage.value += globals[GRID] * pixel.corner;
+            coverage.by[GRID] += pixel.corner;
             let [_, levels @ ..] = regressors(patch, pixel.u, pixel.v, pixel.beyond_rim, coverage.value);
             let levels = SVector::from(levels);
             let slopes = Globals::from(coverage.by);
@@ -253,10 +255,12 @@ fn evaluate(
         let stride = search.stride.min((patch.end - patch.first) / LEAST_OF_PATCH).max(1);
         for pixel in pixels[patch.first..patch.end].iter_mut().step_by(stride) {
             let (u, v) = (pixel.u, pixel.v);
-            let coverage: Coverage = match patch.feature {
+            let mut coverage: Coverage = match patch.feature {
                 Feature::Mark(index) => images.marks[index].as_ref()?.at(scene.tables, u, v),
                 Feature::Cross => images.cross.at(scene.tables, u, v),
             };
+            coverage.value += globals[GRID] * pixel.corner;
+            coverage.by[GRID] += pixel.corner;
             pixel.coverage = coverage.value;
             if !pixel.is_used {
                 continue;
