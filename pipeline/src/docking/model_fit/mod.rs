@@ -220,7 +220,7 @@ impl ModelFit {
         collect(samples, field, &scene, &globals, blur, 0.0, COLLECTED)?;
         let view = View::new(camera, &to_pose(&globals));
         samples.shade(&mut self.shadows, field, camera, target, &self.tables, &view, blur);
-        let search = Search { extra_blur_px2: 0.0, free: 0..GLOBALS, stride: 1, steps: 12, decrement: 1e-2 };
+        let search = Search { extra_blur_px2: 0.0, free: 0..GLOBALS, stride: 1, steps: 12, decrement: 2e-2 };
         let stride = samples.pixels.len().div_ceil(MIDDLE_SAMPLES);
         if stride > 1 {
             noise = solve(&scene, samples, &mut globals, &Search { stride, ..search.clone() }, noise)

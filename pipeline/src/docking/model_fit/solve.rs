@@ -35,6 +35,9 @@ const PATCH_UNIT_PX: f64 = 10.0;
 /// Pixels of a patch that are looked at in any case.
 const LEAST_OF_PATCH: usize = 3 * LOCALS;
 
+/// A step that promises less than this part of the noise's variance and does not keep it is the last.
+const UNSEEN_STEP: f64 = 0.5;
+
 /// Columns of a row of the equations: DN, plate, two slopes, beyond the rim, coverage; then derivatives of the coverage.
 const ROW: usize = 1 + LOCALS + GLOBALS;
 const COVERAGE: usize = LOCALS;
@@ -132,12 +135,15 @@ pub(super) fn solve(
     let mut now = evaluate(scene, samples, &images, globals, search, noise)?;
     let (mut damping, mut is_last_better) = (0.0, true);
     for _ in 0..search.steps {
-        let mut damped = now.information;
+        let (mut damped, mut gradient) = (now.information, now.gradient);
         for i in 0..GLOBALS {
             damped[(i, i)] *= 1.0 + damping;
+            if is_held(i, globals[i], gradient[i]) {
+                hold(i, &mut damped, &mut gradient);
+            }
         }
-        let mut step = inverse(&damped)? * now.gradient;
-        let promised = step.dot(&now.gradient);
+        let mut step = inverse(&damped)? * gradient;
+        let promised = step.dot(&gradient);
         if promised <= search.decrement * now.variance() {
             // The last step is taken on trust: what it changes in the residuals is less than can be seen.
             *globals = bounded(&(*globals + step));
@@ -160,11 +166,11 @@ pub(super) fn solve(
             images = trial_images;
             now = next;
             damping *= 0.1;
+        } else if promised <= UNSEEN_STEP * now.variance() || damping > 1e6 {
+            // The derivatives are those of a model that is nearly this one: they promise what is not there.
+            break;
         } else {
             damping = (damping * 10.0f64).max(1e-3);
-        }
-        if !is_better && damping > 1e6 {
-            break;
         }
     }
     if !is_last_better {
@@ -216,6 +222,24 @@ pub(super) fn covariance(
     let (of_lines, explained) = lines.scatter(evaluation.variance());
     let noise = (evaluation.variance() - explained).max(0.0);
     Some(inverse * noise + inverse * of_lines * inverse)
+}
+
+/// Whether a global is at the end of its range and would leave it.
+fn is_held(i: usize, value: f64, gradient: f64) -> bool {
+    let (low, high) = match i {
+        0..BLUR => return false,
+        BLUR..GRID => BLUR_RANGE_PX2,
+        _ => SHARE_RANGE,
+    };
+    (value <= low && gradient < 0.0) || (value >= high && gradient > 0.0)
+}
+
+/// Takes a global out of the equations: no step, and no coupling.
+fn hold(i: usize, information: &mut GlobalMatrix, gradient: &mut Globals) {
+    information.row_mut(i).fill(0.0);
+    information.column_mut(i).fill(0.0);
+    information[(i, i)] = 1.0;
+    gradient[i] = 0.0;
 }
 
 fn bounded(globals: &Globals) -> Globals {
@@ -287,11 +311,7 @@ fn evaluate(
     }
     for i in 0..GLOBALS {
         if !search.free.contains(&i) {
-            // Not free: no step, and no coupling.
-            sum.information.row_mut(i).fill(0.0);
-            sum.information.column_mut(i).fill(0.0);
-            sum.information[(i, i)] = 1.0;
-            sum.gradient[i] = 0.0;
+            hold(i, &mut sum.information, &mut sum.gradient);
         } else if i >= BLUR {
             let (mean, sigma) = if i < GRID { BLUR_PRIOR_PX2 } else { SHARE_PRIOR };
             let weight = noise / (sigma * sigma);
