@@ -198,6 +198,10 @@ impl Samples {
             patch.is_shaded = is_shaded;
             patch.is_used &= !is_shaded;
         }
+        if search.is_small() {
+            // A hundredth of a pixel is nothing beside the noise of a small cross, and its pixels are few.
+            return;
+        }
         let edge_px = search.reach_px;
         self.leave_out(|patch, pixel| {
             let share = shadow.at(tables, pixel.u, pixel.v);
@@ -252,8 +256,7 @@ impl Samples {
     fn collect_cross(&mut self, search: &Search) {
         let cross = &search.target.cross;
         let (half, length) = (0.5 * cross.width_m, cross.half_length_m);
-        let arm_px = (length - half) * search.cross_scale;
-        let is_whole = arm_px < SHORT_ARM_PX;
+        let (arm_px, is_whole) = (search.arm_px(), search.is_small());
         let pieces = ((arm_px / (2.0 * SHORT_ARM_PX)) as usize).clamp(1, 6);
         let mut first = self.pixels.len();
         for (c, s) in [(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)] {
@@ -278,7 +281,7 @@ impl Samples {
                         let (beyond_rim, inside_px) = search.beyond_rim(u, v)?;
                         let is_clear = inside_px > search.reach_px
                             && !search.is_near_mark(u, v)
-                            && !search.is_near_post(u, v);
+                            && (is_whole || !search.is_near_post(u, v));
                         is_clear.then_some(beyond_rim)
                     });
                 }
@@ -465,6 +468,17 @@ impl<'a> Search<'a> {
             })
             .collect();
         Some(search)
+    }
+
+    /// Length of an arm of the cross, px.
+    fn arm_px(&self) -> f64 {
+        let cross = &self.target.cross;
+        (cross.half_length_m - 0.5 * cross.width_m) * self.cross_scale
+    }
+
+    /// Whether the cross is one patch.
+    fn is_small(&self) -> bool {
+        self.arm_px() < SHORT_ARM_PX
     }
 
     fn pixel(&self, y1: f64, y2: f64, y3: f64) -> Option<PixelPoint> {
