@@ -227,8 +227,12 @@ impl Observer {
         }
         let mut features = evidence::evidence(lens, sight, &unit);
         features.station = evidence::station(sheet.view, lens, &self.target, sight);
-        let aimed = measurement.aimed_pose(&target)?;
-        let best = match self.fit.fit(sheet.field, lens.model(), &self.target, &aimed) {
+        let mut fitted = self.fit.fit(sheet.field, lens.model(), &self.target, &paper);
+        if fitted.is_err() {
+            // At large angles the paper's pose is farther off than a fit finds back from.
+            fitted = self.fit.fit(sheet.field, lens.model(), &self.target, &measurement.aimed_pose(&target)?);
+        }
+        let best = match fitted {
             Ok(fitted) => {
                 evidence::refine(&mut features, &fitted);
                 fitted.estimate
