@@ -168,7 +168,7 @@ impl Samples {
         view: &View,
         blur: Blur,
     ) {
-        let Some(search) = Search::new(field, camera, target, view, tables, blur, 0.0, MANY_SAMPLES) else {
+        let Some(search) = Search::new(field, camera, target, view, tables, blur, 0.0, f64::INFINITY) else {
             return;
         };
         let is_clear = |u: f64, v: f64, y1: f64, y2: f64| {
