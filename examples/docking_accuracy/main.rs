@@ -145,6 +145,7 @@ fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>
         let bounds: Vec<Bound> = measured.iter().map(|m| m.bounds[i]).collect();
         lines.push(Line::of_bounds(row.name, name, &bounds));
     }
+    lines.extend(lines.last().map(|bound| lines[0].over(bound)));
     Ok(lines)
 }
 

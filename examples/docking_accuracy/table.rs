@@ -15,7 +15,7 @@ Errors: range, % of it; lateral, mm (root mean square of d1 and d2, per axis); �
 rms over all answers; p68: the value that 68 % of the absolute errors are below (σ of a normal law, outliers apart).
 best: the pipeline on the frame alone; near: its best estimator begun where OpenCV is begun; paper: the paper's formulas.
 bound: Cramér–Rao, 1 plate, marks and cross, 2 without the plate's rim, levels and blur known in both; 3 as posed, levels and
-blur unknown, the yardstick. NEES: mean over the answers, divided by 6.
+blur unknown, the yardstick; best/3: times the yardstick. NEES: mean over the answers, divided by 6.
 row         method  answered       rms: range %  lateral mm  φ1,2 °       p68: range %  lateral mm  φ1,2 °    NEES/6";
 
 /// The truth of a frame, and what a method says.
@@ -121,6 +121,12 @@ impl Line {
         let rms =
             [100.0 * mean(&|b| b.range), 1e3 * mean(&|b| b.lateral_m2), mean(&|b| b.angle_rad2).to_degrees()];
         Self { row, method, answered: None, rms, p68: None, nees: None }
+    }
+
+    /// How many times a bound's figures a method's are.
+    pub(crate) fn over(&self, bound: &Line) -> Self {
+        let rms = std::array::from_fn(|i| self.rms[i] / bound.rms[i]);
+        Self { row: self.row, method: "best/3", answered: None, rms, p68: None, nees: None }
     }
 }
 
