@@ -72,10 +72,11 @@ pub(super) struct Gram {
 impl Gram {
     pub(super) const ZERO: Self = Self { parts: [[[0.0; PARTS]; COLUMNS]; COLUMNS] };
 
-    /// Adds the products of the first `columns` columns, a multiple of four: the upper triangle and a little of the lower.
+    /// Adds the products of the first `columns` columns, a multiple of four, or begins anew with those of all: the upper triangle and
+    /// a little of the lower.
     #[inline(always)]
-    pub(super) fn add<S: Simd>(&mut self, simd: S, equations: &Equations, columns: usize) {
-        let columns = columns.min(COLUMNS);
+    pub(super) fn add<S: Simd>(&mut self, simd: S, equations: &Equations, columns: usize, is_first: bool) {
+        let columns = if is_first { COLUMNS } else { columns.min(COLUMNS) };
         for i in (0..columns).step_by(2) {
             let (first, second) = (S::as_simd_f64s(&equations[i]).0, S::as_simd_f64s(&equations[i + 1]).0);
             for j in ((i - i % ACROSS)..columns).step_by(ACROSS) {
@@ -94,7 +95,7 @@ impl Gram {
                     for (sums, row) in sums.iter().zip([i, i + 1]) {
                         for (k, sum) in sums.iter().enumerate() {
                             let total = &mut S::as_mut_simd_f64s(&mut self.parts[row][j + k]).0[part];
-                            *total = simd.add_f64s(*total, *sum);
+                            *total = if is_first { *sum } else { simd.add_f64s(*total, *sum) };
                         }
                     }
                 }

@@ -68,12 +68,7 @@ impl MarkImage {
 
     /// The steps of the edges, and the coverage between opposite ones.
     #[inline(always)]
-    fn step<const N: usize>(
-        &self,
-        tables: &Tables,
-        at: &Places<N>,
-        steps: &mut [Steps<N>],
-    ) -> [[f64; N]; 2] {
+    fn step<const N: usize>(&self, tables: &Tables, at: &Places<N>, steps: &mut [Steps<N>]) -> [[f64; N]; 2] {
         for (steps, edge) in steps.iter_mut().zip(&self.edges) {
             edge.steps(tables, at, steps);
         }

@@ -114,9 +114,8 @@ impl<'a> WithSimd for NormalEquations<'a> {
         let Self { look, centre, level, pixels, origin, stride, work } = self;
         // The feature stands over a plate that a shadow darkens by so much more, in units of its level over the light one.
         let per_level = if level > 0.0 { 1.0 / level } else { 0.0 };
-        work.gram = Gram::ZERO;
         let mut used = 0;
-        for pixels in pixels.chunks_mut(CHUNK * stride) {
+        for (index, pixels) in pixels.chunks_mut(CHUNK * stride).enumerate() {
             let count = pixels.len().div_ceil(stride);
             let mut over = [0.0; CHUNK];
             let (mut dn, mut shadow_dn) = ([0.0; CHUNK], [0.0; CHUNK]);
@@ -145,7 +144,8 @@ impl<'a> WithSimd for NormalEquations<'a> {
                     column[l] = over[l] * by[l];
                 }
             }
-            gram.add(simd, equations, if coverage.has_sides { COLUMNS } else { WITHOUT_SIDES });
+            let columns = if coverage.has_sides { COLUMNS } else { WITHOUT_SIDES };
+            gram.add(simd, equations, columns, index == 0);
             for (pixel, value) in pixels.iter_mut().step_by(stride).zip(&coverage.value) {
                 pixel.coverage = *value;
             }

@@ -204,7 +204,7 @@ pub(super) fn covariance(
             let coverage = Arch::new().dispatch(Cover { look, pixels, work: &mut work });
             for (l, pixel) in pixels.iter().enumerate().filter(|(_, pixel)| pixel.is_used) {
                 let levels = SVector::from(regressors(patch, pixel, coverage.value[l]));
-                let slopes = Globals::from(coverage.by.map(|by| by[l]));
+                let slopes = Globals::from_fn(|i, _| coverage.by[i][l]);
                 let shift = level * slopes.fixed_rows::<POSE>(0).dot(&turn);
                 lines.add(&LinePixel {
                     row: pixel.row,
