@@ -56,11 +56,12 @@ impl<'a> View<'a> {
         (y - self.first_row) / self.step
     }
 
-    /// Grey values of some of a row's pixels of the image; none for columns that are not in it.
-    pub(crate) fn line(&self, row: usize, columns: Range<usize>) -> impl Iterator<Item = f64> {
+    /// Grey values of every `stride`-th of a row's pixels of the image from the first of these columns on; none for columns that are
+    /// not in it.
+    pub(crate) fn line(&self, row: usize, columns: Range<usize>, stride: usize) -> impl Iterator<Item = f64> {
         let start = row * self.columns();
         let line = self.field.image().dn().get(start + columns.start..start + columns.end);
-        line.unwrap_or_default().iter().map(|dn| f64::from(*dn) * self.scale)
+        line.unwrap_or_default().iter().step_by(stride).map(|dn| f64::from(*dn) * self.scale)
     }
 
     /// Grey value of a pixel of the image.

@@ -103,8 +103,8 @@ impl ImageBlur {
         for (k, out) in kept.chunks_exact_mut(columns).enumerate() {
             let y = lines.camera_row(k);
             let row = |j: usize| &image[(y + j).saturating_sub(reach).min(camera_rows - 1) * columns..];
-            let (kernel, out_of_columns) = (&self.kernel, &mut self.column);
-            pulp::Arch::new().dispatch(WeightedSum { kernel, row, out: out_of_columns });
+            let (kernel, sums) = (&self.kernel, &mut self.column);
+            pulp::Arch::new().dispatch(WeightedSum { kernel, row, out: sums });
             pad(&self.column, reach, reach, &mut self.padded);
             correlate(&self.padded, &self.kernel, out);
         }
@@ -119,6 +119,17 @@ mod tests {
         let mut kept = Vec::new();
         ImageBlur::new(sigma_px).blur(image, columns, lines, &mut kept);
         kept
+    }
+
+    #[test]
+    fn a_sum_is_the_same_bits_on_all_registers() {
+        let values: Vec<f32> = (0..177_u32).map(|x| libm::sinf((x * x) as f32)).collect();
+        let kernel = gaussian_kernel(2.3);
+        let (mut widest, mut single) = (vec![0.0; 150], vec![0.0; 150]);
+        correlate(&values, &kernel, &mut widest);
+        let sum = WeightedSum { kernel: &kernel, row: |j: usize| &values[j..], out: &mut single };
+        pulp::WithSimd::with_simd(sum, pulp::Scalar::new());
+        assert_eq!(widest, single);
     }
 
     #[test]

@@ -27,6 +27,9 @@ const SAME_BLUR_PX2: f64 = 0.015;
 /// by 0.001 a degree, and by 1 % of itself in 0.01 px².
 const SERVES: f64 = 6.0;
 
+/// A weight of the filter that is not summed: all 121 together are 1e-9 of the step, and the tables are good to 2e-4.
+const LEAST_WEIGHT: f64 = 1e-11;
+
 /// Tables that are kept: a target has a few directions of edges, each of which turns slowly.
 const MOST_TABLES: usize = 24;
 
@@ -77,12 +80,16 @@ impl SampledProfiles {
     /// The nearest table, and how far off it is: 1 is as far as may be when tables are made.
     fn nearest(&self, normal: (f64, f64), blur: &Blur) -> Option<(usize, f64)> {
         let (nx, ny) = (normal.0.abs(), normal.1.abs());
-        let off = |table: &Table| {
+        let mut nearest = None;
+        for (index, table) in self.tables.iter().enumerate() {
             let turned = (table.normal.0 - nx).abs() + (table.normal.1 - ny).abs();
             let blurred = (table.blur.0 - blur.x).abs() + (table.blur.1 - blur.y).abs();
-            (turned / SAME_NORMAL).max(blurred / SAME_BLUR_PX2)
-        };
-        self.tables.iter().map(off).enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
+            let off = (turned / SAME_NORMAL).max(blurred / SAME_BLUR_PX2);
+            if nearest.is_none_or(|(_, least)| off < least) {
+                nearest = Some((index, off));
+            }
+        }
+        nearest
     }
 
     /// Makes the table of an edge's normal, if there is none near it; whether one was made.
@@ -157,6 +164,9 @@ fn sampled((nx, ny): (f64, f64), taps: &[[f64; TAPS]; 2], distance: f64) -> f64 
         let row = taps[1][j.unsigned_abs() as usize];
         for i in -reach..=reach {
             let weight = row * taps[0][i.unsigned_abs() as usize];
+            if weight < LEAST_WEIGHT {
+                continue;
+            }
             sum += weight * covered(nx, ny, distance + f64::from(i) * nx + f64::from(j) * ny);
         }
     }

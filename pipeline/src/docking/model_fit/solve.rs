@@ -336,10 +336,10 @@ fn fold(patch: &mut Patch, gram: &Gram, origin: f64, sum: &mut Evaluation) {
     let mixed = SMatrix::<f64, LOCALS, GLOBALS>::from_fn(|i, j| gram.at(1 + i, FIRST_GLOBAL + j));
     patch.levels_inverse = normal;
     patch.levels_by_globals = normal * mixed;
-    let eliminated = mixed.transpose() * patch.levels_by_globals;
     for i in 0..GLOBALS {
         for j in i..GLOBALS {
-            let term = feature * feature * (gram.at(FIRST_GLOBAL + i, FIRST_GLOBAL + j) - eliminated[(i, j)]);
+            let eliminated = mixed.column(i).dot(&patch.levels_by_globals.column(j));
+            let term = feature * feature * (gram.at(FIRST_GLOBAL + i, FIRST_GLOBAL + j) - eliminated);
             sum.information[(i, j)] += term;
             if i != j {
                 sum.information[(j, i)] += term;

@@ -1,5 +1,6 @@
 //! The estimator on images made by another route ([`render`]).
 
+mod registers;
 mod render;
 
 use contract::docking::{Field, Lines, MarkUse, NoPose, Pose};
