@@ -27,9 +27,6 @@ const SAME_BLUR_PX2: f64 = 0.015;
 /// by 0.001 a degree, and by 1 % of itself in 0.01 px².
 const SERVES: f64 = 6.0;
 
-/// A weight of the filter that is not summed: all 121 together are 1e-9 of the step, and the tables are good to 2e-4.
-const LEAST_WEIGHT: f64 = 1e-11;
-
 /// Tables that are kept: a target has a few directions of edges, each of which turns slowly.
 const MOST_TABLES: usize = 24;
 
@@ -164,9 +161,6 @@ fn sampled((nx, ny): (f64, f64), taps: &[[f64; TAPS]; 2], distance: f64) -> f64 
         let row = taps[1][j.unsigned_abs() as usize];
         for i in -reach..=reach {
             let weight = row * taps[0][i.unsigned_abs() as usize];
-            if weight < LEAST_WEIGHT {
-                continue;
-            }
             sum += weight * covered(nx, ny, distance + f64::from(i) * nx + f64::from(j) * ny);
         }
     }
@@ -178,8 +172,8 @@ pub(super) fn covered(nx: f64, ny: f64, distance: f64) -> f64 {
     let (a, b) = (nx.max(ny), nx.min(ny).max(1e-4));
     let square = |x: f64| if x > 0.0 { x * x } else { 0.0 };
     let (wide, narrow) = (0.5 * (a + b), 0.5 * (a - b));
-    if distance >= wide {
-        return 1.0;
+    if distance.abs() >= wide {
+        return if distance > 0.0 { 1.0 } else { 0.0 };
     }
     (square(distance + wide) - square(distance + narrow) - square(distance - narrow)) / (2.0 * a * b)
 }
