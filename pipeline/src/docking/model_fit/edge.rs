@@ -141,16 +141,16 @@ impl Edge {
         for l in 0..N {
             let z = steps.z[l];
             steps.inside[l] = below[l] + self.kurtosis * z * (z * z - 3.0) * density[l];
-            steps.density[l] = density[l];
         }
+        steps.density = density;
         match self.sampled {
             Some(table) => {
                 let (value, slope) = tables.profiles.at(table, &distance);
                 for l in 0..N {
                     steps.inside[l] += self.share * value[l];
                     steps.density[l] += self.share * slope[l] * self.sigma;
-                    steps.by_grid[l] = value[l];
                 }
+                steps.by_grid = value;
             }
             None => steps.by_grid = [0.0; N],
         }
