@@ -28,11 +28,12 @@ impl Histogram {
         let mut histogram = Self { counts: [0; 256], total: 0 };
         for row in rows {
             // A start that moves with the row, so that a stride does not become a pattern of columns.
-            for column in columns.clone().skip(row % stride).step_by(stride) {
-                histogram.counts[view.at(column, row).min(View::WHITE) as usize] += 1;
-                histogram.total += 1;
+            let first = columns.start + row % stride;
+            for level in view.line(row, first..columns.end, stride) {
+                histogram.counts[usize::from(level as u8)] += 1;
             }
         }
+        histogram.total = histogram.counts.iter().sum();
         histogram
     }
 

@@ -159,10 +159,10 @@ impl MarkSearch<'_> {
         let shapes = if diagonal.len() >= 4 { diagonal } else { self.shapes.iter().collect() };
         let width = 2.0 * start.scale_px_m * shapes.first().map_or(0.0, |shape| shape.half_width_m);
         let step = (0.5 * width).clamp(0.8, 6.0);
-        let mut best = (*start, self.contrast(start, &shapes));
+        let mut best = (*start, self.contrast(start, &shapes, f64::NEG_INFINITY));
         let count = (reach_px / step).ceil().clamp(1.0, 40.0) as i32;
         let consider = |plane: Plane, best: &mut (Plane, f64)| {
-            let contrast = self.contrast(&plane, &shapes);
+            let contrast = self.contrast(&plane, &shapes, best.1);
             if contrast > best.1 {
                 *best = (plane, contrast);
             }
@@ -190,11 +190,17 @@ impl MarkSearch<'_> {
     }
 
     /// Mean height of the marks over what lies beside them, grey values; no single mark counts for more than the
-    /// cross's own height. Marks outside the image do not count; 0 when none is inside.
-    fn contrast(&self, plane: &Plane, shapes: &[&MarkShape]) -> f64 {
+    /// cross's own height. Marks outside the image do not count; 0 when none is inside. What cannot come to more than `least` is
+    /// not measured to the end and is minus infinity.
+    fn contrast(&self, plane: &Plane, shapes: &[&MarkShape], least: f64) -> f64 {
         let top = self.levels.contrast();
         let (mut sum, mut count) = (0.0, 0u32);
-        for shape in shapes {
+        for (index, shape) in shapes.iter().enumerate() {
+            // As if all that are left were seen, and stood out as much as any can.
+            let left = (shapes.len() - index) as f64;
+            if sum + left * top < least * (f64::from(count) + left) {
+                return f64::NEG_INFINITY;
+            }
             let at = |along: f64, across: f64| {
                 self.view.sample(self.lens.to_camera(plane.place(shape.place(along, across)))?)
             };

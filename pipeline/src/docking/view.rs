@@ -1,5 +1,7 @@
 //! A field as the steps read it: grey values at places of the camera.
 
+use std::ops::Range;
+
 use contract::docking::Field;
 use contract::{Camera, ContractError, PixelPoint};
 use imageproc::image::GrayImage;
@@ -54,6 +56,14 @@ impl<'a> View<'a> {
         (y - self.first_row) / self.step
     }
 
+    /// Grey values of every `stride`-th of a row's pixels of the image from the first of these columns on; none for columns that are
+    /// not in it.
+    pub(crate) fn line(&self, row: usize, columns: Range<usize>, stride: usize) -> impl Iterator<Item = f64> {
+        let start = row * self.columns();
+        let line = self.field.image().dn().get(start + columns.start..start + columns.end);
+        line.unwrap_or_default().iter().step_by(stride).map(|dn| f64::from(*dn) * self.scale)
+    }
+
     /// Grey value of a pixel of the image.
     pub(crate) fn at(&self, column: usize, row: usize) -> f64 {
         f64::from(self.field.image().at(column, row)) * self.scale
@@ -66,9 +76,8 @@ impl<'a> View<'a> {
         if !(x >= 0.0 && row >= 0.0 && x <= last_x && row <= last_row) {
             return None;
         }
-        let (left, top) = (x.floor(), row.floor());
-        let (fx, fy) = (x - left, row - top);
-        let (x0, y0) = (left as usize, top as usize);
+        let (x0, y0) = (x as usize, row as usize);
+        let (fx, fy) = (x - x0 as f64, row - y0 as f64);
         let (x1, y1) = ((x0 + 1).min(self.columns() - 1), (y0 + 1).min(self.rows() - 1));
         let upper = self.at(x0, y0) * (1.0 - fx) + self.at(x1, y0) * fx;
         let lower = self.at(x0, y1) * (1.0 - fx) + self.at(x1, y1) * fx;

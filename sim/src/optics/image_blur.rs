@@ -11,10 +11,27 @@ const LANES: usize = 32;
 /// Puts the sum of `kernel[j] × padded[x + j]` over all j, in their order, into `out[x]`. `padded` is `kernel.len()` − 1 longer
 /// than `out`.
 pub(crate) fn correlate(padded: &[f32], kernel: &[f32], out: &mut [f32]) {
-    weighted_sum(kernel, |j| &padded[j..], out);
+    pulp::Arch::new().dispatch(WeightedSum { kernel, row: |j: usize| &padded[j..], out });
 }
 
 /// Puts the sum of `kernel[j] × row(j)[x]` over all j, in their order, into `out[x]`. Rows may be longer than `out`.
+struct WeightedSum<'a, R> {
+    kernel: &'a [f32],
+    row: R,
+    out: &'a mut [f32],
+}
+
+impl<'a, R: Fn(usize) -> &'a [f32]> pulp::WithSimd for WeightedSum<'_, R> {
+    type Output = ();
+
+    // Inline: only so is it compiled for the registers of the machine. The bits do not depend on them.
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        weighted_sum(self.kernel, self.row, self.out);
+    }
+}
+
+#[inline(always)]
 fn weighted_sum<'a>(kernel: &[f32], row: impl Fn(usize) -> &'a [f32], out: &mut [f32]) {
     let whole = out.len() - out.len() % LANES;
     let (blocks, rest) = out.split_at_mut(whole);
@@ -86,7 +103,8 @@ impl ImageBlur {
         for (k, out) in kept.chunks_exact_mut(columns).enumerate() {
             let y = lines.camera_row(k);
             let row = |j: usize| &image[(y + j).saturating_sub(reach).min(camera_rows - 1) * columns..];
-            weighted_sum(&self.kernel, row, &mut self.column);
+            let (kernel, sums) = (&self.kernel, &mut self.column);
+            pulp::Arch::new().dispatch(WeightedSum { kernel, row, out: sums });
             pad(&self.column, reach, reach, &mut self.padded);
             correlate(&self.padded, &self.kernel, out);
         }
@@ -101,6 +119,17 @@ mod tests {
         let mut kept = Vec::new();
         ImageBlur::new(sigma_px).blur(image, columns, lines, &mut kept);
         kept
+    }
+
+    #[test]
+    fn a_sum_is_the_same_bits_on_all_registers() {
+        let values: Vec<f32> = (0..177_u32).map(|x| libm::sinf((x * x) as f32)).collect();
+        let kernel = gaussian_kernel(2.3);
+        let (mut widest, mut single) = (vec![0.0; 150], vec![0.0; 150]);
+        correlate(&values, &kernel, &mut widest);
+        let sum = WeightedSum { kernel: &kernel, row: |j: usize| &values[j..], out: &mut single };
+        pulp::WithSimd::with_simd(sum, pulp::Scalar::new());
+        assert_eq!(widest, single);
     }
 
     #[test]

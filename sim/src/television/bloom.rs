@@ -98,7 +98,7 @@ impl Bloom {
 
 /// Whether some of a row is above white. It looks at all of it: a search that may end early looks at one at a time.
 fn is_bright(row: &[f32]) -> bool {
-    row.iter().fold(0.0_f32, |most, &s| if s > most { s } else { most }) > 1.0
+    row.iter().filter(|s| **s > 1.0).count() > 0
 }
 
 /// Adds the cells of a row to its pixels, linearly between the cells' centres and as they are beyond the outer ones.

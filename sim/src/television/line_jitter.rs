@@ -70,11 +70,30 @@ fn shifted(padded: &[f32], shift_px: f64, out: &mut [f32]) {
     let n = out.len();
     let taps = [&padded[first..], &padded[first + 1..], &padded[first + 2..], &padded[first + 3..]]
         .map(|tap| &tap[..n]);
-    for (x, value) in out.iter_mut().enumerate() {
-        *value = weights[0] * taps[0][x]
-            + weights[1] * taps[1][x]
-            + weights[2] * taps[2][x]
-            + weights[3] * taps[3][x];
+    pulp::Arch::new().dispatch(Cubic { weights, taps, out });
+}
+
+/// Sums of four taps along a line.
+struct Cubic<'a> {
+    weights: [f32; 4],
+    taps: [&'a [f32]; 4],
+    out: &'a mut [f32],
+}
+
+impl pulp::WithSimd for Cubic<'_> {
+    type Output = ();
+
+    // Inline: only so is it compiled for the registers of the machine. The bits do not depend on them.
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { weights, taps, out } = self;
+        let taps = taps.map(|tap| &tap[..out.len()]);
+        for (x, value) in out.iter_mut().enumerate() {
+            *value = weights[0] * taps[0][x]
+                + weights[1] * taps[1][x]
+                + weights[2] * taps[2][x]
+                + weights[3] * taps[3][x];
+        }
     }
 }
 

@@ -60,27 +60,41 @@ impl VideoField {
         let full_scale = 255.0_f32;
         let slope = full_scale * digitiser.contrast as f32;
         let offset = full_scale * digitiser.brightness as f32;
-        let dn = self.signal.iter().map(|s| {
-            let level = slope * s + offset;
+        let mut dn = vec![0; self.signal.len()];
+        pulp::Arch::new().dispatch(Digits { signal: &self.signal, slope, offset, full_scale, dn: &mut dn });
+        Frame::new(self.number, self.columns, self.lines.rows(self.camera_rows), BIT_DEPTH, dn, None)
+            .and_then(|image| Field::new(image, self.lines, self.camera_rows))
+            .expect("the number of values was checked when the field was made")
+    }
+}
+
+/// The levels of a signal as whole numbers.
+struct Digits<'a> {
+    signal: &'a [f32],
+    slope: f32,
+    offset: f32,
+    full_scale: f32,
+    dn: &'a mut [u16],
+}
+
+impl pulp::WithSimd for Digits<'_> {
+    type Output = ();
+
+    // Inline: only so is it compiled for the registers of the machine. The bits do not depend on them.
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        for (dn, s) in self.dn.iter_mut().zip(self.signal) {
+            let level = self.slope * s + self.offset;
             // Not by `clamp`: what is no number is black.
             let level = if level > 0.0 { level } else { 0.0 };
-            whole_part(if level < full_scale { level } else { full_scale } + 0.5)
-        });
-        Frame::new(
-            self.number,
-            self.columns,
-            self.lines.rows(self.camera_rows),
-            BIT_DEPTH,
-            dn.collect(),
-            None,
-        )
-        .and_then(|image| Field::new(image, self.lines, self.camera_rows))
-        .expect("the number of values was checked when the field was made")
+            *dn = whole_part(if level < self.full_scale { level } else { self.full_scale } + 0.5);
+        }
     }
 }
 
 /// The whole part of 0 to 65535. By additions, which a processor does for many numbers at once, as it does not a cast that must
 /// look for what does not fit: at 2²³ the last bit of single precision is worth 1.
+#[inline(always)]
 fn whole_part(value: f32) -> u16 {
     const ONES: f32 = 8_388_608.0;
     let nearest = (value + ONES) - ONES;

@@ -61,6 +61,11 @@ impl Beam {
         self.sides.iter().any(|side| side.beyond(&sphere.centre) > sphere.radius)
     }
 
+    /// Whether all of a sphere is inside.
+    fn holds(&self, sphere: &Sphere) -> bool {
+        self.sides.iter().all(|side| side.beyond(&sphere.centre) <= -sphere.radius)
+    }
+
     /// The first side beyond which all of a sphere lies.
     fn side_before(&self, centre: &Vector3<f64>, radius: f64) -> Option<&Side> {
         self.sides.iter().find(|side| side.beyond(centre) > radius)
@@ -79,6 +84,12 @@ impl Beam {
         for (sphere, points) in loops.stretches(index) {
             if row.is_some_and(|side| side.beyond(&sphere.centre) > sphere.radius) {
                 last = points.last();
+                continue;
+            }
+            if self.holds(sphere) {
+                kept.extend(last.take());
+                kept.extend(points);
+                row = None;
                 continue;
             }
             let side = self.side_before(&sphere.centre, sphere.radius);

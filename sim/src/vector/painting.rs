@@ -152,8 +152,11 @@ impl Painting {
                 }
                 Run::Same([covered, light], length) => {
                     let left = if covered > 1.0 - Coverage::RESIDUE { 0.0 } else { 1.0 - covered };
-                    for pixel in &mut image[start..start + length] {
-                        *pixel = (*pixel * left + light).max(0.0);
+                    let pixels = &mut image[start..start + length];
+                    if left == 0.0 {
+                        pixels.fill(light.max(0.0));
+                    } else {
+                        pixels.iter_mut().for_each(|pixel| *pixel = (*pixel * left + light).max(0.0));
                     }
                 }
             }

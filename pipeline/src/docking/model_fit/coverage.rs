@@ -7,16 +7,23 @@
 use contract::docking::{StandOffCross, TargetModel};
 use nalgebra::Vector3;
 
-use super::edge::{Blur, ByGlobals, Edge, GLOBALS, SIDES, Step};
+use super::chunk::{Coverages, Places, Steps};
+use super::edge::{Blur, ByGlobals, Edge, GLOBALS, SIDES};
 use super::gaussian::LIMIT;
 use super::sampled::Tables;
 use crate::docking::geometry::{Seen, View};
 
-/// Coverage at a pixel with its derivatives.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Coverage {
-    pub(super) value: f64,
-    pub(super) by: ByGlobals,
+/// Edges of a feature: of the cross, front and back.
+pub(super) const EDGES: usize = 16;
+
+/// Blurred coverage between two opposite edges.
+#[inline(always)]
+fn slab<const N: usize>(one: &Steps<N>, other: &Steps<N>) -> [f64; N] {
+    let mut between = [0.0; N];
+    for l in 0..N {
+        between[l] = one.inside[l] + other.inside[l] - 1.0;
+    }
+    between
 }
 
 /// The image of a mark at a pose.
@@ -39,31 +46,64 @@ impl MarkImage {
         Some(Self { edges, correlations })
     }
 
-    pub(super) fn at(&self, tables: &Tables, u: f64, v: f64) -> Coverage {
-        let steps = self.steps(tables, u, v);
-        let across = [steps[0].inside + steps[2].inside - 1.0, steps[1].inside + steps[3].inside - 1.0];
-        let mut coverage = Coverage { value: across[0] * across[1], by: [0.0; GLOBALS] };
+    /// Coverage with its derivatives.
+    #[inline(always)]
+    pub(super) fn cover<const N: usize>(
+        &self,
+        tables: &Tables,
+        at: &Places<N>,
+        steps: &mut [Steps<N>; EDGES],
+        coverage: &mut Coverages<N>,
+    ) {
+        let across = self.step(tables, at, steps);
+        self.corners(&across, steps, &mut coverage.value);
+        coverage.by = [[0.0; N]; GLOBALS];
+        coverage.has_sides = false;
         for k in 0..4 {
-            coverage.value += self.correlations[k] * steps[k].density * steps[(k + 1) % 4].density;
-            self.edges[k].add_derivative(&steps[k], u, v, across[(k + 1) % 2], &mut coverage.by);
+            if steps[k].is_near {
+                self.edges[k].add_derivatives(&steps[k], at, &across[(k + 1) % 2], &mut coverage.by);
+            }
         }
-        coverage
     }
 
-    fn steps(&self, tables: &Tables, u: f64, v: f64) -> [Step; 4] {
-        let mut steps = [Step::default(); 4];
-        for (step, edge) in steps.iter_mut().zip(&self.edges) {
-            *step = edge.step(tables, u, v);
+    /// The steps of the edges, and the coverage between opposite ones.
+    #[inline(always)]
+    fn step<const N: usize>(&self, tables: &Tables, at: &Places<N>, steps: &mut [Steps<N>]) -> [[f64; N]; 2] {
+        for (steps, edge) in steps.iter_mut().zip(&self.edges) {
+            edge.steps(tables, at, steps);
         }
-        steps
+        [slab(&steps[0], &steps[2]), slab(&steps[1], &steps[3])]
+    }
+
+    #[inline(always)]
+    fn corners<const N: usize>(&self, across: &[[f64; N]; 2], steps: &[Steps<N>], value: &mut [f64; N]) {
+        for l in 0..N {
+            value[l] = across[0][l] * across[1][l];
+        }
+        for k in 0..4 {
+            let (one, next) = (&steps[k], &steps[(k + 1) % 4]);
+            if one.is_near && next.is_near {
+                for l in 0..N {
+                    value[l] += self.correlations[k] * one.density[l] * next.density[l];
+                }
+            }
+        }
     }
 
     /// The coverage alone.
+    #[inline(always)]
+    pub(super) fn values<const N: usize>(&self, tables: &Tables, at: &Places<N>) -> [f64; N] {
+        let mut steps = [const { Steps::FAR }; 4];
+        let across = self.step(tables, at, &mut steps);
+        let mut value = [0.0; N];
+        self.corners(&across, &steps, &mut value);
+        value
+    }
+
+    /// The coverage alone, of one pixel.
     pub(super) fn value_at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
-        let steps = self.steps(tables, u, v);
-        let corners: f64 =
-            (0..4).map(|k| self.correlations[k] * steps[k].density * steps[(k + 1) % 4].density).sum();
-        (steps[0].inside + steps[2].inside - 1.0) * (steps[1].inside + steps[3].inside - 1.0) + corners
+        let [value] = self.values(tables, &Places { u: [u], v: [v] });
+        value
     }
 
     /// Of the edges.
@@ -88,6 +128,9 @@ const HT: usize = 7;
 
 /// The side face of each edge: +y1, −y1, +y2, −y2.
 const SIDE_OF: [usize; 8] = [1, 0, 3, 2, 1, 0, 3, 2];
+
+/// Whether an edge is at the end of its bar.
+const IS_END: [bool; 8] = [false, false, true, true, true, true, false, false];
 
 /// Pairs of edges that meet at a corner, and the sign of their product in the coverage.
 const CORNERS: [(usize, usize, f64); 12] = [
@@ -153,72 +196,83 @@ impl CrossImage {
         Some(Self { front, back, correlations, sides })
     }
 
-    pub(super) fn at(&self, tables: &Tables, u: f64, v: f64) -> Coverage {
-        let mut front = [Step::default(); 8];
-        // Most edges are far away: only where two are near is a corner.
-        let mut near = 0;
-        for (step, edge) in front.iter_mut().zip(&self.front) {
-            *step = edge.step(tables, u, v);
-            near += usize::from(step.density != 0.0);
+    /// Coverage with its derivatives.
+    #[inline(always)]
+    pub(super) fn cover<const N: usize>(
+        &self,
+        tables: &Tables,
+        at: &Places<N>,
+        steps: &mut [Steps<N>; EDGES],
+        coverage: &mut Coverages<N>,
+    ) {
+        let (front, back) = steps.split_at_mut(8);
+        for (steps, edge) in front.iter_mut().zip(&self.front) {
+            edge.steps(tables, at, steps);
         }
-        let mut back = front;
-        for (step, edge) in back.iter_mut().zip(&self.back) {
-            if let Some(edge) = edge {
-                *step = edge.step(tables, u, v);
-            }
-        }
-        let slab = |a: usize, b: usize| front[a].inside + front[b].inside - 1.0;
-        let (v_across, v_along) = (slab(VL, VR), slab(VB, VT));
-        let (h_across, h_along) = (slab(HB, HT), slab(HL, HR));
+        let (v_across, v_along) = (slab(&front[VL], &front[VR]), slab(&front[VB], &front[VT]));
+        let (h_across, h_along) = (slab(&front[HB], &front[HT]), slab(&front[HL], &front[HR]));
         // Share of a side face beside each edge, before what bounds it along the edge.
-        let strip = |k: usize| back[k].inside - front[k].inside;
-        let bright = |k: usize| self.sides[SIDE_OF[k]] * strip(k);
-        let (v_sides, v_ends) = (bright(VL) + bright(VR), bright(VB) + bright(VT));
-        let (h_sides, h_ends) = (bright(HB) + bright(HT), bright(HL) + bright(HR));
-        // A bar's side faces are interrupted by the other bar.
-        let (v_open, h_open) = (v_along - h_across, h_along - v_across);
-
-        let mut coverage = Coverage {
-            value: v_across * v_along + h_across * h_along - v_across * h_across
-                + v_sides * v_open
-                + h_sides * h_open
-                + v_ends * v_across
-                + h_ends * h_across,
-            by: [0.0; GLOBALS],
-        };
-        if near > 1 {
-            for ((i, j, _), correlation) in CORNERS.iter().zip(&self.correlations) {
-                coverage.value += correlation * front[*i].density * front[*j].density;
+        let mut strips = [[0.0; N]; 8];
+        // Bars, then ends, of V and of H: strips in units of the front face's brightness.
+        let (mut sides, mut ends) = ([[0.0; N]; 2], [[0.0; N]; 2]);
+        coverage.has_sides = false;
+        for (k, edge) in self.back.iter().enumerate() {
+            let Some(edge) = edge else { continue };
+            coverage.has_sides = true;
+            edge.steps(tables, at, &mut back[k]);
+            let (strip, level) = (&mut strips[k], self.sides[SIDE_OF[k]]);
+            let bright = if IS_END[k] { &mut ends[k / 4] } else { &mut sides[k / 4] };
+            for l in 0..N {
+                strip[l] = back[k].inside[l] - front[k].inside[l];
+                bright[l] += level * strip[l];
             }
         }
-        let by_v_across = v_open - h_sides + v_ends;
-        let by_v_along = v_across + v_sides;
-        let by_h_across = h_open - v_sides + h_ends;
-        let by_h_along = h_across + h_sides;
-        let by_slab = [
-            by_v_across,
-            by_v_across,
-            by_v_along,
-            by_v_along,
-            by_h_along,
-            by_h_along,
-            by_h_across,
-            by_h_across,
-        ];
-        let bound = [v_open, v_open, v_across, v_across, h_across, h_across, h_open, h_open];
-        for k in 0..8 {
-            let side = match &self.back[k] {
-                Some(edge) => {
-                    let side = self.sides[SIDE_OF[k]] * bound[k];
-                    edge.add_derivative(&back[k], u, v, side, &mut coverage.by);
-                    coverage.by[SIDES + SIDE_OF[k]] += strip(k) * bound[k];
-                    side
-                }
-                None => 0.0,
-            };
-            self.front[k].add_derivative(&front[k], u, v, by_slab[k] - side, &mut coverage.by);
+        // A bar's side faces are interrupted by the other bar.
+        let (mut v_open, mut h_open) = ([0.0; N], [0.0; N]);
+        let mut by_slab = [[0.0; N]; 4];
+        for l in 0..N {
+            v_open[l] = v_along[l] - h_across[l];
+            h_open[l] = h_along[l] - v_across[l];
+            coverage.value[l] = v_across[l] * v_along[l] + h_across[l] * h_along[l]
+                - v_across[l] * h_across[l]
+                + sides[0][l] * v_open[l]
+                + sides[1][l] * h_open[l]
+                + ends[0][l] * v_across[l]
+                + ends[1][l] * h_across[l];
+            by_slab[0][l] = v_open[l] - sides[1][l] + ends[0][l];
+            by_slab[1][l] = v_across[l] + sides[0][l];
+            by_slab[2][l] = h_across[l] + sides[1][l];
+            by_slab[3][l] = h_open[l] - sides[0][l] + ends[1][l];
         }
-        coverage
+        for ((i, j, _), correlation) in CORNERS.iter().zip(&self.correlations) {
+            let (one, other) = (&front[*i], &front[*j]);
+            if one.is_near && other.is_near {
+                for l in 0..N {
+                    coverage.value[l] += correlation * one.density[l] * other.density[l];
+                }
+            }
+        }
+        coverage.by = [[0.0; N]; GLOBALS];
+        let bounds = [&v_open, &v_across, &h_across, &h_open];
+        for k in 0..8 {
+            let mut weight = by_slab[k / 2];
+            if let Some(edge) = &self.back[k] {
+                let (level, bound) = (self.sides[SIDE_OF[k]], bounds[k / 2]);
+                let by_side = &mut coverage.by[SIDES + SIDE_OF[k]];
+                let mut side = [0.0; N];
+                for l in 0..N {
+                    side[l] = level * bound[l];
+                    weight[l] -= side[l];
+                    by_side[l] += strips[k][l] * bound[l];
+                }
+                if back[k].is_near {
+                    edge.add_derivatives(&back[k], at, &side, &mut coverage.by);
+                }
+            }
+            if front[k].is_near {
+                self.front[k].add_derivatives(&front[k], at, &weight, &mut coverage.by);
+            }
+        }
     }
 
     /// Of the front face's edges.

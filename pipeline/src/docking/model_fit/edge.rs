@@ -1,5 +1,6 @@
 //! A straight edge of a feature in the image, blurred.
 
+use super::chunk::{Places, Steps};
 use super::gaussian::LIMIT;
 use super::sampled::{SampledProfiles, Tables};
 use crate::docking::geometry::Seen;
@@ -82,18 +83,6 @@ pub(super) struct Edge {
     share: f64,
 }
 
-/// The blurred step at a pixel.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Step {
-    z: f64,
-    /// F: 0 far outside, 1 far inside.
-    pub(super) inside: f64,
-    /// dF/dz.
-    pub(super) density: f64,
-    /// dF/d(share of the blur on pixels).
-    by_grid: f64,
-}
-
 impl Edge {
     /// The line through a and b; `inside` is any point on its inner side.
     pub(super) fn through(
@@ -132,40 +121,80 @@ impl Edge {
         }
     }
 
-    /// The step at an ideal image point.
-    pub(super) fn step(&self, tables: &Tables, u: f64, v: f64) -> Step {
-        let distance = self.normal.0 * u + self.normal.1 * v + self.offset;
-        let z = distance * self.per_sigma;
-        if z.abs() >= LIMIT {
+    /// The step at pixels.
+    #[inline(always)]
+    pub(super) fn steps<const N: usize>(&self, tables: &Tables, at: &Places<N>, steps: &mut Steps<N>) {
+        let mut distance = [0.0; N];
+        for l in 0..N {
+            distance[l] = self.normal.0 * at.u[l] + self.normal.1 * at.v[l] + self.offset;
+            steps.z[l] = distance[l] * self.per_sigma;
+        }
+        steps.is_near = steps.z.iter().filter(|z| z.abs() < LIMIT).count() > 0;
+        if !steps.is_near {
             // Most edges are far from most pixels.
-            return Step { z, inside: if z > 0.0 { 1.0 } else { 0.0 }, density: 0.0, by_grid: 0.0 };
-        }
-        let (below, density) = tables.gaussian.at(z);
-        let mut step =
-            Step { z, inside: below + self.kurtosis * z * (z * z - 3.0) * density, density, by_grid: 0.0 };
-        if let Some(table) = self.sampled {
-            let (value, slope) = tables.profiles.at(table, distance);
-            step.inside += self.share * value;
-            step.density += self.share * slope * self.sigma;
-            step.by_grid = value;
-        }
-        step
-    }
-
-    /// Adds `weight` × the derivative of the step.
-    pub(super) fn add_derivative(&self, step: &Step, u: f64, v: f64, weight: f64, sum: &mut ByGlobals) {
-        if step.density == 0.0 {
+            for l in 0..N {
+                steps.inside[l] = if steps.z[l] > 0.0 { 1.0 } else { 0.0 };
+            }
             return;
         }
-        let slope = weight * step.density;
-        sum[GRID] += weight * step.by_grid;
-        let tau = self.along.0 * u + self.along.1 * v + self.along_offset;
-        let (a, b) = (slope * self.per_sigma * (1.0 - tau), slope * self.per_sigma * tau);
-        for (sum, (by_a, by_b)) in sum.iter_mut().zip(self.by_pose[0].iter().zip(&self.by_pose[1])) {
-            *sum += a * by_a + b * by_b;
+        let (below, density) = tables.gaussian.within(steps.z);
+        for l in 0..N {
+            let z = steps.z[l];
+            steps.inside[l] = below[l] + self.kurtosis * z * (z * z - 3.0) * density[l];
         }
-        sum[BLUR] += slope * step.z * self.by_blur.0;
-        sum[BLUR + 1] += slope * step.z * self.by_blur.1;
+        steps.density = density;
+        match self.sampled {
+            Some(table) => {
+                let (value, slope) = tables.profiles.at(table, &distance);
+                for l in 0..N {
+                    steps.inside[l] += self.share * value[l];
+                    steps.density[l] += self.share * slope[l] * self.sigma;
+                }
+                steps.by_grid = value;
+            }
+            None => steps.by_grid = [0.0; N],
+        }
+        for l in 0..N {
+            let z = steps.z[l];
+            let is_near = z.abs() < LIMIT;
+            let far = if z > 0.0 { 1.0 } else { 0.0 };
+            steps.inside[l] = if is_near { steps.inside[l] } else { far };
+            steps.density[l] = if is_near { steps.density[l] } else { 0.0 };
+            steps.by_grid[l] = if is_near { steps.by_grid[l] } else { 0.0 };
+        }
+    }
+
+    /// Adds `weight` × the derivative of the step, which must be near.
+    #[inline(always)]
+    pub(super) fn add_derivatives<const N: usize>(
+        &self,
+        steps: &Steps<N>,
+        at: &Places<N>,
+        weight: &[f64; N],
+        sum: &mut [[f64; N]; GLOBALS],
+    ) {
+        let (mut slope, mut a, mut b) = ([0.0; N], [0.0; N], [0.0; N]);
+        for l in 0..N {
+            slope[l] = weight[l] * steps.density[l];
+            let tau = self.along.0 * at.u[l] + self.along.1 * at.v[l] + self.along_offset;
+            a[l] = slope[l] * self.per_sigma * (1.0 - tau);
+            b[l] = slope[l] * self.per_sigma * tau;
+        }
+        for (sum, (by_a, by_b)) in sum.iter_mut().zip(self.by_pose[0].iter().zip(&self.by_pose[1])) {
+            for l in 0..N {
+                sum[l] += a[l] * by_a + b[l] * by_b;
+            }
+        }
+        for (k, by_blur) in [self.by_blur.0, self.by_blur.1].into_iter().enumerate() {
+            let sum = &mut sum[BLUR + k];
+            for l in 0..N {
+                sum[l] += slope[l] * steps.z[l] * by_blur;
+            }
+        }
+        let sum = &mut sum[GRID];
+        for l in 0..N {
+            sum[l] += weight[l] * steps.by_grid[l];
+        }
     }
 
     /// Correlation of two edges' blurs: n·Σ·m/(σ_n σ_m), with normals inwards.

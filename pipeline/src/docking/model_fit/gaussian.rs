@@ -6,22 +6,26 @@ pub(super) const LIMIT: f64 = 5.4;
 /// Nodes a unit. The series about the nearest node is then good to 2e-9.
 const NODES: f64 = 32.0;
 
+/// A power of two, so that a place in the table needs no check; 347 are used.
+const TABLE: usize = 512;
+
+/// Added to a number below 2^51 it leaves the nearest whole number in the last bits.
+pub(super) const WHOLE: f64 = 6_755_399_441_055_744.0;
+
 /// Φ and φ, tabulated.
 #[derive(Debug, Clone)]
 pub(super) struct Gaussian {
-    nodes: Vec<(f64, f64)>,
+    nodes: Box<[(f64, f64); TABLE]>,
 }
 
 impl Gaussian {
     pub(super) fn new() -> Self {
-        let last = (2.0 * LIMIT * NODES).ceil() as usize + 1;
-        let nodes = (0..=last)
-            .map(|k| {
-                let z = k as f64 / NODES - LIMIT;
-                let density = libm::exp(-0.5 * z * z) / std::f64::consts::TAU.sqrt();
-                (0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2), density)
-            })
-            .collect();
+        let mut nodes = Box::new([(0.0, 0.0); TABLE]);
+        for (k, node) in nodes.iter_mut().enumerate() {
+            let z = k as f64 / NODES - LIMIT;
+            let density = libm::exp(-0.5 * z * z) / std::f64::consts::TAU.sqrt();
+            *node = (0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2), density);
+        }
         Self { nodes }
     }
 
@@ -34,15 +38,33 @@ impl Gaussian {
         if z.is_nan() || z <= -LIMIT {
             return (0.0, 0.0);
         }
-        let k = ((z + LIMIT) * NODES + 0.5) as u32;
-        let at = f64::from(k) / NODES - LIMIT;
-        let (below, density) = self.nodes[k as usize];
-        let d = z - at;
-        let second = at * at - 1.0;
-        (
-            below + density * d * (1.0 + d * (-0.5 * at + d * second / 6.0)),
-            density * (1.0 + d * (-at + d * (0.5 * second - d * at * (at * at - 3.0) / 6.0))),
-        )
+        let ([below], [density]) = self.within([z]);
+        (below, density)
+    }
+
+    /// (Φ, φ) of numbers within the limits; of others, those of the nearest limit or of none.
+    #[inline(always)]
+    pub(super) fn within<const N: usize>(&self, z: [f64; N]) -> ([f64; N], [f64; N]) {
+        let (mut from_node, mut at, mut place) = ([0.0; N], [0.0; N], [0; N]);
+        for l in 0..N {
+            let low = if z[l] > -LIMIT { z[l] } else { -LIMIT };
+            let z = if low < LIMIT { low } else { LIMIT };
+            let whole = (z + LIMIT) * NODES + WHOLE;
+            place[l] = whole.to_bits();
+            at[l] = (whole - WHOLE) / NODES - LIMIT;
+            from_node[l] = z - at[l];
+        }
+        let (mut below, mut density) = ([0.0; N], [0.0; N]);
+        for l in 0..N {
+            (below[l], density[l]) = self.nodes[place[l] as usize % TABLE];
+        }
+        for l in 0..N {
+            let (at, d) = (at[l], from_node[l]);
+            let second = at * at - 1.0;
+            below[l] += density[l] * d * (1.0 + d * (-0.5 * at + d * second / 6.0));
+            density[l] *= 1.0 + d * (-at + d * (0.5 * second - d * at * (at * at - 3.0) / 6.0));
+        }
+        (below, density)
     }
 }
 

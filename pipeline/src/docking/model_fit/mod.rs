@@ -5,8 +5,15 @@
 //! common to the field, the levels belong to patches (a mark, a piece of an arm), so that a shadow or a slope of brightness
 //! biases nothing. A pixel or a patch that does not look like the model is rejected and told.
 
+#![allow(
+    clippy::needless_range_loop,
+    reason = "the pixels of a chunk are counted through several arrays at once"
+)]
+
+mod chunk;
 mod coverage;
 mod edge;
+mod equations;
 mod gaussian;
 mod lines;
 mod near;

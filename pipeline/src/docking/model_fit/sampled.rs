@@ -5,13 +5,16 @@
 //! rounded, and near 45° it is almost the continuous profile. The table holds the exact sum less the continuous profile.
 
 use super::edge::{BOX_VARIANCE, Blur, TAPS};
-use super::gaussian::Gaussian;
+use super::gaussian::{Gaussian, WHOLE};
 
 /// Nodes a pixel: with an amplitude of 0.03 at a cycle a pixel, linear interpolation is good to 2e-4.
 const NODES: f64 = 32.0;
 
 /// Beyond this distance nothing is left, px.
 const REACH_PX: f64 = 4.0;
+
+/// A power of two, so that a place in a table needs no check; 128 are used.
+const TABLE: usize = 256;
 
 /// Above this variance a sampled Gaussian is as good as a continuous one, px².
 pub(super) const SMOOTH_PX2: f64 = 1.5;
@@ -33,7 +36,8 @@ struct Table {
     /// |n_x|, |n_y|.
     normal: (f64, f64),
     blur: (f64, f64),
-    steps: Vec<f64>,
+    /// At each node, and how much more at the next one.
+    steps: [(f64, f64); TABLE],
 }
 
 /// The tables that profiles of edges are read from.
@@ -73,12 +77,16 @@ impl SampledProfiles {
     /// The nearest table, and how far off it is: 1 is as far as may be when tables are made.
     fn nearest(&self, normal: (f64, f64), blur: &Blur) -> Option<(usize, f64)> {
         let (nx, ny) = (normal.0.abs(), normal.1.abs());
-        let off = |table: &Table| {
+        let mut nearest = None;
+        for (index, table) in self.tables.iter().enumerate() {
             let turned = (table.normal.0 - nx).abs() + (table.normal.1 - ny).abs();
             let blurred = (table.blur.0 - blur.x).abs() + (table.blur.1 - blur.y).abs();
-            (turned / SAME_NORMAL).max(blurred / SAME_BLUR_PX2)
-        };
-        self.tables.iter().map(off).enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
+            let off = (turned / SAME_NORMAL).max(blurred / SAME_BLUR_PX2);
+            if nearest.is_none_or(|(_, least)| off < least) {
+                nearest = Some((index, off));
+            }
+        }
+        nearest
     }
 
     /// Makes the table of an edge's normal, if there is none near it; whether one was made.
@@ -97,17 +105,28 @@ impl SampledProfiles {
         true
     }
 
-    /// Sampled over continuous step at a distance across the edge, px, and its slope, 1/px.
-    pub(super) fn at(&self, table: usize, distance: f64) -> (f64, f64) {
+    /// Sampled over continuous step at distances across the edge, px, and its slope, 1/px.
+    #[inline(always)]
+    pub(super) fn at<const N: usize>(&self, table: usize, distance: &[f64; N]) -> ([f64; N], [f64; N]) {
         let steps = &self.tables[table].steps;
-        let place = distance.abs() * NODES;
-        if place.is_nan() || place >= (steps.len() - 1) as f64 {
-            return (0.0, 0.0);
+        let (mut from_node, mut node) = ([0.0; N], [0; N]);
+        for l in 0..N {
+            let place = distance[l].abs() * NODES;
+            let place = if place < REACH_PX * NODES { place } else { REACH_PX * NODES };
+            let whole = (place - 0.5) + WHOLE;
+            node[l] = whole.to_bits();
+            from_node[l] = place - (whole - WHOLE);
         }
-        let k = place as usize;
-        let rise = steps[k + 1] - steps[k];
-        let step = steps[k] + rise * (place - k as f64);
-        (if distance < 0.0 { -step } else { step }, rise * NODES)
+        let (mut step, mut slope) = ([0.0; N], [0.0; N]);
+        for l in 0..N {
+            (step[l], slope[l]) = steps[node[l] as usize % TABLE];
+        }
+        for l in 0..N {
+            let value = step[l] + slope[l] * from_node[l];
+            step[l] = if distance[l] < 0.0 { -value } else { value };
+            slope[l] *= NODES;
+        }
+        (step, slope)
     }
 }
 
@@ -116,15 +135,20 @@ impl Table {
         let (nx, ny) = normal;
         let variance = nx * nx * (blur.x + BOX_VARIANCE) + ny * ny * (blur.y + BOX_VARIANCE);
         let kurtosis = (nx * nx * nx * nx + ny * ny * ny * ny) / (2880.0 * variance * variance);
-        let steps = (0..=(REACH_PX * NODES) as usize)
-            .map(|k| {
-                let distance = k as f64 / NODES;
-                let z = distance / variance.sqrt();
-                let (below, density) = gaussian.at(z);
-                let continuous = below + kurtosis * z * (z * z - 3.0) * density;
-                sampled(normal, &blur.taps, distance) - continuous
-            })
-            .collect();
+        let step = |k: usize| {
+            let distance = k as f64 / NODES;
+            let z = distance / variance.sqrt();
+            let (below, density) = gaussian.at(z);
+            let continuous = below + kurtosis * z * (z * z - 3.0) * density;
+            sampled(normal, &blur.taps, distance) - continuous
+        };
+        let mut steps = [(0.0, 0.0); TABLE];
+        let mut here = step(0);
+        for (k, node) in steps.iter_mut().enumerate().take((REACH_PX * NODES) as usize) {
+            let next = step(k + 1);
+            *node = (here, next - here);
+            here = next;
+        }
         Self { normal, blur: (blur.x, blur.y), steps }
     }
 }
@@ -148,8 +172,8 @@ pub(super) fn covered(nx: f64, ny: f64, distance: f64) -> f64 {
     let (a, b) = (nx.max(ny), nx.min(ny).max(1e-4));
     let square = |x: f64| if x > 0.0 { x * x } else { 0.0 };
     let (wide, narrow) = (0.5 * (a + b), 0.5 * (a - b));
-    if distance >= wide {
-        return 1.0;
+    if distance.abs() >= wide {
+        return if distance > 0.0 { 1.0 } else { 0.0 };
     }
     (square(distance + wide) - square(distance + narrow) - square(distance - narrow)) / (2.0 * a * b)
 }
@@ -183,7 +207,7 @@ mod tests {
         let blur = Blur::on_grid(0.49, 0.49, 1.0);
         let largest = |profiles: &SampledProfiles, normal: (f64, f64)| {
             let table = profiles.find(normal, &blur).unwrap();
-            (0..400).map(|k| profiles.at(table, f64::from(k - 200) / 50.0).0.abs()).fold(0.0, f64::max)
+            (0..400).map(|k| profiles.at(table, &[f64::from(k - 200) / 50.0]).0[0].abs()).fold(0.0, f64::max)
         };
         let diagonal = (0.5f64.sqrt(), 0.5f64.sqrt());
         assert!(tables.prepare(&[(1.0, 0.0), diagonal], &blur));
@@ -196,7 +220,7 @@ mod tests {
         assert!((0.004..0.006).contains(&smooth), "{smooth}");
         // Odd in the distance, and nothing far off.
         let table = tables.profiles.find((1.0, 0.0), &blur).unwrap();
-        let at = |distance: f64| tables.profiles.at(table, distance).0;
+        let at = |distance: f64| tables.profiles.at(table, &[distance]).0[0];
         assert!((at(0.3) + at(-0.3)).abs() < 1e-12 && at(3.9).abs() < 1e-4 && at(5.0) == 0.0);
     }
 }

@@ -120,6 +120,8 @@ struct Search<'a> {
     flat_px: f64,
     /// Marks so near the cross in the image that each must keep off the other.
     crowded: Vec<usize>,
+    /// A circle about each mark with what its blur reaches: centre and radius, m.
+    about_marks: Vec<([f64; 2], f64)>,
 }
 
 impl Samples {
@@ -173,14 +175,16 @@ impl Samples {
             return;
         };
         let is_clear = |u: f64, v: f64, y1: f64, y2: f64| {
-            let inside_px = (target.plate_radius_m - libm::hypot(y1, y2)) * search.plate_scale;
+            let inside_px = (target.plate_radius_m - norm(y1, y2)) * search.plate_scale;
             inside_px > search.reach_px
-                && !search.is_on_marks(y1, y2, 0..target.marks.len())
                 && !search.is_near_cross(u, v)
+                && !search.is_on_marks(y1, y2, 0..target.marks.len())
         };
         let Some(shadow) = finder.find(field, camera, target, tables, view, blur, is_clear) else { return };
-        for pixel in &mut self.pixels {
-            pixel.shadow_dn = shadow.depth_dn * shadow.at(tables, pixel.u, pixel.v);
+        let mut shares = Vec::new();
+        shadow.shares(tables, self.pixels.iter().map(|pixel| (pixel.u, pixel.v)), &mut shares);
+        for (pixel, share) in self.pixels.iter_mut().zip(&shares) {
+            pixel.shadow_dn = shadow.depth_dn * share;
         }
         for patch in &mut self.patches {
             let Feature::Mark(index) = patch.feature else { continue };
@@ -204,8 +208,8 @@ impl Samples {
             return;
         }
         let edge_px = search.reach_px;
-        self.leave_out(|patch, pixel| {
-            let share = shadow.at(tables, pixel.u, pixel.v);
+        self.leave_out(|patch, pixel, index| {
+            let share = shares[index];
             match patch.feature {
                 Feature::Mark(_) => share > TOUCHED,
                 Feature::Cross => {
@@ -216,14 +220,14 @@ impl Samples {
         });
     }
 
-    /// Drops pixels, and patches that are left with too few.
-    fn leave_out(&mut self, is_out: impl Fn(&Patch, &Sample) -> bool) {
+    /// Drops pixels, of which the place among all is told too, and patches that are left with too few.
+    fn leave_out(&mut self, is_out: impl Fn(&Patch, &Sample, usize) -> bool) {
         let mut kept = 0;
         for patch in &mut self.patches {
             let first = kept;
             for index in patch.first..patch.end {
                 let pixel = self.pixels[index];
-                if !is_out(patch, &pixel) {
+                if !is_out(patch, &pixel, index) {
                     self.pixels[kept] = pixel;
                     kept += 1;
                 }
@@ -391,6 +395,11 @@ impl Samples {
     }
 }
 
+/// Length of a vector of moderate size; libm's takes ten times as long, for any size.
+fn norm(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
+}
+
 /// Narrows an interval of x to where low ≤ slope x + offset ≤ high.
 fn narrow(span: &mut (f64, f64), slope: f64, offset: f64, low: f64, high: f64) {
     if slope.abs() < 1e-9 {
@@ -459,6 +468,14 @@ impl<'a> Search<'a> {
             flat_thin: if expected > MANY_SAMPLES { FLAT_THIN * thin } else { thin },
             flat_px: (reach_px - slack_px - FLAT_FROM * blur_px).max(0.0),
             crowded: Vec::new(),
+            about_marks: target
+                .marks
+                .iter()
+                .map(|[a, _, c, _]| {
+                    let half_diagonal = 0.5 * libm::hypot(a[0] - c[0], a[1] - c[1]);
+                    ([0.5 * (a[0] + c[0]), 0.5 * (a[1] + c[1])], half_diagonal + reach_px / plate_scale)
+                })
+                .collect(),
         };
         search.crowded = (0..target.marks.len())
             .filter(|index| {
@@ -489,7 +506,7 @@ impl<'a> Search<'a> {
     /// Blurred share of what lies beyond the plate's rim, and the distance inside the rim, px; `None` too near to it.
     fn beyond_rim(&self, u: f64, v: f64) -> Option<(f64, f64)> {
         let (y1, y2) = self.view.on_plane(u, v, 0.0)?;
-        let inside_px = (self.target.plate_radius_m - libm::hypot(y1, y2)) * self.plate_scale;
+        let inside_px = (self.target.plate_radius_m - norm(y1, y2)) * self.plate_scale;
         (inside_px > INSIDE_RIM_PX).then(|| (self.tables.gaussian.at(-inside_px / self.blur_px).0, inside_px))
     }
 
@@ -499,7 +516,7 @@ impl<'a> Search<'a> {
         let Some((y1, y2)) = self.view.on_plane(u, v, cross.height_m) else { return f64::INFINITY };
         let bar = |half_1: f64, half_2: f64| {
             let (a, b) = (y1.abs() - half_1, y2.abs() - half_2);
-            if a > 0.0 && b > 0.0 { libm::hypot(a, b) } else { a.max(b) }
+            if a > 0.0 && b > 0.0 { norm(a, b) } else { a.max(b) }
         };
         let (half, length) = (0.5 * cross.width_m, cross.half_length_m);
         bar(half, length).min(bar(length, half)) * self.cross_scale
@@ -520,10 +537,9 @@ impl<'a> Search<'a> {
     /// Whether a point of the plate lies on one of some marks or within reach of it.
     fn is_on_marks(&self, y1: f64, y2: f64, mut marks: impl Iterator<Item = usize>) -> bool {
         marks.any(|index| {
-            let [a, _, c, _] = self.target.marks[index];
-            let centre = [0.5 * (a[0] + c[0]), 0.5 * (a[1] + c[1])];
-            let half_diagonal = 0.5 * libm::hypot(a[0] - c[0], a[1] - c[1]);
-            libm::hypot(y1 - centre[0], y2 - centre[1]) < half_diagonal + self.reach_px / self.plate_scale
+            let (centre, reach_m) = self.about_marks[index];
+            let (a, b) = (y1 - centre[0], y2 - centre[1]);
+            a * a + b * b < reach_m * reach_m
         })
     }
 
@@ -532,7 +548,7 @@ impl<'a> Search<'a> {
         let Some([a, b]) = self.post else { return false };
         let (du, dv) = (b.0 - a.0, b.1 - a.1);
         let along = (((u - a.0) * du + (v - a.1) * dv) / (du * du + dv * dv)).clamp(0.0, 1.0);
-        let off = libm::hypot(u - a.0 - along * du, v - a.1 - along * dv);
+        let off = norm(u - a.0 - along * du, v - a.1 - along * dv);
         off < 0.5 * self.target.cross.post_width_m * self.cross_scale + 0.6 * self.reach_px
     }
 }

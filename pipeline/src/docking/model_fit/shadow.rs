@@ -6,7 +6,9 @@
 
 use contract::docking::{Field, TargetModel};
 use nalgebra::{Matrix2, Vector2};
+use pulp::{Arch, Simd, WithSimd};
 
+use super::chunk::{CHUNK, Places};
 use super::coverage::MarkImage;
 use super::edge::Blur;
 use super::sampled::Tables;
@@ -74,8 +76,60 @@ impl Shadow {
 
     /// Blurred share of the shadow at an ideal image point.
     pub(super) fn at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
-        let lit = self.images.iter().fold(1.0, |lit, image| lit * (1.0 - image.value_at(tables, u, v)));
-        1.0 - lit
+        let [share] = self.shares_at(tables, &Places { u: [u], v: [v] });
+        share
+    }
+
+    /// The same at many points, into `shares`.
+    pub(super) fn shares(
+        &self,
+        tables: &Tables,
+        points: impl Iterator<Item = (f64, f64)>,
+        shares: &mut Vec<f64>,
+    ) {
+        shares.clear();
+        let mut points = points.peekable();
+        let mut at = Places { u: [0.0; CHUNK], v: [0.0; CHUNK] };
+        while points.peek().is_some() {
+            let (mut count, mut last) = (0, (0.0, 0.0));
+            for l in 0..CHUNK {
+                if let Some(point) = points.next() {
+                    (count, last) = (l + 1, point);
+                }
+                (at.u[l], at.v[l]) = last;
+            }
+            let found = Arch::new().dispatch(Shares { shadow: self, tables, at: &at });
+            shares.extend_from_slice(&found[..count]);
+        }
+    }
+
+    #[inline(always)]
+    fn shares_at<const N: usize>(&self, tables: &Tables, at: &Places<N>) -> [f64; N] {
+        let mut lit = [1.0; N];
+        for image in &self.images {
+            let covered = image.values(tables, at);
+            for l in 0..N {
+                lit[l] *= 1.0 - covered[l];
+            }
+        }
+        lit.map(|lit| 1.0 - lit)
+    }
+}
+
+/// The shares of a shadow at a chunk of points.
+struct Shares<'a> {
+    shadow: &'a Shadow,
+    tables: &'a Tables,
+    at: &'a Places<CHUNK>,
+}
+
+impl WithSimd for Shares<'_> {
+    type Output = [f64; CHUNK];
+
+    // Inline, all of it: only so is it compiled for the registers of the machine.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        self.shadow.shares_at(self.tables, self.at)
     }
 }
 
@@ -114,10 +168,13 @@ impl ShadowFinder {
         self.collect(field, camera, target, view, is_clear)?;
         let mut tangents = self.search(target)?;
         let shadow = Shadow::new(target, view, blur, tables, tangents)?;
+        let [mut shares, mut to_first, mut to_second] = [const { Vec::new() }; 3];
         // Only pixels about the shadow's edges place it; the others say what is light and dark.
         let near: Vec<PlatePixel> = {
-            let is_edge = |p: &&PlatePixel| (0.002..0.998).contains(&shadow.at(tables, p.u, p.v));
-            let edges: Vec<PlatePixel> = self.pixels.iter().filter(is_edge).copied().collect();
+            shadow.shares(tables, places(&self.pixels), &mut shares);
+            let is_edge = |share: &f64| (0.002..0.998).contains(share);
+            let edges: Vec<PlatePixel> =
+                self.pixels.iter().zip(&shares).filter(|(_, s)| is_edge(s)).map(|(p, _)| *p).collect();
             let stride = edges.len().div_ceil(EDGE_PIXELS).max(1);
             let others = self.pixels.len().div_ceil(EDGE_PIXELS / 2).max(1);
             edges.iter().step_by(stride).chain(self.pixels.iter().step_by(others)).copied().collect()
@@ -127,14 +184,15 @@ impl ShadowFinder {
             let along = [Vector2::x(), Vector2::y()]
                 .map(|axis| Shadow::new(target, view, blur, tables, tangents + axis * STEP));
             let [Some(first), Some(second)] = along else { return None };
-            let shares: Vec<f64> = near.iter().map(|p| here.at(tables, p.u, p.v)).collect();
+            here.shares(tables, places(&near), &mut shares);
+            first.shares(tables, places(&near), &mut to_first);
+            second.shares(tables, places(&near), &mut to_second);
             let (light, depth) = levels(&near, &shares)?;
             let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
-            for (pixel, share) in near.iter().zip(&shares) {
-                let slope = Vector2::new(
-                    first.at(tables, pixel.u, pixel.v) - share,
-                    second.at(tables, pixel.u, pixel.v) - share,
-                ) * (-depth / STEP);
+            for (pixel, ((share, first), second)) in
+                near.iter().zip(shares.iter().zip(&to_first).zip(&to_second))
+            {
+                let slope = Vector2::new(first - share, second - share) * (-depth / STEP);
                 normal += slope * slope.transpose();
                 right += slope * (pixel.dn - light + depth * share);
             }
@@ -147,7 +205,7 @@ impl ShadowFinder {
             }
         }
         let mut shadow = Shadow::new(target, view, blur, tables, tangents)?;
-        let shares: Vec<f64> = near.iter().map(|p| shadow.at(tables, p.u, p.v)).collect();
+        shadow.shares(tables, places(&near), &mut shares);
         shadow.depth_dn = levels(&near, &shares)?.1;
         (shadow.depth_dn > 0.0).then_some(shadow)
     }
@@ -253,6 +311,11 @@ impl ShadowFinder {
         let height = target.cross.height_m - 0.5 * target.cross.thickness_m;
         best.1.filter(|_| best.0 > LEAST_GAIN * left).map(|centre| centre / -height)
     }
+}
+
+/// Image points of pixels.
+fn places(pixels: &[PlatePixel]) -> impl Iterator<Item = (f64, f64)> {
+    pixels.iter().map(|pixel| (pixel.u, pixel.v))
 }
 
 /// Light plate and depth of the shadow by least squares, DN.

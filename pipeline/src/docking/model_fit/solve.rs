@@ -3,9 +3,12 @@
 use std::ops::Range;
 
 use nalgebra::{SMatrix, SVector, Vector3};
+use pulp::Arch;
 
-use super::coverage::{Coverage, CrossImage, MarkImage};
+use super::chunk::{CHUNK, FIRST_GLOBAL, Gram};
+use super::coverage::{CrossImage, MarkImage};
 use super::edge::{BLUR, Blur, ByGlobals, GLOBALS, GRID, POSE, SIDES};
+use super::equations::{Cover, Image, Look, NormalEquations, Work, regressors};
 use super::lines::{LinePixel, Lines, along_lines};
 use super::sampled::Tables;
 use super::samples::{Feature, LOCALS, Patch, Sample, Samples};
@@ -29,21 +32,11 @@ const SHARE_RANGE: (f64, f64) = (-0.5, 2.0);
 /// A step moves no edge farther than this, px.
 const LONGEST_STEP_PX: f64 = 1.5;
 
-/// Coordinates within a patch are counted in these, px: levels and slopes are then alike in size.
-const PATCH_UNIT_PX: f64 = 10.0;
-
 /// Pixels of a patch that are looked at in any case.
 const LEAST_OF_PATCH: usize = 3 * LOCALS;
 
 /// A step that promises less than this part of the noise's variance and does not keep it is the last.
 const UNSEEN_STEP: f64 = 0.5;
-
-/// Columns of a row of the equations: DN, plate, two slopes, beyond the rim, coverage; then derivatives of the coverage.
-const ROW: usize = 1 + LOCALS + GLOBALS;
-const COVERAGE: usize = LOCALS;
-/// A row without the derivatives by the side faces, which most pixels do not show.
-const SHORT_ROW: usize = 1 + LOCALS + SIDES;
-const FIRST_GLOBAL: usize = 1 + LOCALS;
 
 /// How a solution is looked for.
 #[derive(Debug, Clone)]
@@ -107,6 +100,13 @@ impl Images {
                 .collect(),
             cross: CrossImage::new(scene.target, &view, &pose.position_m, blur, sides, scene.tables)?,
         })
+    }
+
+    fn of(&self, feature: Feature) -> Option<Image<'_>> {
+        match feature {
+            Feature::Mark(index) => self.marks[index].as_ref().map(Image::Mark),
+            Feature::Cross => Some(Image::Cross(&self.cross)),
+        }
     }
 
     fn shift(&self, by: &ByGlobals) -> f64 {
@@ -196,26 +196,24 @@ pub(super) fn covariance(
     let centre = View::new(scene.camera, &to_pose(globals)).see(&Vector3::zeros())?;
     let Some(turn) = along_lines(&centre.by_pose) else { return Some(inverse * evaluation.variance()) };
     lines.clear();
+    let mut work = Work::NEW;
     for patch in samples.patches.iter().filter(|patch| patch.is_used) {
-        let level = patch.levels[COVERAGE - 1];
-        for pixel in samples.pixels[patch.first..patch.end].iter().filter(|pixel| pixel.is_used) {
-            let mut coverage = match patch.feature {
-                Feature::Mark(index) => images.marks[index].as_ref()?.at(scene.tables, pixel.u, pixel.v),
-                Feature::Cross => images.cross.at(scene.tables, pixel.u, pixel.v),
-            };
-            coverage.value += globals[GRID] * pixel.corner;
-            coverage.by[GRID] += pixel.corner;
-            let [_, levels @ ..] = regressors(patch, pixel.u, pixel.v, pixel.beyond_rim, coverage.value);
-            let levels = SVector::from(levels);
-            let slopes = Globals::from(coverage.by);
-            let shift = level * slopes.fixed_rows::<POSE>(0).dot(&turn);
-            lines.add(&LinePixel {
-                row: pixel.row,
-                residual: residual(patch, pixel),
-                effects: [shift, 1.0],
-                slopes: (slopes - patch.levels_by_globals.transpose() * levels) * level,
-                levels,
-            });
+        let level = patch.levels[LOCALS - 1];
+        let look = Look { image: images.of(patch.feature)?, tables: scene.tables, share: globals[GRID] };
+        for pixels in samples.pixels[patch.first..patch.end].chunks(CHUNK) {
+            let coverage = Arch::new().dispatch(Cover { look, pixels, work: &mut work });
+            for (l, pixel) in pixels.iter().enumerate().filter(|(_, pixel)| pixel.is_used) {
+                let levels = SVector::from(regressors(patch, pixel, coverage.value[l]));
+                let slopes = Globals::from_fn(|i, _| coverage.by[i][l]);
+                let shift = level * slopes.fixed_rows::<POSE>(0).dot(&turn);
+                lines.add(&LinePixel {
+                    row: pixel.row,
+                    residual: residual(patch, pixel),
+                    effects: [shift, 1.0],
+                    slopes: (slopes - patch.levels_by_globals.transpose() * levels) * level,
+                    levels,
+                });
+            }
         }
         lines.close(&patch.levels_inverse);
     }
@@ -270,44 +268,18 @@ fn evaluate(
         freedom: -(POSE as f64),
     };
     let Samples { pixels, patches, .. } = samples;
+    let mut work = Work::NEW;
     for patch in patches.iter_mut() {
         let origin = pixels[patch.first].dn;
-        let known = patch.levels[COVERAGE - 1];
-        let mut gram = [[0.0; ROW]; ROW];
-        patch.used_samples = 0;
+        let look = Look { image: images.of(patch.feature)?, tables: scene.tables, share: globals[GRID] };
         // A small patch keeps enough to know its levels by.
         let stride = search.stride.min((patch.end - patch.first) / LEAST_OF_PATCH).max(1);
-        for pixel in pixels[patch.first..patch.end].iter_mut().step_by(stride) {
-            let (u, v) = (pixel.u, pixel.v);
-            let mut coverage: Coverage = match patch.feature {
-                Feature::Mark(index) => images.marks[index].as_ref()?.at(scene.tables, u, v),
-                Feature::Cross => images.cross.at(scene.tables, u, v),
-            };
-            coverage.value += globals[GRID] * pixel.corner;
-            coverage.by[GRID] += pixel.corner;
-            pixel.coverage = coverage.value;
-            if !pixel.is_used {
-                continue;
-            }
-            patch.used_samples += 1;
-            let [_, one, across, down, rim, covered] =
-                regressors(patch, pixel.u, pixel.v, pixel.beyond_rim, coverage.value);
-            let mut row = [0.0; ROW];
-            // A shadow darkens the plate where the feature does not hide it.
-            row[0] = pixel.dn + pixel.shadow_dn * (1.0 - coverage.value) - origin;
-            row[1..=LOCALS].copy_from_slice(&[one, across, down, rim, covered]);
-            // The feature stands over the darker plate by so much more, in units of its level over the light one.
-            let over = if known > 0.0 { 1.0 + pixel.shadow_dn / known } else { 1.0 };
-            for (slot, by) in row[FIRST_GLOBAL..].iter_mut().zip(&coverage.by) {
-                *slot = over * by;
-            }
-            if row[SHORT_ROW..].iter().all(|by_side| *by_side == 0.0) {
-                accumulate::<SHORT_ROW>(&mut gram, &row);
-            } else {
-                accumulate::<ROW>(&mut gram, &row);
-            }
-        }
-        fold(patch, &gram, origin, &mut sum);
+        let pixels = &mut pixels[patch.first..patch.end];
+        let (centre, level) = (patch.centre, patch.levels[LOCALS - 1]);
+        let equations = NormalEquations { look, centre, level, pixels, origin, stride, work: &mut work };
+        let (gram, used) = Arch::new().dispatch(equations);
+        patch.used_samples = used;
+        fold(patch, gram, origin, &mut sum);
     }
     for i in 0..GLOBALS {
         if !search.free.contains(&i) {
@@ -324,27 +296,10 @@ fn evaluate(
     Some(sum)
 }
 
-/// Adds the products of the first N columns of a row, the upper triangle and a little of the lower: from an even column on, so
-/// that the sums go in pairs.
-fn accumulate<const N: usize>(gram: &mut [[f64; ROW]; ROW], row: &[f64; ROW]) {
-    for i in 0..N {
-        let factor = row[i];
-        for j in (i & !1)..N {
-            gram[i][j] += factor * row[j];
-        }
-    }
-}
-
-/// The regressors of a pixel's levels, after a place for its DN.
-fn regressors(patch: &Patch, u: f64, v: f64, beyond_rim: f64, coverage: f64) -> [f64; 1 + LOCALS] {
-    let (across, down) = ((u - patch.centre.0) / PATCH_UNIT_PX, (v - patch.centre.1) / PATCH_UNIT_PX);
-    [0.0, 1.0, across, down, beyond_rim, coverage]
-}
-
 /// What a pixel is over what it should be by the patch's levels and its last coverage, DN.
 pub(super) fn residual(patch: &Patch, pixel: &Sample) -> f64 {
-    let row = regressors(patch, pixel.u, pixel.v, pixel.beyond_rim, pixel.coverage);
-    let model: f64 = row[1..].iter().zip(&patch.levels).map(|(x, level)| x * level).sum();
+    let regressors = regressors(patch, pixel, pixel.coverage);
+    let model: f64 = regressors.iter().zip(&patch.levels).map(|(x, level)| x * level).sum();
     pixel.dn + pixel.shadow_dn * (1.0 - pixel.coverage) - model
 }
 
@@ -352,8 +307,8 @@ pub(super) fn residual(patch: &Patch, pixel: &Sample) -> f64 {
 ///
 /// With L the regressors of the levels ℓ, A = Lᵀ L and D the derivatives of the coverage, the feature's level a being one of ℓ:
 /// information a² (DᵀD − DᵀL A⁻¹ LᵀD), gradient a Dᵀ(y − L ℓ).
-fn fold(patch: &mut Patch, gram: &[[f64; ROW]; ROW], origin: f64, sum: &mut Evaluation) {
-    let mut normal = SMatrix::<f64, LOCALS, LOCALS>::from_fn(|i, j| gram[1 + i.min(j)][1 + i.max(j)]);
+fn fold(patch: &mut Patch, gram: &Gram, origin: f64, sum: &mut Evaluation) {
+    let mut normal = SMatrix::<f64, LOCALS, LOCALS>::from_fn(|i, j| gram.at(1 + i.min(j), 1 + i.max(j)));
     for i in 0..LOCALS {
         // A level that no pixel of the patch shows is zero; another is hardly touched.
         normal[(i, i)] = if normal[(i, i)] > 1e-9 { normal[(i, i)] * (1.0 + 1e-9) } else { 1.0 };
@@ -362,9 +317,9 @@ fn fold(patch: &mut Patch, gram: &[[f64; ROW]; ROW], origin: f64, sum: &mut Eval
         patch.is_used = false;
         return;
     };
-    let right = SVector::<f64, LOCALS>::from_fn(|i, _| gram[0][1 + i]);
+    let right = SVector::<f64, LOCALS>::from_fn(|i, _| gram.at(0, 1 + i));
     let levels = normal * right;
-    patch.squares = (gram[0][0] - right.dot(&levels)).max(0.0);
+    patch.squares = (gram.at(0, 0) - right.dot(&levels)).max(0.0);
     patch.levels = levels.into();
     patch.levels[0] += origin;
     if !patch.is_used {
@@ -373,18 +328,18 @@ fn fold(patch: &mut Patch, gram: &[[f64; ROW]; ROW], origin: f64, sum: &mut Eval
     sum.objective += patch.squares;
     sum.squares += patch.squares;
     sum.freedom += patch.used_samples as f64 - LOCALS as f64;
-    let feature = levels[COVERAGE - 1];
+    let feature = levels[LOCALS - 1];
     if feature <= 0.0 {
         // Darker than the plate: whatever this is, the feature is not where the patch was looked for.
         return;
     }
-    let mixed = SMatrix::<f64, LOCALS, GLOBALS>::from_fn(|i, j| gram[1 + i][FIRST_GLOBAL + j]);
+    let mixed = SMatrix::<f64, LOCALS, GLOBALS>::from_fn(|i, j| gram.at(1 + i, FIRST_GLOBAL + j));
     patch.levels_inverse = normal;
     patch.levels_by_globals = normal * mixed;
-    let eliminated = mixed.transpose() * patch.levels_by_globals;
     for i in 0..GLOBALS {
         for j in i..GLOBALS {
-            let term = feature * feature * (gram[FIRST_GLOBAL + i][FIRST_GLOBAL + j] - eliminated[(i, j)]);
+            let eliminated = mixed.column(i).dot(&patch.levels_by_globals.column(j));
+            let term = feature * feature * (gram.at(FIRST_GLOBAL + i, FIRST_GLOBAL + j) - eliminated);
             sum.information[(i, j)] += term;
             if i != j {
                 sum.information[(j, i)] += term;
@@ -393,6 +348,6 @@ fn fold(patch: &mut Patch, gram: &[[f64; ROW]; ROW], origin: f64, sum: &mut Eval
     }
     let residual = mixed.transpose() * levels;
     for i in 0..GLOBALS {
-        sum.gradient[i] += feature * (gram[0][FIRST_GLOBAL + i] - residual[i]);
+        sum.gradient[i] += feature * (gram.at(0, FIRST_GLOBAL + i) - residual[i]);
     }
 }

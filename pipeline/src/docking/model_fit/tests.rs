@@ -1,5 +1,6 @@
 //! The estimator on images made by another route ([`render`]).
 
+mod registers;
 mod render;
 
 use contract::docking::{Field, Lines, MarkUse, NoPose, Pose};
@@ -316,7 +317,8 @@ fn what_is_not_the_target_is_no_pose() {
 
 #[test]
 fn derivatives_are_those_of_finite_differences() {
-    use super::coverage::{CrossImage, MarkImage};
+    use super::chunk::{Coverages, Places, Steps};
+    use super::coverage::{CrossImage, EDGES, MarkImage};
     use super::edge::{BLUR, Blur, GLOBALS, SIDES};
     use super::sampled::Tables;
     use crate::docking::geometry::View;
@@ -337,7 +339,11 @@ fn derivatives_are_those_of_finite_differences() {
         let sides = [0, 1, 2, 3].map(|k| g[SIDES + k]);
         let cross = CrossImage::new(&target, &view, &pose.position_m, blur, sides, &tables).unwrap();
         let mark = MarkImage::new(&target.marks[1], &view, blur, &tables).unwrap();
-        [cross.at(&tables, u, v), mark.at(&tables, u, v)]
+        let (at, mut steps) = (Places { u: [u], v: [v] }, [const { Steps::FAR }; EDGES]);
+        let mut coverages = [const { Coverages::NONE }; 2];
+        cross.cover(&tables, &at, &mut steps, &mut coverages[0]);
+        mark.cover(&tables, &at, &mut steps, &mut coverages[1]);
+        coverages.map(|coverage| (coverage.value[0], coverage.by.map(|by| by[0])))
     };
     let view = View::new(&model, &truth);
     for (y1, y2, y3) in [
@@ -355,14 +361,14 @@ fn derivatives_are_those_of_finite_differences() {
             let (plus, minus) =
                 (evaluate(&(at + step), seen.u, seen.v), evaluate(&(at - step), seen.u, seen.v));
             for k in 0..2 {
-                let numeric = (plus[k].value - minus[k].value) / 2e-6;
+                let numeric = (plus[k].0 - minus[k].0) / 2e-6;
                 // Neglected: the derivatives of the Edgeworth and corner terms, a percent of the slope of an edge
                 // (0.5 a px, 1000 px/rad).
                 let tolerance = if i < 6 { 20.0 } else { 0.03 };
                 assert!(
-                    (analytic[k].by[i] - numeric).abs() < tolerance,
+                    (analytic[k].1[i] - numeric).abs() < tolerance,
                     "{k} {i}: {} and {numeric}",
-                    analytic[k].by[i]
+                    analytic[k].1[i]
                 );
             }
         }
