@@ -169,17 +169,19 @@ pub(crate) fn fly(plan: &Plan, number: u64) -> Result<Flown, Box<dyn Error + Sen
 /// Course and Sun of an approach, drawn again until marks and cross are in the field from beginning to end.
 fn draw(plan: &Plan, lens: &Lens, number: u64) -> Result<(ApproachConfig, SunConfig), SimError> {
     let mut stream = Seed { seed: plan.seed, case: 0 }.stream(number, Effect::AttitudeControl, 0);
-    let model = sim::scene::docking::TargetFile::built_in(TARGET)
-        .ok_or(SimError::Parameter { field: "target", value: TARGET.to_owned(), expected: "a built-in one" })?
-        .model();
-    let corners = corners(&model);
+    let target = sim::scene::docking::TargetFile::built_in(TARGET).ok_or(SimError::Parameter {
+        field: "target",
+        value: TARGET.to_owned(),
+        expected: "a built-in one",
+    })?;
+    let corners = corners(&target.model());
     let camera = camera(lens.focal_px);
     let approach = loop {
         let config = match plan.course {
             Course::Steady => steady(plan, lens, &mut stream),
             Course::Swinging => swinging(lens, &mut stream),
         };
-        let Ok(approach) = Approach::new(&config, 0.0) else { continue };
+        let Ok(approach) = Approach::new(&config, target.contact.camera_to_disk_m) else { continue };
         let is_in_field = |at_s: f64| are_inside(&camera, &approach.at(at_s).pose, &corners, MARGIN_PX);
         if [0.0, 0.5, 1.0].iter().all(|part| is_in_field(part * plan.duration_s())) {
             break config;

@@ -275,6 +275,14 @@ impl CrossImage {
         }
     }
 
+    /// The coverage alone, at one point.
+    pub(super) fn value_at(&self, tables: &Tables, u: f64, v: f64) -> f64 {
+        let mut steps = [const { Steps::FAR }; EDGES];
+        let mut coverages = Coverages::NONE;
+        self.cover(tables, &Places { u: [u], v: [v] }, &mut steps, &mut coverages);
+        coverages.value[0]
+    }
+
     /// Of the front face's edges.
     pub(super) fn normals(&self) -> impl Iterator<Item = (f64, f64)> {
         self.front.iter().map(Edge::normal)

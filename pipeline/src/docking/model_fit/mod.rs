@@ -80,6 +80,10 @@ const MODEL_ERROR: f64 = 0.005;
 /// A mark fainter than this part of the median mark is not seen.
 const FAINTEST_MARK: f64 = 0.15;
 
+/// A mark is darker than the others when its level is below their median by so many standard deviations, its own or those of the
+/// others' scatter: a part of it is in shadow, and what is left lies off its middle.
+const DARKER_MARK: f64 = 4.0;
+
 /// The middle feature's level over the noise below which nothing is seen at all.
 const FAINTEST_LEVEL: f64 = 4.0;
 
@@ -224,9 +228,9 @@ impl ModelFit {
         prepare(&mut self.tables, camera, target, &globals)?;
         let scene = Scene { camera, target, tables: &self.tables };
         let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
+        let cross_dn = samples.cross_dn();
         collect(samples, field, &scene, &globals, blur, 0.0, COLLECTED)?;
-        let view = View::new(camera, &to_pose(&globals));
-        samples.shade(&mut self.shadows, field, camera, target, &self.tables, &view, blur);
+        samples.shade(&mut self.shadows, field, &scene, &globals, cross_dn);
         let search = Search { extra_blur_px2: 0.0, free: 0..GLOBALS, stride: 1, steps: 12, decrement: 2e-2 };
         let stride = samples.pixels.len().div_ceil(MIDDLE_SAMPLES);
         if stride > 1 {
@@ -300,6 +304,9 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
         patches.iter().filter(|p| p.feature != Feature::Cross).map(|p| p.levels[samples::LOCALS - 1]),
     );
     let usual_mark = median(mark_levels).unwrap_or(0.0);
+    mark_levels.iter_mut().for_each(|level| *level = (*level - usual_mark).abs());
+    // Of a normal distribution the median of the absolute deviations is 0.6745 σ.
+    let scatter_of_marks = median(mark_levels).unwrap_or(0.0) / 0.6745;
 
     let (mut is_changed, mut changed) = (false, 0);
     for patch in patches.iter_mut() {
@@ -323,7 +330,12 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
         let is_like_the_others = variance <= tolerated * (1.0 + PATCH_GATE * (2.0 / all as f64).sqrt())
             && used as f64 >= (1.0 - MOST_REJECTED) * all as f64;
         let is_seen = match patch.feature {
-            Feature::Mark(_) => level > FAINTEST_MARK * usual_mark && level > 0.0,
+            Feature::Mark(_) => {
+                let sigma =
+                    (typical * patch.levels_inverse[(samples::LOCALS - 1, samples::LOCALS - 1)]).sqrt();
+                let is_darker = level < usual_mark - DARKER_MARK * sigma.max(scatter_of_marks);
+                level > FAINTEST_MARK * usual_mark && level > 0.0 && !is_darker
+            }
             Feature::Cross => level > 0.0,
         };
         // Pixels that were rejected make the rest look well: what was rejected once must be clean to come back.

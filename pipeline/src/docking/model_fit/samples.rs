@@ -6,11 +6,13 @@ use contract::PixelPoint;
 use contract::docking::{Field, MarkUse, TargetModel};
 use nalgebra::{SMatrix, Vector3};
 
-use super::edge::{BOX_VARIANCE, Blur, GLOBALS};
+use super::coverage::CrossImage;
+use super::edge::{BLUR, BOX_VARIANCE, Blur, GLOBALS, SIDES};
 use super::sampled::Tables;
 use super::shadow::ShadowFinder;
+use super::solve::{Globals, Scene};
 use crate::CameraModel;
-use crate::docking::geometry::View;
+use crate::docking::geometry::{View, to_pose};
 
 /// A pixel that is looked at.
 #[derive(Debug, Clone, Copy)]
@@ -87,6 +89,10 @@ const TOUCHED: f64 = 5e-4;
 /// that the cross leaves open is not the product of the two blurred shares: for parallel edges it is off by a quarter.
 const EDGE_OF_SHADOW: RangeInclusive<f64> = 0.01..=0.99;
 
+/// How far from the cross's edge, in σ of its blur, the plate's brightness is told from what the cross sheds on it: a shadow that
+/// hides almost behind the cross is seen there alone. At 1.6 σ that is a twentieth of the cross's level, known to a DN or so.
+const BESIDE_CROSS: f64 = 1.6;
+
 /// Collects samples; owns its buffers.
 #[derive(Debug, Default)]
 pub(super) struct Samples {
@@ -158,29 +164,51 @@ impl Samples {
         Some(())
     }
 
+    /// Mean level of the cross over the plate, DN; 0 where no piece of it was solved for.
+    pub(super) fn cross_dn(&self) -> f64 {
+        let levels = self
+            .patches
+            .iter()
+            .filter(|patch| patch.feature == Feature::Cross && patch.is_used)
+            .map(|patch| patch.levels[LOCALS - 1]);
+        let (sum, count) = levels.fold((0.0, 0.0), |(sum, count), level| (sum + level, count + 1.0));
+        if sum > 0.0 { sum / count } else { 0.0 }
+    }
+
     /// Looks for the shadow of the cross: what it takes from the plate is noted pixel by pixel, and marks on which it falls are
-    /// not used.
-    #[allow(clippy::too_many_arguments, reason = "the scene, and what to look with")]
+    /// not used. `cross_dn`: how much brighter than the plate the cross is.
     pub(super) fn shade(
         &mut self,
         finder: &mut ShadowFinder,
         field: &Field,
-        camera: &CameraModel,
-        target: &TargetModel,
-        tables: &Tables,
-        view: &View,
-        blur: Blur,
+        scene: &Scene,
+        globals: &Globals,
+        cross_dn: f64,
     ) {
-        let Some(search) = Search::new(field, camera, target, view, tables, blur, 0.0, f64::INFINITY) else {
-            return;
-        };
-        let is_clear = |u: f64, v: f64, y1: f64, y2: f64| {
+        let Scene { camera, target, tables } = *scene;
+        let pose = to_pose(globals);
+        let view = &View::new(camera, &pose);
+        let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
+        let sides = [0, 1, 2, 3].map(|k| globals[SIDES + k]);
+        let cross = CrossImage::new(target, view, &pose.position_m, blur, sides, tables);
+        let search = Search::new(field, camera, target, view, tables, blur, 0.0, f64::INFINITY);
+        let (Some(cross), Some(search)) = (cross, search) else { return };
+        let lit_dn = |u: f64, v: f64, y1: f64, y2: f64| {
             let inside_px = (target.plate_radius_m - norm(y1, y2)) * search.plate_scale;
-            inside_px > search.reach_px
-                && !search.is_near_cross(u, v)
+            let is_bare = inside_px > search.reach_px
                 && !search.is_on_marks(y1, y2, 0..target.marks.len())
+                && !search.is_near_post(u, v);
+            let beside_px = search.beside_cross_px(u, v) - search.side_px;
+            if !is_bare || beside_px <= BESIDE_CROSS * search.blur_px {
+                None
+            } else if beside_px > search.reach_px {
+                Some(0.0)
+            } else {
+                Some(cross_dn * cross.value_at(tables, u, v))
+            }
         };
-        let Some(shadow) = finder.find(field, camera, target, tables, view, blur, is_clear) else { return };
+        let shadow = finder.find(field, camera, target, tables, view, blur, cross_dn, lit_dn);
+        let Some(shadow) = shadow else { return };
         let mut shares = Vec::new();
         shadow.shares(tables, self.pixels.iter().map(|pixel| (pixel.u, pixel.v)), &mut shares);
         for (pixel, share) in self.pixels.iter_mut().zip(&shares) {
@@ -202,10 +230,6 @@ impl Samples {
             });
             patch.is_shaded = is_shaded;
             patch.is_used &= !is_shaded;
-        }
-        if search.is_small() {
-            // A hundredth of a pixel is nothing beside the noise of a small cross, and its pixels are few.
-            return;
         }
         let edge_px = search.reach_px;
         self.leave_out(|patch, pixel, index| {

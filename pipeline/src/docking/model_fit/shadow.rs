@@ -4,8 +4,10 @@
 //! thickness draws the outline out. On a dark plate the step is small against a white edge, but it lies beside the edges that
 //! the pose hangs on: left out, it moves them by a few hundredths of a pixel.
 
+use std::f64::consts::TAU;
+
 use contract::docking::{Field, TargetModel};
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, Vector2, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::chunk::{CHUNK, Places};
@@ -27,13 +29,33 @@ const EDGE_PIXELS: usize = 1200;
 /// What a shadow must explain to be one, in variances of a pixel: the best of all places explains 2 ln(places) ≈ 17 by chance.
 const LEAST_GAIN: f64 = 40.0;
 
+/// What is kept of the evidence from field to field: the Sun stands still for seconds, and a shadow of which a few pixels are seen
+/// is no more than chance in a single field.
+const KEPT: f64 = 0.9;
+
+/// The direction of before is gone on with while it explains this part of what the best place does.
+const AS_GOOD: f64 = 0.8;
+
+/// Pixels in shadow, and in light, without which a place is not judged.
+const LEAST_PIXELS: f64 = 4.0;
+
+/// A shadow shallower than this part of the cross's level moves no edge, and is rather an error of what the cross sheds beside it.
+const LEAST_DEPTH: f64 = 0.01;
+
+/// Steps of refinement are damped as if the direction were known to this, tangent: of a shadow whose bars are not on the plate only
+/// the azimuth is seen.
+const LOOSE: f64 = 0.1;
+
 /// Steps of refinement.
 const STEPS: usize = 4;
 
 /// Step of the numeric derivative, tangent of the Sun's direction: 0.3 mm on the plate.
 const STEP: f64 = 1e-3;
 
-/// A pixel of the plate, clear of marks, cross and rim.
+/// Directions of the search.
+const DIRECTIONS: u32 = 192;
+
+/// A pixel of the plate, clear of marks, cross and rim; what the cross sheds on it is taken away.
 #[derive(Debug, Clone, Copy)]
 struct PlatePixel {
     u: f64,
@@ -43,12 +65,37 @@ struct PlatePixel {
     dn: f64,
 }
 
-/// Finds shadows; owns its buffers.
+/// What fields say of a place: of the plate's step s there, told with weight w, Σ s w and Σ w, weights in variances of a pixel.
+#[derive(Debug, Clone, Copy, Default)]
+struct Evidence {
+    step: f64,
+    weight: f64,
+}
+
+impl Evidence {
+    /// What a darker plate there explains, in variances of a pixel.
+    fn gain(&self) -> f64 {
+        if self.step > 0.0 { self.step * self.step / self.weight } else { 0.0 }
+    }
+}
+
+/// The Sun's direction as the fields before place it.
+#[derive(Debug, Clone, Copy)]
+struct Placed {
+    tangents: Vector2<f64>,
+    information: Matrix2<f64>,
+}
+
+/// Finds shadows field by field; owns its buffers, and remembers where the Sun stood.
 #[derive(Debug, Default)]
 pub(super) struct ShadowFinder {
     pixels: Vec<PlatePixel>,
     /// Sums over the cells above and to the left: count and DN.
     sums: Vec<(f64, f64)>,
+    /// This field's evidence of each place, direction by direction, and that of all fields.
+    field: Vec<Evidence>,
+    evidence: Vec<Evidence>,
+    placed: Option<Placed>,
 }
 
 /// A shadow on the plate as a camera sees it.
@@ -153,7 +200,8 @@ fn outline(target: &TargetModel, tangents: Vector2<f64>) -> [[[f64; 2]; 4]; 3] {
 }
 
 impl ShadowFinder {
-    /// The shadow on the plate, if one is seen. `is_clear` says which points (image and plate) show the bare plate.
+    /// The shadow on the plate, if one is seen. `lit_dn` says of a point (image and plate) how much the cross's blurred edge brightens
+    /// the bare plate there, DN; `None` where something else is seen.
     #[allow(clippy::too_many_arguments, reason = "the scene, and which pixels of it are bare")]
     pub(super) fn find(
         &mut self,
@@ -163,10 +211,45 @@ impl ShadowFinder {
         tables: &Tables,
         view: &View,
         blur: Blur,
-        is_clear: impl Fn(f64, f64, f64, f64) -> bool,
+        cross_dn: f64,
+        lit_dn: impl Fn(f64, f64, f64, f64) -> Option<f64>,
     ) -> Option<Shadow> {
-        self.collect(field, camera, target, view, is_clear)?;
-        let mut tangents = self.search(target)?;
+        self.collect(field, camera, target, view, lit_dn)?;
+        let (before, variance) = self.search(target)?;
+        let mut tangents = before.tangents;
+        if before.information == Matrix2::zeros() {
+            // From a place on the map: as blurred as the map's cells are coarse, where they are coarser than the blur.
+            let cell = 2.0 * target.plate_radius_m / CELLS as f64;
+            let (a, b) = (view.see(&Vector3::zeros())?, view.see(&Vector3::new(cell, 0.0, 0.0))?);
+            let cell_px = libm::hypot(a.u - b.u, a.v - b.v);
+            let extra = 0.25 * cell_px * cell_px;
+            if extra > blur.x.max(blur.y) {
+                let blurred = Blur::new(blur.x + extra, blur.y + extra);
+                tangents = self.refine(target, view, blurred, tables, &before, tangents, variance)?.0;
+            }
+        }
+        let (tangents, seen, depth_dn) =
+            self.refine(target, view, blur, tables, &before, tangents, variance)?;
+        self.placed = Some(Placed { tangents, information: (before.information + seen) * KEPT });
+        let mut shadow = Shadow::new(target, view, blur, tables, tangents)?;
+        shadow.depth_dn = depth_dn;
+        (depth_dn > LEAST_DEPTH * cross_dn).then_some(shadow)
+    }
+
+    /// The Sun's direction by Gauss and Newton's method from `tangents` on, the information that this field has of it, and the
+    /// shadow's depth, DN.
+    #[allow(clippy::too_many_arguments, reason = "the scene, and where to begin")]
+    fn refine(
+        &self,
+        target: &TargetModel,
+        view: &View,
+        blur: Blur,
+        tables: &Tables,
+        before: &Placed,
+        mut tangents: Vector2<f64>,
+        variance: f64,
+    ) -> Option<(Vector2<f64>, Matrix2<f64>, f64)> {
+        let mut seen = Matrix2::zeros();
         let shadow = Shadow::new(target, view, blur, tables, tangents)?;
         let [mut shares, mut to_first, mut to_second] = [const { Vec::new() }; 3];
         // Only pixels about the shadow's edges place it; the others say what is light and dark.
@@ -196,6 +279,10 @@ impl ShadowFinder {
                 normal += slope * slope.transpose();
                 right += slope * (pixel.dn - light + depth * share);
             }
+            seen = normal / variance;
+            let damping = Matrix2::identity() * (variance / (LOOSE * LOOSE));
+            right += before.information * (before.tangents - tangents) * variance;
+            normal += before.information * variance + damping;
             let step: Vector2<f64> = normal.try_inverse()? * right;
             // Not farther than half a bar, where the next place of the search would be better.
             let longest = 0.5 * target.cross.width_m / target.cross.height_m;
@@ -204,10 +291,9 @@ impl ShadowFinder {
                 break;
             }
         }
-        let mut shadow = Shadow::new(target, view, blur, tables, tangents)?;
+        let shadow = Shadow::new(target, view, blur, tables, tangents)?;
         shadow.shares(tables, places(&near), &mut shares);
-        shadow.depth_dn = levels(&near, &shares)?.1;
-        (shadow.depth_dn > 0.0).then_some(shadow)
+        Some((tangents, seen, levels(&near, &shares)?.1))
     }
 
     fn collect(
@@ -216,13 +302,13 @@ impl ShadowFinder {
         camera: &CameraModel,
         target: &TargetModel,
         view: &View,
-        is_clear: impl Fn(f64, f64, f64, f64) -> bool,
+        lit_dn: impl Fn(f64, f64, f64, f64) -> Option<f64>,
     ) -> Option<()> {
         let (image, lines) = (field.image(), field.lines());
         let radius = target.plate_radius_m;
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for (y1, y2) in [(-radius, -radius), (radius, -radius), (radius, radius), (-radius, radius)] {
-            let corner = camera.project_vector(&view.to_camera(&nalgebra::Vector3::new(y1, y2, 0.0)))?;
+            let corner = camera.project_vector(&view.to_camera(&Vector3::new(y1, y2, 0.0)))?;
             low = [low[0].min(corner.x), low[1].min(corner.y)];
             high = [high[0].max(corner.x), high[1].max(corner.y)];
         }
@@ -246,16 +332,18 @@ impl ShadowFinder {
                 let at = contract::PixelPoint::new(column as f64, y);
                 let Some((u, v)) = camera.to_ideal(at) else { continue };
                 let Some((y1, y2)) = view.on_plane(u, v, 0.0) else { continue };
-                if is_clear(u, v, y1, y2) {
-                    self.pixels.push(PlatePixel { u, v, y1, y2, dn: f64::from(image.at(column, row)) });
+                if let Some(lit_dn) = lit_dn(u, v, y1, y2) {
+                    let dn = f64::from(image.at(column, row)) - lit_dn;
+                    self.pixels.push(PlatePixel { u, v, y1, y2, dn });
                 }
             }
         }
         (self.pixels.len() >= 50).then_some(())
     }
 
-    /// The tangents that explain the plate's pixels best, by sums over rectangles of a map of the plate.
-    fn search(&mut self, target: &TargetModel) -> Option<Vector2<f64>> {
+    /// The direction that explains the plate's pixels best in this field and those before, by sums over rectangles of a map of the plate,
+    /// and the variance of a pixel that it leaves, DN².
+    fn search(&mut self, target: &TargetModel) -> Option<(Placed, f64)> {
         let radius = target.plate_radius_m;
         let cell = 2.0 * radius / CELLS as f64;
         let width = CELLS + 1;
@@ -279,37 +367,86 @@ impl ShadowFinder {
         let sum: f64 = self.pixels.iter().map(|p| p.dn).sum();
         let squares: f64 = self.pixels.iter().map(|p| p.dn * p.dn).sum();
         let variance = (squares - sum * sum / n) / n;
-        let edge = |y: f64| ((y + radius) / cell).round().clamp(0.0, CELLS as f64) as usize;
-        let within = |centre: Vector2<f64>, half_1: f64, half_2: f64| {
-            let (left, right) = (edge(centre.x - half_1), edge(centre.x + half_1));
-            let (bottom, top) = (edge(centre.y - half_2), edge(centre.y + half_2));
-            let at = |row: usize, column: usize| self.sums[row * width + column];
+        let edge = |y: f64| ((y + radius) / cell + 0.5).clamp(0.0, CELLS as f64) as usize;
+        let sums = &self.sums;
+        let within = |(left, right): (usize, usize), (bottom, top): (usize, usize)| {
+            let at = |row: usize, column: usize| sums[row * width + column];
             let (a, b, c, d) = (at(top, right), at(bottom, right), at(top, left), at(bottom, left));
             (a.0 - b.0 - c.0 + d.0, a.1 - b.1 - c.1 + d.1)
         };
         let (half, length) = (0.5 * target.cross.width_m, target.cross.half_length_m);
-        let reach = ((radius + length) / cell) as i32;
-        let mut best = (0.0, None);
-        for i in -reach..=reach {
-            for j in -reach..=reach {
-                let centre = Vector2::new(f64::from(i), f64::from(j)) * cell;
-                let (v, h, both) =
-                    (within(centre, half, length), within(centre, length, half), within(centre, half, half));
-                let inside = (v.0 + h.0 - both.0, v.1 + h.1 - both.1);
+        let side = 0.25 * target.cross.post_width_m;
+        let reach = ((radius + length) / cell) as usize;
+        let mut best_of_field = 0.0f64;
+        let mut along = Vec::with_capacity(CELLS / 2 + 1);
+        self.field.clear();
+        for direction in 0..DIRECTIONS {
+            let (s, c) = libm::sincos(f64::from(direction) * TAU / f64::from(DIRECTIONS));
+            // The post's shadow from the foot on, by its two halves, up to each distance.
+            along.clear();
+            along.push((0.0, 0.0));
+            let mut of_post = (0.0, 0.0);
+            for step in 0..CELLS / 2 {
+                let distance = (step as f64 + 0.5) * cell;
+                for half_post in [-side, side] {
+                    let column = place(c * distance - s * half_post);
+                    let row = place(s * distance + c * half_post);
+                    let sum = within((column - 1, column), (row - 1, row));
+                    of_post = (of_post.0 + sum.0, of_post.1 + sum.1);
+                }
+                along.push(of_post);
+            }
+            // The bars hide the end of it.
+            let end = |a: f64, b: f64| (a / c.abs()).min(b / s.abs());
+            let hidden = (end(half, length).max(end(length, half)) / cell) as usize;
+            for distance in 0..=reach {
+                let (x, y) = (c * distance as f64 * cell, s * distance as f64 * cell);
+                let span = |at: f64, half: f64| (edge(at - half), edge(at + half));
+                let (across, down) = (span(x, half), span(y, half));
+                let (v, h) = (within(across, span(y, length)), within(span(x, length), down));
+                let both = within(across, down);
+                let post = along[distance.saturating_sub(hidden).min(CELLS / 2)];
+                let inside = (v.0 + h.0 - both.0 + post.0, v.1 + h.1 - both.1 + post.1);
                 let outside = (n - inside.0, sum - inside.1);
-                if inside.0 < 10.0 || outside.0 < 10.0 {
-                    continue;
+                let mut here = Evidence::default();
+                if inside.0 >= LEAST_PIXELS && outside.0 >= LEAST_PIXELS {
+                    here.weight = inside.0 * outside.0 / n;
+                    here.step = (outside.1 / outside.0 - inside.1 / inside.0) * here.weight;
+                    best_of_field = best_of_field.max(here.gain());
                 }
-                let step = outside.1 / outside.0 - inside.1 / inside.0;
-                let gain = step * step * inside.0 * outside.0 / n;
-                if step > 0.0 && gain > best.0 {
-                    best = (gain, Some(centre));
-                }
+                self.field.push(here);
             }
         }
-        let left = (variance - best.0 / n).max(1e-3);
+        let left = (variance - best_of_field / n).max(1e-3);
+        self.evidence.resize(self.field.len(), Evidence::default());
+        let mut best = (0.0, 0);
+        for (place, (sum, here)) in self.evidence.iter_mut().zip(&self.field).enumerate() {
+            sum.step = KEPT * sum.step + here.step / left;
+            sum.weight = KEPT * sum.weight + here.weight / left;
+            // Of places that look alike the farthest: bars that are not seen are not on the plate.
+            if sum.gain() >= best.0 {
+                best = (sum.gain(), place);
+            }
+        }
+        if best.0 < LEAST_GAIN {
+            return None;
+        }
         let height = target.cross.height_m - 0.5 * target.cross.thickness_m;
-        best.1.filter(|_| best.0 > LEAST_GAIN * left).map(|centre| centre / -height)
+        let is_as_good = |placed: &Placed| {
+            let centre = placed.tangents * -height;
+            let turns = libm::atan2(centre.y, centre.x) / TAU;
+            let direction =
+                (turns * f64::from(DIRECTIONS)).round().rem_euclid(f64::from(DIRECTIONS)) as usize;
+            let distance = ((centre.norm() / cell).round() as usize).min(reach);
+            self.evidence[direction * (reach + 1) + distance].gain() >= AS_GOOD * best.0
+        };
+        let placed = self.placed.filter(is_as_good).unwrap_or_else(|| {
+            let (direction, distance) = (best.1 / (reach + 1), best.1 % (reach + 1));
+            let (s, c) = libm::sincos(direction as f64 * TAU / f64::from(DIRECTIONS));
+            let centre = Vector2::new(c, s) * (distance as f64 * cell);
+            Placed { tangents: centre / -height, information: Matrix2::zeros() }
+        });
+        Some((placed, left))
     }
 }
 

@@ -26,6 +26,8 @@ pub(super) struct Look {
     pub(super) blur_px: [f64; 2],
     /// Of this mark only the half towards its first edge is lit.
     pub(super) half_shadowed: Option<usize>,
+    /// The cross's shadow on the plate: tangents of the light's direction, and its depth, DN.
+    pub(super) shadow: Option<([f64; 2], f64)>,
 }
 
 impl Default for Look {
@@ -38,6 +40,7 @@ impl Default for Look {
             side_dn: 90.0,
             blur_px: [0.7, 0.7],
             half_shadowed: None,
+            shadow: None,
         }
     }
 }
@@ -147,12 +150,21 @@ pub(super) fn expected(camera: &Camera, target: &TargetModel, look: &Look, pose:
     let width = columns * CELLS;
 
     // Each group is a union; groups add their step over what is below.
-    let groups = [
+    let mut groups = vec![
         (vec![plate], look.plate_dn - look.beyond_dn),
         (marks, look.mark_dn - look.plate_dn),
-        (solid, look.side_dn - look.plate_dn),
+        (solid.clone(), look.side_dn - look.plate_dn),
         (vec![front], look.cross_dn - look.side_dn),
     ];
+    if let Some(([s1, s2], depth_dn)) = look.shadow {
+        let cast = |height: f64| {
+            image(camera, pose, &outline.map(|[y1, y2]| [y1 - height * s1, y2 - height * s2]), 0.0)
+        };
+        // What the cross hides of it is not darker.
+        let hidden = solid.clone();
+        solid.extend([cast(cross.height_m), cast(cross.height_m - cross.thickness_m)]);
+        groups.extend([(solid, -depth_dn), (hidden, depth_dn)]);
+    }
     let kernels = look.blur_px.map(kernel);
     // The box lies on a pixel's own cells, the Gaussian reaches equally far before and after.
     let half = |axis: usize| (kernels[axis].len() - CELLS) / 2;
