@@ -74,10 +74,6 @@ const FLAT_THIN: usize = 4;
 /// Arms shorter than this share one patch; longer ones are cut into pieces of about twice this, px.
 const SHORT_ARM_PX: f64 = 15.0;
 
-/// A pixel lies at least so far inside the plate's rim, px. What is beyond it is taken to shine alike along a mark's patch; in truth it
-/// is seams and shadows, and nearer to it their share (0.3 here with 0.7 px of blur) moves small marks by more than they are known.
-const INSIDE_RIM_PX: f64 = 0.4;
-
 /// A mark of which a shadow takes more than this part anywhere is in shadow.
 const SHADED: f64 = 0.02;
 
@@ -230,6 +226,10 @@ impl Samples {
             });
             patch.is_shaded = is_shaded;
             patch.is_used &= !is_shaded;
+        }
+        if search.is_small() {
+            // A hundredth of a pixel is nothing beside the noise of a small cross, and its pixels are few.
+            return;
         }
         let edge_px = search.reach_px;
         self.leave_out(|patch, pixel, index| {
@@ -527,11 +527,13 @@ impl<'a> Search<'a> {
         self.camera.project_vector(&self.view.to_camera(&Vector3::new(y1, y2, y3)))
     }
 
-    /// Blurred share of what lies beyond the plate's rim, and the distance inside the rim, px; `None` too near to it.
+    /// Blurred share of what lies beyond the plate's rim, and the distance inside the rim, px; `None` on it and beyond it. What is
+    /// there is taken to shine alike along a mark's patch; in truth it is seams and shadows, and where their share is above a half
+    /// they move small marks by more than these are known.
     fn beyond_rim(&self, u: f64, v: f64) -> Option<(f64, f64)> {
         let (y1, y2) = self.view.on_plane(u, v, 0.0)?;
         let inside_px = (self.target.plate_radius_m - norm(y1, y2)) * self.plate_scale;
-        (inside_px > INSIDE_RIM_PX).then(|| (self.tables.gaussian.at(-inside_px / self.blur_px).0, inside_px))
+        (inside_px > 0.0).then(|| (self.tables.gaussian.at(-inside_px / self.blur_px).0, inside_px))
     }
 
     /// Distance from the cross's front face, px, negative inside.
