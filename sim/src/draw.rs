@@ -1,8 +1,13 @@
 //! The expected image: photo-electrons before any noise.
 
+use std::ops::Range;
+
 use crate::optics::Stamp;
 use crate::pixel_factors::PixelFactors;
 use crate::smooth_field::SmoothField;
+
+/// Pixels of a piece of a row, the unit in which images are looked at: of each there is one word of bits.
+pub(crate) const PIECE: usize = u64::BITS as usize;
 
 /// Expected photo-electrons of a frame: a flat level, what makes the background uneven, and signal where something was drawn.
 ///
@@ -39,14 +44,14 @@ struct Background {
 }
 
 impl Background {
-    /// The background of the pixels of a row of `out.len()` columns.
+    /// The background of the pixels of row `y` from column `x` on, in an image of `columns`.
     #[inline(always)]
-    fn row(&self, y: usize, out: &mut [f64]) {
-        let pixels = y * out.len()..(y + 1) * out.len();
+    fn span(&self, x: usize, y: usize, columns: usize, out: &mut [f64]) {
+        let pixels = y * columns + x..y * columns + x + out.len();
         match &self.smooth {
             Some((smooth, scale)) => {
                 out.fill(0.0);
-                smooth.row(y, out);
+                smooth.span(x, y, out);
                 for out in out.iter_mut() {
                     *out = self.light_e + scale * *out;
                 }
@@ -77,10 +82,10 @@ impl Background {
         }
     }
 
-    /// [`Background::row`] of one pixel of an image of `columns`, by the same steps.
+    /// [`Background::span`] of one pixel of an image of `columns`, by the same steps.
     fn at(&self, x: usize, y: usize, columns: usize) -> f64 {
         let index = y * columns + x;
-        // A pattern ends at the end of a row, as `row` takes it.
+        // A pattern ends at the end of a row, as `span` takes it.
         let of_row = |length: usize| length >= (y + 1) * columns;
         let mut electrons = match &self.smooth {
             Some((smooth, scale)) => self.light_e + scale * smooth.at(x, y),
@@ -101,7 +106,18 @@ impl Background {
     /// No pixel has more.
     fn bound_e(&self) -> f64 {
         let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.largest());
-        let field_e = self.field.iter().copied().fold(0.0, f64::max);
+        self.bound_with(smooth_e, &self.field)
+    }
+
+    /// No pixel of a row has more, in an image of `columns`.
+    fn row_bound_e(&self, y: usize, columns: usize) -> f64 {
+        let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.largest_of_row(y));
+        self.bound_with(smooth_e, self.field.get(y * columns..(y + 1) * columns).unwrap_or_default())
+    }
+
+    /// No pixel has more whose light is at most `smooth_e` and one of `field`.
+    fn bound_with(&self, smooth_e: f64, field: &[f64]) -> f64 {
+        let field_e = field.iter().copied().fold(0.0, f64::max);
         let response = self.response.as_ref().map_or(1.0, |response| response.largest().max(1.0));
         let pattern_e =
             self.pattern.as_ref().map_or(0.0, |(electrons, factors)| electrons * factors.largest());
@@ -148,7 +164,7 @@ impl ExpectedImage {
             .chunks_exact_mut(self.columns.max(1))
             .zip(self.drawn.chunks_exact_mut(self.words_per_row.max(1)))
         {
-            for (pixels, word) in row.chunks_mut(64).zip(words) {
+            for (pixels, word) in row.chunks_mut(PIECE).zip(words) {
                 if *word != 0 {
                     pixels.fill(0.0);
                     *word = 0;
@@ -186,7 +202,7 @@ impl ExpectedImage {
         let flat_e = self.flat_e();
         let mut field = vec![0.0; self.signal.len()];
         for (y, row) in field.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            self.background.row(y, row);
+            self.background.span(0, y, self.columns, row);
             row.iter_mut().for_each(|electrons| *electrons -= flat_e);
         }
         self.background = Background { light_e: flat_e, field, ..Background::default() };
@@ -203,7 +219,8 @@ impl ExpectedImage {
         let rows = self.signal.chunks_exact_mut(self.columns.max(1));
         let words = self.drawn.chunks_exact(self.words_per_row.max(1));
         for ((signal, response), words) in rows.zip(response.chunks(self.columns.max(1))).zip(words) {
-            for ((signal, response), word) in signal.chunks_mut(64).zip(response.chunks(64)).zip(words) {
+            for ((signal, response), word) in signal.chunks_mut(PIECE).zip(response.chunks(PIECE)).zip(words)
+            {
                 if *word != 0 {
                     for (signal, &response) in signal.iter_mut().zip(response) {
                         *signal *= f64::from(response);
@@ -311,15 +328,58 @@ impl ExpectedImage {
     /// Expected electrons of the pixels of a row, background included; `out` is as long as a row.
     #[inline(always)]
     pub(crate) fn row(&self, y: usize, out: &mut [f64]) {
-        self.background.row(y, out);
+        self.background.span(0, y, self.columns, out);
         let signal = self.signal.chunks_exact(self.columns.max(1)).nth(y).unwrap_or_default();
         let words = self.drawn.chunks_exact(self.words_per_row.max(1)).nth(y).unwrap_or_default();
-        for ((out, signal), word) in out.chunks_mut(64).zip(signal.chunks(64)).zip(words) {
+        for ((out, signal), word) in out.chunks_mut(PIECE).zip(signal.chunks(PIECE)).zip(words) {
             if *word != 0 {
                 for (out, signal) in out.iter_mut().zip(signal) {
                     *out += signal;
                 }
             }
+        }
+    }
+
+    /// The pixels of piece `p` of row `y`, as indices into the image.
+    pub(crate) fn piece_pixels(&self, y: usize, p: usize) -> Range<usize> {
+        y * self.columns + p * PIECE..y * self.columns + ((p + 1) * PIECE).min(self.columns)
+    }
+
+    /// [`ExpectedImage::row`] of piece `p` alone; `out` is as long as the piece.
+    #[inline(always)]
+    pub(crate) fn piece(&self, y: usize, p: usize, out: &mut [f64]) {
+        self.background.span(p * PIECE, y, self.columns, out);
+        if self.drawn_in(y, p) != 0 {
+            for (out, signal) in out.iter_mut().zip(&self.signal[self.piece_pixels(y, p)]) {
+                *out += signal;
+            }
+        }
+    }
+
+    /// The pixels of piece `p` of row `y` where something was drawn, one bit each.
+    #[inline(always)]
+    pub(crate) fn drawn_in(&self, y: usize, p: usize) -> u64 {
+        self.drawn[y * self.words_per_row + p]
+    }
+
+    /// Electrons of what was drawn in a pixel, above the background.
+    pub(crate) fn signal_at(&self, index: usize) -> f64 {
+        self.signal[index]
+    }
+
+    /// No pixel of the background of row `y` has more electrons.
+    pub(crate) fn row_bound_e(&self, y: usize) -> f64 {
+        self.background.row_bound_e(y, self.columns)
+    }
+
+    /// Whether in piece `p` of row `y` something was drawn that may bring a pixel above `limit_e`, over a background of at
+    /// most `bound_e`.
+    #[inline(always)]
+    pub(crate) fn may_rise_above(&self, y: usize, p: usize, bound_e: f64, limit_e: f64) -> bool {
+        self.drawn_in(y, p) != 0 && {
+            let signal = &self.signal[self.piece_pixels(y, p)];
+            // Without an early exit, for many pixels at once.
+            signal.iter().fold(false, |may, signal_e| may | (bound_e + signal_e > limit_e))
         }
     }
 
@@ -337,16 +397,10 @@ impl ExpectedImage {
             return;
         }
         // Then only something drawn can be above it.
-        let rows = self.signal.chunks_exact(self.columns.max(1));
-        for (y, (row, words)) in rows.zip(self.drawn.chunks_exact(self.words_per_row.max(1))).enumerate() {
-            for (w, (signal, _)) in row.chunks(64).zip(words).enumerate().filter(|(_, (_, word))| **word != 0)
-            {
-                // Without an early exit, for many pixels at once.
-                let may = signal.iter().fold(false, |may, signal_e| may | (bound_e + signal_e > limit_e));
-                if may {
-                    for (x, column) in columns.iter_mut().enumerate().skip(w * 64).take(signal.len()) {
-                        *column |= self.at(x, y) > limit_e;
-                    }
+        for y in 0..self.rows {
+            for p in (0..self.words_per_row).filter(|&p| self.may_rise_above(y, p, bound_e, limit_e)) {
+                for (x, column) in columns.iter_mut().enumerate().skip(p * PIECE).take(PIECE) {
+                    *column |= self.at(x, y) > limit_e;
                 }
             }
         }
@@ -372,23 +426,16 @@ impl ExpectedImage {
 fn drawn_pixels(words: &[u64], columns: usize, words_per_row: usize) -> impl Iterator<Item = usize> {
     words.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(move |(i, &word)| {
         let first = i / words_per_row * columns + i % words_per_row * 64;
-        SetBits(word).map(move |bit| first + bit)
+        set_bits(word).map(move |bit| first + bit)
     })
 }
 
 /// The places of the ones in a word, lowest first.
-struct SetBits(u64);
-
-impl Iterator for SetBits {
-    type Item = usize;
-    fn next(&mut self) -> Option<usize> {
-        if self.0 == 0 {
-            return None;
-        }
-        let bit = self.0.trailing_zeros() as usize;
-        self.0 &= self.0 - 1;
-        Some(bit)
-    }
+pub(crate) fn set_bits(word: u64) -> impl Iterator<Item = usize> {
+    // Each word is the one before without its lowest one.
+    std::iter::successors(Some(word), |word| Some(word & word.wrapping_sub(1)))
+        .take_while(|word| *word != 0)
+        .map(|word| word.trailing_zeros() as usize)
 }
 
 #[cfg(test)]

@@ -28,5 +28,5 @@ pub mod vector;
 mod view;
 
 pub use error::SimError;
-pub use expose::{Exposure, SimulatedCamera};
+pub use expose::{Drawing, Exposure, SimulatedCamera};
 pub use simulator::{Simulation, Simulator};

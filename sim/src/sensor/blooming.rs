@@ -3,8 +3,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::pixels::LineOffsets;
+use super::readout::Sensor;
 use crate::SimError;
+use crate::draw::ExpectedImage;
 use crate::error::require;
+use crate::randomness::Streams;
 
 /// Blooming of a CCD: charge above the full well spills to the neighbours up and down the column. Columns are parted
 /// by channel stops, so that nothing goes sideways.
@@ -63,6 +67,49 @@ impl BloomingConfig {
             }
             if run.end < column.len() {
                 column[run.end] += down_e;
+            }
+        }
+    }
+}
+
+/// What the wells of a frame are filled from.
+pub(super) struct Overflow<'a> {
+    pub(super) blooming: &'a BloomingConfig,
+    pub(super) expected: &'a ExpectedImage,
+    /// What the readout adds to rows and columns.
+    pub(super) offsets: Option<&'a LineOffsets>,
+    /// Of the pixels' noise.
+    pub(super) streams: &'a Streams,
+}
+
+impl Sensor {
+    /// Draws anew the columns that have pixels above the full well, and tells `put` the index and the digital number of each
+    /// pixel that differs.
+    ///
+    /// Electrons are drawn first, then they spill, then they are read. A pixel is drawn at its own address, place =
+    /// rows + index, where a pixel with signal was drawn already: what neither overflows nor receives is left as it is.
+    pub(super) fn bloom(&self, overflow: &Overflow<'_>, mut put: impl FnMut(usize, u16)) {
+        let Overflow { blooming, expected, offsets, streams } = *overflow;
+        let threshold_e = self.law.may_overflow_from_e();
+        let mut overflows = vec![false; self.columns];
+        expected.columns_above(threshold_e, &mut overflows);
+        let (mut collected, mut held) = (Vec::with_capacity(self.rows), Vec::with_capacity(self.rows));
+        for x in (0..self.columns).filter(|&x| overflows[x]) {
+            let stream = |y: usize| streams.at((self.rows + y * self.columns + x) as u64);
+            let mean_e = |y: usize| expected.at(x, y).max(0.0);
+            collected.clear();
+            collected.extend((0..self.rows).map(|y| self.law.collect(mean_e(y), &mut stream(y))));
+            held.clone_from(&collected);
+            blooming.spill(&mut held, self.law.full_well_e());
+            for y in 0..self.rows {
+                // Those that may overflow were drawn before with a well of their own, perhaps from a table.
+                if held[y] != collected[y] || mean_e(y) > threshold_e {
+                    let mut stream = stream(y);
+                    // What was collected is drawn again only to leave the stream where the read noise begins.
+                    self.law.collect(mean_e(y), &mut stream);
+                    let offset_e = offsets.map_or(0.0, |offsets| offsets.at(x, y));
+                    put(y * self.columns + x, self.law.convert(held[y], offset_e, &mut stream));
+                }
             }
         }
     }
