@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::optics::Stamp;
 use crate::pixel_factors::PixelFactors;
 use crate::smooth_field::SmoothField;
+use crate::widest::widest;
 
 /// Pixels of a piece of a row, the unit in which images are looked at: of each there is one word of bits.
 pub(crate) const PIECE: usize = u64::BITS as usize;
@@ -24,6 +25,8 @@ pub struct ExpectedImage {
     /// One bit a pixel, `words_per_row` words a row: whether something was drawn there.
     drawn: Vec<u64>,
     words_per_row: usize,
+    /// Of each piece, no pixel has more electrons of what was drawn.
+    peaks: Vec<f64>,
 }
 
 /// The background of every pixel: (light + smooth + field) · response + dark + pattern.
@@ -149,6 +152,7 @@ impl ExpectedImage {
             signal: vec![0.0; columns * rows],
             drawn: vec![0; words_per_row * rows],
             words_per_row,
+            peaks: vec![0.0; words_per_row * rows],
         }
     }
 
@@ -171,6 +175,7 @@ impl ExpectedImage {
                 }
             }
         }
+        self.peaks.fill(0.0);
         let mut field = std::mem::take(&mut self.background.field);
         field.clear();
         self.background = Background { light_e: flat_e, field, ..Background::default() };
@@ -215,19 +220,22 @@ impl ExpectedImage {
             self.flatten();
         }
         self.background.response = Some(response.clone());
-        // Where nothing was drawn there is nothing to multiply.
-        let rows = self.signal.chunks_exact_mut(self.columns.max(1));
-        let words = self.drawn.chunks_exact(self.words_per_row.max(1));
-        for ((signal, response), words) in rows.zip(response.chunks(self.columns.max(1))).zip(words) {
-            for ((signal, response), word) in signal.chunks_mut(PIECE).zip(response.chunks(PIECE)).zip(words)
-            {
-                if *word != 0 {
+        // A part in 10^12 for what rounding adds.
+        let largest = response.largest() * (1.0 + 1e-12);
+        self.peaks.iter_mut().for_each(|peak| *peak *= largest);
+        widest(|| {
+            // Where nothing was drawn there is nothing to multiply.
+            let rows = self.signal.chunks_exact_mut(self.columns.max(1));
+            let words = self.drawn.chunks_exact(self.words_per_row.max(1));
+            for ((signal, response), words) in rows.zip(response.chunks(self.columns.max(1))).zip(words) {
+                let pieces = signal.chunks_mut(PIECE).zip(response.chunks(PIECE));
+                for ((signal, response), _) in pieces.zip(words).filter(|(_, word)| **word != 0) {
                     for (signal, &response) in signal.iter_mut().zip(response) {
                         *signal *= f64::from(response);
                     }
                 }
             }
-        }
+        });
     }
 
     /// Adds `electrons` to every pixel, times a factor of its own.
@@ -265,7 +273,7 @@ impl ExpectedImage {
     pub(crate) fn empty_pixel(&mut self, x: usize, y: usize) {
         let background_e = self.background_at(x, y);
         self.signal[y * self.columns + x] = -background_e;
-        self.mark(y, x, x + 1);
+        self.mark(y, x, x + 1, 0.0);
     }
 
     /// Expected electrons of the background in a pixel.
@@ -280,28 +288,33 @@ impl ExpectedImage {
 
     /// Adds the image of an object. Pixels of the stamp that lie off the image are left out.
     pub fn add(&mut self, stamp: &Stamp) {
-        for (x, y, row) in stamp.rows() {
-            if y >= self.rows || x >= self.columns {
-                continue;
+        widest(|| {
+            for (x, y, row) in stamp.rows() {
+                if y >= self.rows || x >= self.columns {
+                    continue;
+                }
+                let row = &row[..row.len().min(self.columns - x)];
+                // Only from the first to the last pixel that has light.
+                let Some(first) = row.iter().position(|&electrons| electrons > 0.0) else { continue };
+                let end = row.iter().rposition(|&electrons| electrons > 0.0).map_or(first, |last| last + 1);
+                let start = y * self.columns + x;
+                let pixels = &mut self.signal[start + first..start + end];
+                for (pixel, electrons) in pixels.iter_mut().zip(&row[first..end]) {
+                    *pixel += electrons;
+                }
+                let peak_e = largest(pixels);
+                self.mark(y, x + first, x + end, peak_e);
             }
-            let row = &row[..row.len().min(self.columns - x)];
-            // Only from the first to the last pixel that has light.
-            let Some(first) = row.iter().position(|&electrons| electrons > 0.0) else { continue };
-            let end = row.iter().rposition(|&electrons| electrons > 0.0).map_or(first, |last| last + 1);
-            let start = y * self.columns + x;
-            for (pixel, electrons) in self.signal[start + first..start + end].iter_mut().zip(&row[first..end])
-            {
-                *pixel += electrons;
-            }
-            self.mark(y, x + first, x + end);
-        }
+        });
     }
 
     /// Adds electrons to one pixel; outside the image nothing happens.
     pub fn add_pixel(&mut self, x: usize, y: usize, electrons: f64) {
         if x < self.columns && y < self.rows {
-            self.signal[y * self.columns + x] += electrons;
-            self.mark(y, x, x + 1);
+            let pixel = &mut self.signal[y * self.columns + x];
+            *pixel += electrons;
+            let peak_e = *pixel;
+            self.mark(y, x, x + 1, peak_e);
         }
     }
 
@@ -376,11 +389,7 @@ impl ExpectedImage {
     /// most `bound_e`.
     #[inline(always)]
     pub(crate) fn may_rise_above(&self, y: usize, p: usize, bound_e: f64, limit_e: f64) -> bool {
-        self.drawn_in(y, p) != 0 && {
-            let signal = &self.signal[self.piece_pixels(y, p)];
-            // Without an early exit, for many pixels at once.
-            signal.iter().fold(false, |may, signal_e| may | (bound_e + signal_e > limit_e))
-        }
+        self.drawn_in(y, p) != 0 && bound_e + self.peaks[y * self.words_per_row + p] > limit_e
     }
 
     /// Marks in `columns` those that hold a pixel with more than `limit_e` expected electrons.
@@ -412,14 +421,30 @@ impl ExpectedImage {
         drawn_pixels(&self.drawn, self.columns, self.words_per_row).map(|index| (index, self.signal[index]))
     }
 
-    /// Marks columns `from..to` of a row as drawn.
-    fn mark(&mut self, y: usize, from: usize, to: usize) {
+    /// Marks columns `from..to` of a row as drawn, with at most `peak_e` electrons in a pixel.
+    #[inline(always)]
+    fn mark(&mut self, y: usize, from: usize, to: usize, peak_e: f64) {
         for word in from / 64..to.div_ceil(64) {
             let start = from.max(word * 64) - word * 64;
             let length = to.min((word + 1) * 64) - word * 64 - start;
-            self.drawn[y * self.words_per_row + word] |= (u64::MAX >> (64 - length)) << start;
+            let piece = y * self.words_per_row + word;
+            self.drawn[piece] |= (u64::MAX >> (64 - length)) << start;
+            self.peaks[piece] = self.peaks[piece].max(peak_e);
         }
     }
+}
+
+/// The largest of some numbers, and 0: eight at a time, for one after the other each would wait for the one before.
+#[inline(always)]
+fn largest(numbers: &[f64]) -> f64 {
+    let (eights, rest) = numbers.as_chunks::<8>();
+    let mut peaks = [0.0_f64; 8];
+    for eight in eights {
+        for (peak, &number) in peaks.iter_mut().zip(eight) {
+            *peak = if number > *peak { number } else { *peak };
+        }
+    }
+    peaks.iter().chain(rest).copied().fold(0.0, f64::max)
 }
 
 /// Indices, row by row, of the pixels that are marked in `words`.

@@ -101,8 +101,13 @@ impl<'a> SimulatedCamera<'a> {
             value: number.to_string(),
             expected: "a frame of the schedule",
         })?;
-        let exposure_s = self.exposure_s(time, number)?;
-        let (mut view, drawn) = View::of_frame(simulator, self.painter.psf(), time, exposure_s, number)?;
+        let lag_s = simulator.shutter.lag_s();
+        let watched = Moment::at(simulator, time - lag_s * Unit::Second, number)?;
+        let exposure_s = self.exposure_s(&watched, time - lag_s * Unit::Second);
+        // A control without lag looks at the frame's own moment.
+        let moment = if lag_s == 0.0 { watched } else { Moment::at(simulator, time, number)? };
+        let (mut view, drawn) =
+            View::of_frame(simulator, self.painter.psf(), time, moment, exposure_s, number)?;
         let opening = Opening { seed: simulator.seed, middle_s: clock::tt_j2000_s(time), exposure_s };
         let tracks = simulator.cosmic_rays.as_ref().map_or_else(Vec::new, |rays| {
             let rate = rays.rate_per_cm2_s(time, &view.moment.states.chaser.position_km);
@@ -161,11 +166,9 @@ impl<'a> SimulatedCamera<'a> {
     }
 
     /// The exposure time that the shutter control chooses: it follows the brightest object on the detector, as it
-    /// was a lag before the exposure.
-    fn exposure_s(&self, time: Epoch, number: u64) -> Result<f64, SimError> {
+    /// is at a moment, a lag before the exposure.
+    fn exposure_s(&self, moment: &Moment, time: Epoch) -> f64 {
         let simulator = self.simulator;
-        let time = time - simulator.shutter.lag_s() * Unit::Second;
-        let moment = Moment::at(simulator, time, number)?;
         let (columns, rows) = simulator.projection.detector();
         let target = moment.target_position.filter(|position| position.is_on_detector(columns, rows));
         // A body that spans pixels has a lower peak than a point of its light.
@@ -188,8 +191,8 @@ impl<'a> SimulatedCamera<'a> {
                 brightest,
             );
         }
-        let peak = (brightest * peak_share).max(self.moon_peak_e_per_s(&moment));
-        Ok(simulator.shutter.exposure_s((peak > 0.0).then_some(peak)))
+        let peak = (brightest * peak_share).max(self.moon_peak_e_per_s(moment));
+        simulator.shutter.exposure_s((peak > 0.0).then_some(peak))
     }
 
     /// Electrons a second in the brightest pixel of the Moon, from its image without the camera's motion; 0 when it is not

@@ -26,6 +26,7 @@ pub mod television;
 pub mod truth;
 pub mod vector;
 mod view;
+mod widest;
 
 pub use error::SimError;
 pub use expose::{Drawing, Exposure, SimulatedCamera};

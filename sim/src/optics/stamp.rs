@@ -2,6 +2,8 @@
 
 use contract::{PixelPoint, Window};
 
+use crate::widest::widest;
+
 /// Expected electrons of one object, in a rectangle of the detector. Reused from object to object.
 ///
 /// A stamp is clipped to the detector: what falls off it is in no pixel and in no sum.
@@ -94,15 +96,18 @@ impl Stamp {
     /// Multiplies every pixel by its factor of a detector of `columns`, whose factors stand row by row; beyond them it stays.
     pub(crate) fn respond(&mut self, factors: &[f32], columns: usize) {
         let (x, y) = (self.x, self.y);
-        for (j, row) in self.electrons.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            let factors = factors.get((y + j) * columns + x..).unwrap_or_default();
-            for (electrons, &factor) in row.iter_mut().zip(factors) {
-                *electrons *= f64::from(factor);
+        widest(|| {
+            for (j, row) in self.electrons.chunks_exact_mut(self.columns.max(1)).enumerate() {
+                let factors = factors.get((y + j) * columns + x..).unwrap_or_default();
+                for (electrons, &factor) in row.iter_mut().zip(factors) {
+                    *electrons *= f64::from(factor);
+                }
             }
-        }
+        });
     }
 
     /// Its brightest pixel, electrons; 0 without light.
+    #[inline(always)]
     pub(crate) fn peak_e(&self) -> f64 {
         let (fours, rest) = self.electrons.as_chunks::<4>();
         let mut peaks = [0.0; 4];
@@ -139,6 +144,12 @@ impl Stamp {
     /// What the truth table tells, over a flat background of `background_e` electrons a pixel (sky and dark
     /// current) and a readout that adds a noise of `readout_noise_e` to a pixel.
     pub fn truth(&self, background_e: f64, readout_noise_e: f64) -> StampTruth {
+        widest(|| self.told(background_e, readout_noise_e))
+    }
+
+    /// [`Stamp::truth`], on the registers of whoever calls it.
+    #[inline(always)]
+    fn told(&self, background_e: f64, readout_noise_e: f64) -> StampTruth {
         let variance = background_e + readout_noise_e * readout_noise_e;
         let noise_e = variance.sqrt();
         // Four sums side by side: one after the other each sum would wait for the one before. Where there is neither light nor
@@ -166,6 +177,7 @@ impl Stamp {
     }
 
     /// Distance from the centre to the farthest pixel centre with more than `electrons`, px; at least 0.5.
+    #[inline(always)]
     fn radius_px(&self, electrons: f64) -> f64 {
         let mut radius2 = 0.25_f64;
         for (x, y, row) in self.rows() {
@@ -193,11 +205,16 @@ impl Stamp {
     /// The fraction of its electrons outside every window, in [0, 1]; 0 for an empty stamp.
     pub fn cut(&self, windows: &[Window]) -> f64 {
         let (right, bottom) = (self.x + self.columns, self.y + self.rows);
-        // Most windows of a frame are elsewhere, most stamps in one window or in none.
-        let touched: Vec<&Window> = windows
-            .iter()
-            .filter(|w| w.x < right && self.x < w.x + w.columns && w.y < bottom && self.y < w.y + w.rows)
-            .collect();
+        // Most windows of a frame are elsewhere, most stamps in one window or in none. Without an early exit, for many windows
+        // at once.
+        let touches = |w: &&Window| {
+            (w.x < right) & (self.x < w.x + w.columns) & (w.y < bottom) & (self.y < w.y + w.rows)
+        };
+        let touched: Vec<&Window> = if windows.iter().fold(false, |any, w| any | touches(&w)) {
+            windows.iter().filter(touches).collect()
+        } else {
+            Vec::new()
+        };
         let covers = |w: &&Window| {
             w.x <= self.x && w.y <= self.y && right <= w.x + w.columns && bottom <= w.y + w.rows
         };

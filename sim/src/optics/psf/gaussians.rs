@@ -7,6 +7,7 @@ use super::condense::condensed;
 use super::error_function::ErrorFunction;
 use super::pixels_within;
 use crate::optics::{ImagePoint, Stamp};
+use crate::widest::widest;
 
 /// A sum of circular Gaussians about one centre.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,13 +89,15 @@ impl Gaussians {
                 component.profile(point.position.y, own_y, &mut profiles.y);
                 let flux = electrons * component.weight * point.share;
                 let (left, width) = (own_x.0 - stamp.x, own_x.1 - own_x.0);
-                let rows = stamp.electrons.chunks_exact_mut(stamp.columns).skip(own_y.0 - stamp.y);
-                for (row, share_y) in rows.zip(&profiles.y) {
-                    let row_flux = flux * share_y;
-                    for (pixel, share_x) in row[left..left + width].iter_mut().zip(&profiles.x) {
-                        *pixel += row_flux * share_x;
+                widest(|| {
+                    let rows = stamp.electrons.chunks_exact_mut(stamp.columns).skip(own_y.0 - stamp.y);
+                    for (row, share_y) in rows.zip(&profiles.y) {
+                        let row_flux = flux * share_y;
+                        for (pixel, share_x) in row[left..left + width].iter_mut().zip(&profiles.x) {
+                            *pixel += row_flux * share_x;
+                        }
                     }
-                }
+                });
             }
         }
     }
