@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::optics::Stamp;
 use crate::pixel_factors::PixelFactors;
 use crate::smooth_field::SmoothField;
-use crate::widest::widest;
+use crate::widest::{Work, by_eights, widest};
 
 /// Pixels of a piece of a row, the unit in which images are looked at: of each there is one word of bits.
 pub(crate) const PIECE: usize = u64::BITS as usize;
@@ -223,19 +223,7 @@ impl ExpectedImage {
         // A part in 10^12 for what rounding adds.
         let largest = response.largest() * (1.0 + 1e-12);
         self.peaks.iter_mut().for_each(|peak| *peak *= largest);
-        widest(|| {
-            // Where nothing was drawn there is nothing to multiply.
-            let rows = self.signal.chunks_exact_mut(self.columns.max(1));
-            let words = self.drawn.chunks_exact(self.words_per_row.max(1));
-            for ((signal, response), words) in rows.zip(response.chunks(self.columns.max(1))).zip(words) {
-                let pieces = signal.chunks_mut(PIECE).zip(response.chunks(PIECE));
-                for ((signal, response), _) in pieces.zip(words).filter(|(_, word)| **word != 0) {
-                    for (signal, &response) in signal.iter_mut().zip(response) {
-                        *signal *= f64::from(response);
-                    }
-                }
-            }
-        });
+        widest(Respond { image: self, response });
     }
 
     /// Adds `electrons` to every pixel, times a factor of its own.
@@ -288,24 +276,7 @@ impl ExpectedImage {
 
     /// Adds the image of an object. Pixels of the stamp that lie off the image are left out.
     pub fn add(&mut self, stamp: &Stamp) {
-        widest(|| {
-            for (x, y, row) in stamp.rows() {
-                if y >= self.rows || x >= self.columns {
-                    continue;
-                }
-                let row = &row[..row.len().min(self.columns - x)];
-                // Only from the first to the last pixel that has light.
-                let Some(first) = row.iter().position(|&electrons| electrons > 0.0) else { continue };
-                let end = row.iter().rposition(|&electrons| electrons > 0.0).map_or(first, |last| last + 1);
-                let start = y * self.columns + x;
-                let pixels = &mut self.signal[start + first..start + end];
-                for (pixel, electrons) in pixels.iter_mut().zip(&row[first..end]) {
-                    *pixel += electrons;
-                }
-                let peak_e = largest(pixels);
-                self.mark(y, x + first, x + end, peak_e);
-            }
-        });
+        widest(Add { image: self, stamp });
     }
 
     /// Adds electrons to one pixel; outside the image nothing happens.
@@ -430,6 +401,61 @@ impl ExpectedImage {
             let piece = y * self.words_per_row + word;
             self.drawn[piece] |= (u64::MAX >> (64 - length)) << start;
             self.peaks[piece] = self.peaks[piece].max(peak_e);
+        }
+    }
+}
+
+/// What was drawn in an image, multiplied by the response of each pixel.
+struct Respond<'a> {
+    image: &'a mut ExpectedImage,
+    response: &'a [f32],
+}
+
+impl Work for Respond<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { image, response } = self;
+        // Where nothing was drawn there is nothing to multiply.
+        let rows = image.signal.chunks_exact_mut(image.columns.max(1));
+        let words = image.drawn.chunks_exact(image.words_per_row.max(1));
+        for ((signal, response), words) in rows.zip(response.chunks(image.columns.max(1))).zip(words) {
+            let pieces = signal.chunks_mut(PIECE).zip(response.chunks(PIECE));
+            for ((signal, response), _) in pieces.zip(words).filter(|(_, word)| **word != 0) {
+                for (signal, &response) in signal.iter_mut().zip(response) {
+                    *signal *= f64::from(response);
+                }
+            }
+        }
+    }
+}
+
+/// The image of an object, added to an image.
+struct Add<'a> {
+    image: &'a mut ExpectedImage,
+    stamp: &'a Stamp,
+}
+
+impl Work for Add<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { image, stamp } = self;
+        for (x, y, row) in stamp.rows() {
+            if y >= image.rows || x >= image.columns {
+                continue;
+            }
+            let row = &row[..row.len().min(image.columns - x)];
+            // Only from the first to the last pixel that has light.
+            let Some(first) = row.iter().position(|&electrons| electrons > 0.0) else { continue };
+            let end = row.iter().rposition(|&electrons| electrons > 0.0).map_or(first, |last| last + 1);
+            let start = y * image.columns + x;
+            let pixels = &mut image.signal[start + first..start + end];
+            by_eights(pixels, &row[first..end], |pixel, electrons| *pixel += electrons);
+            let peak_e = largest(pixels);
+            image.mark(y, x + first, x + end, peak_e);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use contract::{PixelPoint, Window};
 
-use crate::widest::widest;
+use crate::widest::{Work, by_eights, widest};
 
 /// Expected electrons of one object, in a rectangle of the detector. Reused from object to object.
 ///
@@ -96,14 +96,7 @@ impl Stamp {
     /// Multiplies every pixel by its factor of a detector of `columns`, whose factors stand row by row; beyond them it stays.
     pub(crate) fn respond(&mut self, factors: &[f32], columns: usize) {
         let (x, y) = (self.x, self.y);
-        widest(|| {
-            for (j, row) in self.electrons.chunks_exact_mut(self.columns.max(1)).enumerate() {
-                let factors = factors.get((y + j) * columns + x..).unwrap_or_default();
-                for (electrons, &factor) in row.iter_mut().zip(factors) {
-                    *electrons *= f64::from(factor);
-                }
-            }
-        });
+        widest(Respond { stamp: self, factors: factors.get(y * columns + x..).unwrap_or_default(), columns });
     }
 
     /// Its brightest pixel, electrons; 0 without light.
@@ -144,36 +137,7 @@ impl Stamp {
     /// What the truth table tells, over a flat background of `background_e` electrons a pixel (sky and dark
     /// current) and a readout that adds a noise of `readout_noise_e` to a pixel.
     pub fn truth(&self, background_e: f64, readout_noise_e: f64) -> StampTruth {
-        widest(|| self.told(background_e, readout_noise_e))
-    }
-
-    /// [`Stamp::truth`], on the registers of whoever calls it.
-    #[inline(always)]
-    fn told(&self, background_e: f64, readout_noise_e: f64) -> StampTruth {
-        let variance = background_e + readout_noise_e * readout_noise_e;
-        let noise_e = variance.sqrt();
-        // Four sums side by side: one after the other each sum would wait for the one before. Where there is neither light nor
-        // noise the quotient is 0, not no number.
-        let variance = variance.max(f64::MIN_POSITIVE);
-        let (mut electrons, mut snr2) = ([0.0; 4], [0.0; 4]);
-        let mut add = |signals: [f64; 4]| {
-            for lane in 0..4 {
-                let lit = if signals[lane] > 0.0 { signals[lane] } else { 0.0 };
-                electrons[lane] += lit;
-                snr2[lane] += lit * (lit / (lit + variance));
-            }
-        };
-        let (fours, rest) = self.electrons.as_chunks::<4>();
-        fours.iter().for_each(|four| add(*four));
-        add(std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0)));
-        let sum = |lanes: [f64; 4]| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-        let peak_electrons = self.peak_e();
-        StampTruth {
-            electrons: sum(electrons),
-            peak_electrons,
-            snr: sum(snr2).sqrt(),
-            radius_px: if peak_electrons > noise_e { self.radius_px(noise_e) } else { 0.5 },
-        }
+        widest(Truth { stamp: self, background_e, readout_noise_e })
     }
 
     /// Distance from the centre to the farthest pixel centre with more than `electrons`, px; at least 0.5.
@@ -253,6 +217,66 @@ impl Stamp {
             }
         }
         if total > 0.0 { (lost / total).min(1.0) } else { 0.0 }
+    }
+}
+
+/// [`Stamp::respond`] with the factors from its first pixel on.
+struct Respond<'a> {
+    stamp: &'a mut Stamp,
+    factors: &'a [f32],
+    columns: usize,
+}
+
+impl Work for Respond<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let rows = self.stamp.electrons.chunks_exact_mut(self.stamp.columns.max(1));
+        for (j, row) in rows.enumerate() {
+            let factors = self.factors.get(j * self.columns..).unwrap_or_default();
+            by_eights(row, factors, |electrons, factor| *electrons *= f64::from(factor));
+        }
+    }
+}
+
+/// [`Stamp::truth`].
+struct Truth<'a> {
+    stamp: &'a Stamp,
+    background_e: f64,
+    readout_noise_e: f64,
+}
+
+impl Work for Truth<'_> {
+    type Output = StampTruth;
+
+    #[inline(always)]
+    fn run(self) -> StampTruth {
+        let Self { stamp, background_e, readout_noise_e } = self;
+        let variance = background_e + readout_noise_e * readout_noise_e;
+        let noise_e = variance.sqrt();
+        // Four sums side by side: one after the other each sum would wait for the one before. Where there is neither light nor
+        // noise the quotient is 0, not no number.
+        let variance = variance.max(f64::MIN_POSITIVE);
+        let (mut electrons, mut snr2) = ([0.0; 4], [0.0; 4]);
+        let mut add = |signals: [f64; 4]| {
+            for lane in 0..4 {
+                let lit = if signals[lane] > 0.0 { signals[lane] } else { 0.0 };
+                electrons[lane] += lit;
+                snr2[lane] += lit * (lit / (lit + variance));
+            }
+        };
+        let (fours, rest) = stamp.electrons.as_chunks::<4>();
+        fours.iter().for_each(|four| add(*four));
+        add(std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0)));
+        let sum = |lanes: [f64; 4]| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+        let peak_electrons = stamp.peak_e();
+        StampTruth {
+            electrons: sum(electrons),
+            peak_electrons,
+            snr: sum(snr2).sqrt(),
+            radius_px: if peak_electrons > noise_e { stamp.radius_px(noise_e) } else { 0.5 },
+        }
     }
 }
 

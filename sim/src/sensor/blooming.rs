@@ -93,20 +93,21 @@ impl Sensor {
         let threshold_e = self.law.may_overflow_from_e();
         let mut overflows = vec![false; self.columns];
         expected.columns_above(threshold_e, &mut overflows);
-        let (mut collected, mut held) = (Vec::with_capacity(self.rows), Vec::with_capacity(self.rows));
+        let [mut means_e, mut collected, mut held] = [(); 3].map(|()| Vec::with_capacity(self.rows));
         for x in (0..self.columns).filter(|&x| overflows[x]) {
             let stream = |y: usize| streams.at((self.rows + y * self.columns + x) as u64);
-            let mean_e = |y: usize| expected.at(x, y).max(0.0);
+            means_e.clear();
+            means_e.extend((0..self.rows).map(|y| expected.at(x, y).max(0.0)));
             collected.clear();
-            collected.extend((0..self.rows).map(|y| self.law.collect(mean_e(y), &mut stream(y))));
+            collected.extend((0..self.rows).map(|y| self.law.collect(means_e[y], &mut stream(y))));
             held.clone_from(&collected);
             blooming.spill(&mut held, self.law.full_well_e());
             for y in 0..self.rows {
                 // Those that may overflow were drawn before with a well of their own, perhaps from a table.
-                if held[y] != collected[y] || mean_e(y) > threshold_e {
+                if held[y] != collected[y] || means_e[y] > threshold_e {
                     let mut stream = stream(y);
                     // What was collected is drawn again only to leave the stream where the read noise begins.
-                    self.law.collect(mean_e(y), &mut stream);
+                    self.law.collect(means_e[y], &mut stream);
                     let offset_e = offsets.map_or(0.0, |offsets| offsets.at(x, y));
                     put(y * self.columns + x, self.law.convert(held[y], offset_e, &mut stream));
                 }
