@@ -278,7 +278,7 @@ mod tests {
         assert_the_law_midway(1_000_000);
     }
 
-    /// In full: `cargo test --release -p boresight-sim midway -- --ignored`.
+    /// In full: `cargo test --release -p boresight-sim --lib midway -- --ignored`, 15 s of CPU time.
     #[test]
     #[ignore = "2e9 draws: for a scheduled job"]
     fn midway_between_nodes_the_law_is_exact_in_a_hundred_million_draws() {
