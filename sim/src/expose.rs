@@ -304,7 +304,7 @@ impl<'a> SimulatedCamera<'a> {
                 continue;
             }
             let mut bloom_px = 0.0;
-            if sensor.bloom_stamp(stamp, background_e, bloomed) {
+            if sensor.bloom_stamp(stamp, truth.peak_electrons, background_e, bloomed) {
                 let noise_e = (background_e + readout_noise_e * readout_noise_e).sqrt();
                 bloom_px = (bloomed.height_px(noise_e) - truth.radius_px).max(0.0);
                 std::mem::swap(stamp, bloomed);

@@ -99,19 +99,6 @@ impl Stamp {
         widest(Respond { stamp: self, factors: factors.get(y * columns + x..).unwrap_or_default(), columns });
     }
 
-    /// Its brightest pixel, electrons; 0 without light.
-    #[inline(always)]
-    pub(crate) fn peak_e(&self) -> f64 {
-        let (fours, rest) = self.electrons.as_chunks::<4>();
-        let mut peaks = [0.0; 4];
-        for four in fours {
-            for (peak, &signal) in peaks.iter_mut().zip(four) {
-                *peak = if signal > *peak { signal } else { *peak };
-            }
-        }
-        peaks.iter().chain(rest).copied().fold(0.0, f64::max)
-    }
-
     /// Where the light of the undisturbed image has its mean, off the detector included.
     pub fn centre(&self) -> PixelPoint {
         self.centre
@@ -283,19 +270,20 @@ impl Work for Truth<'_> {
         // Four sums side by side: one after the other each sum would wait for the one before. Where there is neither light nor
         // noise the quotient is 0, not no number.
         let variance = variance.max(f64::MIN_POSITIVE);
-        let (mut electrons, mut snr2) = ([0.0; 4], [0.0; 4]);
+        let (mut electrons, mut snr2, mut peaks) = ([0.0; 4], [0.0; 4], [0.0; 4]);
         let mut add = |signals: [f64; 4]| {
             for lane in 0..4 {
                 let lit = if signals[lane] > 0.0 { signals[lane] } else { 0.0 };
                 electrons[lane] += lit;
                 snr2[lane] += lit * (lit / (lit + variance));
+                peaks[lane] = if lit > peaks[lane] { lit } else { peaks[lane] };
             }
         };
         let (fours, rest) = stamp.electrons.as_chunks::<4>();
         fours.iter().for_each(|four| add(*four));
         add(std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0)));
         let sum = |lanes: [f64; 4]| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-        let peak_electrons = stamp.peak_e();
+        let peak_electrons = peaks.into_iter().fold(0.0, f64::max);
         StampTruth {
             electrons: sum(electrons),
             peak_electrons,

@@ -4,23 +4,23 @@
 //! if it lies in a region. Most pixels are neither, and need no number. So that a frame drawn in part *is* the whole frame
 //! wherever anybody looks, the whole frame is drawn in two steps:
 //!
-//! 1. *Which dark pixels exceed the floor.* A pixel is dark if its mean is at most the limit λ* of its row, which is the largest
+//! 1. *Which dark pixels exceed the floor.* A pixel is dark if its mean is at most the limit λ₀ of its row, which is the largest
 //!    mean of the row's background, held between the means that exceed the floor once in 2^20 and once in 64 times. No dark pixel
-//!    exceeds it with a higher probability than p* = p(λ*). Candidates come with p* from pixel to pixel, their gaps geometric
+//!    exceeds it with a higher probability than p₀ = p(λ₀). Candidates come with p₀ from pixel to pixel, their gaps geometric
 //!    (Devroye, Non-Uniform Random Variate Generation, 1986, X.2): their number is binomial, their places uniform. A dark
-//!    candidate of mean λ is kept with p(λ)/p* (PRNU, DSNU and gradients make every pixel's mean its own), and gets a number
+//!    candidate of mean λ is kept with p(λ)/p₀ (PRNU, DSNU and gradients make every pixel's mean its own), and gets a number
 //!    from its law above the floor ([`Exceedance`]).
 //! 2. *All other pixels.* They are drawn from the words of their row, as without a floor. A dark pixel whose number is above the
 //!    floor, but was not among those of the first step, is drawn again until it is not: its law given that it does not exceed.
 //!
-//! Pixels brighter than λ*, near sources, are drawn outright by the second step alone. Every pixel so has the law that it has
+//! Pixels brighter than λ₀, near sources, are drawn outright by the second step alone. Every pixel so has the law that it has
 //! without a floor, and, where nothing exceeds, the same number.
 //!
 //! The first step costs a candidate a row or fewer. The second can be done for any piece of 64 pixels of a row alone: for those
-//! in which a pixel may be brighter than λ*, and then, once the camera has found its regions among the pixels above the floor,
+//! in which a pixel may be brighter than λ₀, and then, once the camera has found its regions among the pixels above the floor,
 //! for those of its regions. What overflows is drawn column by column from the pixels' own addresses in either case.
 //!
-//! Numbers of lines that have noise or offsets of their own, of detectors without shot noise and of high flat levels are not
+//! Frames whose lines have noise or offsets of their own, of detectors without shot noise, and of high flat levels are not
 //! drawn from tables: there all pixels are drawn outright.
 
 use contract::Window;
