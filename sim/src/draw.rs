@@ -363,27 +363,31 @@ impl ExpectedImage {
         self.drawn_in(y, p) != 0 && bound_e + self.peaks[y * self.words_per_row + p] > limit_e
     }
 
-    /// Marks in `columns` those that hold a pixel with more than `limit_e` expected electrons.
-    pub(crate) fn columns_above(&self, limit_e: f64, columns: &mut [bool]) {
+    /// Of each column, the rows from the first to the last pixel with more than `limit_e` expected electrons.
+    pub(crate) fn rows_above(&self, limit_e: f64) -> Vec<Range<usize>> {
+        let mut columns = vec![0..0; self.columns];
+        let extend = |rows: &mut Range<usize>, y: usize| {
+            let first = if rows.is_empty() { y } else { rows.start };
+            *rows = first..y + 1;
+        };
         let bound_e = self.background.bound_e();
         if bound_e > limit_e {
             let mut row = vec![0.0; self.columns];
             for y in 0..self.rows {
                 self.row(y, &mut row);
-                for (column, &electrons) in columns.iter_mut().zip(&row) {
-                    *column |= electrons > limit_e;
-                }
+                let above = columns.iter_mut().zip(&row).filter(|(_, electrons)| **electrons > limit_e);
+                above.for_each(|(rows, _)| extend(rows, y));
             }
-            return;
+            return columns;
         }
         // Then only something drawn can be above it.
         for y in 0..self.rows {
             for p in (0..self.words_per_row).filter(|&p| self.may_rise_above(y, p, bound_e, limit_e)) {
-                for (x, column) in columns.iter_mut().enumerate().skip(p * PIECE).take(PIECE) {
-                    *column |= self.at(x, y) > limit_e;
-                }
+                let piece = columns.iter_mut().enumerate().skip(p * PIECE).take(PIECE);
+                piece.filter(|(x, _)| self.at(*x, y) > limit_e).for_each(|(_, rows)| extend(rows, y));
             }
         }
+        columns
     }
 
     /// Index (row by row) and electrons above the background of every pixel where something was drawn, in the order
