@@ -367,7 +367,7 @@ impl ExpectedImage {
     pub(crate) fn rows_above(&self, limit_e: f64) -> Vec<Range<usize>> {
         let mut columns = vec![0..0; self.columns];
         let extend = |rows: &mut Range<usize>, y: usize| {
-            let first = if rows.is_empty() { y } else { rows.start };
+            let first = if rows.start == rows.end { y } else { rows.start };
             *rows = first..y + 1;
         };
         let bound_e = self.background.bound_e();

@@ -113,7 +113,7 @@ impl<'a> SimulatedCamera<'a> {
             let rate = rays.rate_per_cm2_s(time, &view.moment.states.chaser.position_km);
             rays.tracks(&simulator.seed, number, exposure_s, rate)
         });
-        let (mut objects, smear_e_per_px, windows) =
+        let Seen { mut objects, smear_e_per_px, windows } =
             self.draw(&mut view, &drawn, number, &opening, &tracks)?;
         if let Some(windows) = &windows {
             for (object, stamp) in objects.iter_mut().zip(&self.stamps) {
@@ -212,7 +212,7 @@ impl<'a> SimulatedCamera<'a> {
     }
 
     /// Draws the expected image and the digital numbers, keeps a stamp of every object that has light on the detector,
-    /// and tells its truth; in the second place the mean smear of a pixel, electrons, and in the third the regions that are kept.
+    /// and tells its truth.
     fn draw(
         &mut self,
         view: &mut View,
@@ -220,7 +220,7 @@ impl<'a> SimulatedCamera<'a> {
         number: u64,
         opening: &Opening,
         tracks: &[Track],
-    ) -> Result<(Vec<ObjectTruth>, f64, Option<Vec<Window>>), SimError> {
+    ) -> Result<Seen, SimError> {
         let Self { simulator, painter, image, backgrounds, stamps, halves, bloomed, .. } = self;
         let sensor = &simulator.sensor;
         let (columns, rows) = image.size();
@@ -338,8 +338,17 @@ impl<'a> SimulatedCamera<'a> {
                 None
             }
         };
-        Ok((objects, smear_e_per_px, windows))
+        Ok(Seen { objects, smear_e_per_px, windows })
     }
+}
+
+/// What the camera has seen of a frame.
+struct Seen {
+    objects: Vec<ObjectTruth>,
+    /// Electrons that the frame transfer adds to a pixel, the mean over all.
+    smear_e_per_px: f64,
+    /// The regions that are kept; `None`: the whole image.
+    windows: Option<Vec<Window>>,
 }
 
 /// Reads out a frame as far as the camera looks at it, and finds the regions that it keeps.

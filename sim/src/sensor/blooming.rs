@@ -95,7 +95,7 @@ impl Sensor {
         let threshold_e = self.law.may_overflow_from_e();
         let above = expected.rows_above(threshold_e);
         let mut part = ColumnPart::default();
-        for (x, above) in above.into_iter().enumerate().filter(|(_, above)| !above.is_empty()) {
+        for (x, above) in above.into_iter().enumerate().filter(|(_, above)| above.start < above.end) {
             let stream = |y: usize| streams.at((self.rows + y * self.columns + x) as u64);
             let mut margin = MARGIN;
             loop {
