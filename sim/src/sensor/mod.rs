@@ -41,6 +41,7 @@ mod poisson_digits;
 mod raw_image;
 mod readout;
 mod sparse;
+mod sparse_image;
 mod telegraph;
 mod ziggurat;
 
@@ -58,6 +59,7 @@ pub use interlace::{InterlaceConfig, RowParity};
 pub use poisson::poisson;
 pub use raw_image::RawImage;
 pub use readout::Sensor;
-pub(crate) use sparse::{Collected, SparseImage};
+pub(crate) use sparse::Collected;
+pub(crate) use sparse_image::SparseImage;
 pub use telegraph::TelegraphConfig;
 pub(crate) use ziggurat::Ziggurat;
