@@ -1,8 +1,18 @@
 //! The expected image: photo-electrons before any noise.
 
+mod background;
+
+use std::ops::Range;
+
+use background::Background;
+
 use crate::optics::Stamp;
 use crate::pixel_factors::PixelFactors;
 use crate::smooth_field::SmoothField;
+use crate::widest::{Work, by_eights, widest};
+
+/// Pixels of a piece of a row, the unit in which images are looked at: of each there is one word of bits.
+pub(crate) const PIECE: usize = u64::BITS as usize;
 
 /// Expected photo-electrons of a frame: a flat level, what makes the background uneven, and signal where something was drawn.
 ///
@@ -19,100 +29,8 @@ pub struct ExpectedImage {
     /// One bit a pixel, `words_per_row` words a row: whether something was drawn there.
     drawn: Vec<u64>,
     words_per_row: usize,
-}
-
-/// The background of every pixel: (light + smooth + field) · response + dark + pattern.
-#[derive(Debug, Clone, PartialEq, Default)]
-struct Background {
-    /// Electrons of flat light.
-    light_e: f64,
-    /// A smooth field of light and the factor that makes it electrons.
-    smooth: Option<(SmoothField, f64)>,
-    /// Electrons of light above those, row by row; empty when there are none.
-    field: Vec<f64>,
-    /// Factors of the light, row by row; where it ends they are 1.
-    response: Option<PixelFactors>,
-    /// Flat electrons that no response changes.
-    dark_e: f64,
-    /// Electrons that no response changes, and a factor of each pixel for them, row by row; where it ends there are none.
-    pattern: Option<(f64, PixelFactors)>,
-}
-
-impl Background {
-    /// The background of the pixels of a row of `out.len()` columns.
-    #[inline(always)]
-    fn row(&self, y: usize, out: &mut [f64]) {
-        let pixels = y * out.len()..(y + 1) * out.len();
-        match &self.smooth {
-            Some((smooth, scale)) => {
-                out.fill(0.0);
-                smooth.row(y, out);
-                for out in out.iter_mut() {
-                    *out = self.light_e + scale * *out;
-                }
-            }
-            None => out.fill(self.light_e),
-        }
-        if let Some(field) = self.field.get(pixels.clone()) {
-            for (out, field) in out.iter_mut().zip(field) {
-                *out += field;
-            }
-        }
-        if let Some(response) = self.response.as_ref().and_then(|response| response.get(pixels.clone())) {
-            for (out, &response) in out.iter_mut().zip(response) {
-                *out *= f64::from(response);
-            }
-        }
-        match self.pattern.as_ref().and_then(|(e, factors)| Some((e, factors.get(pixels)?))) {
-            Some((electrons, factors)) => {
-                for (out, &factor) in out.iter_mut().zip(factors) {
-                    *out += self.dark_e + electrons * f64::from(factor);
-                }
-            }
-            None => {
-                for out in out.iter_mut() {
-                    *out += self.dark_e;
-                }
-            }
-        }
-    }
-
-    /// [`Background::row`] of one pixel of an image of `columns`, by the same steps.
-    fn at(&self, x: usize, y: usize, columns: usize) -> f64 {
-        let index = y * columns + x;
-        // A pattern ends at the end of a row, as `row` takes it.
-        let of_row = |length: usize| length >= (y + 1) * columns;
-        let mut electrons = match &self.smooth {
-            Some((smooth, scale)) => self.light_e + scale * smooth.at(x, y),
-            None => self.light_e,
-        };
-        if let Some(field) = self.field.get(index).filter(|_| of_row(self.field.len())) {
-            electrons += field;
-        }
-        if let Some(response) = self.response.as_ref().filter(|response| of_row(response.len())) {
-            electrons *= f64::from(response[index]);
-        }
-        match self.pattern.as_ref().filter(|(_, factors)| of_row(factors.len())) {
-            Some((e, factors)) => electrons + (self.dark_e + e * f64::from(factors[index])),
-            None => electrons + self.dark_e,
-        }
-    }
-
-    /// No pixel has more.
-    fn bound_e(&self) -> f64 {
-        let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.largest());
-        let field_e = self.field.iter().copied().fold(0.0, f64::max);
-        let response = self.response.as_ref().map_or(1.0, |response| response.largest().max(1.0));
-        let pattern_e =
-            self.pattern.as_ref().map_or(0.0, |(electrons, factors)| electrons * factors.largest());
-        // A part in 10^12 for what rounding adds on the way.
-        ((self.light_e + smooth_e + field_e) * response + self.dark_e + pattern_e) * (1.0 + 1e-12)
-    }
-
-    /// Whether it may differ from pixel to pixel.
-    fn is_uneven(&self) -> bool {
-        self.smooth.is_some() || !self.field.is_empty() || self.response.is_some() || self.pattern.is_some()
-    }
+    /// Of each piece, no pixel has more electrons of what was drawn.
+    peaks: Vec<f64>,
 }
 
 /// Images are equal that have the same electrons in every pixel, however they were told.
@@ -133,6 +51,7 @@ impl ExpectedImage {
             signal: vec![0.0; columns * rows],
             drawn: vec![0; words_per_row * rows],
             words_per_row,
+            peaks: vec![0.0; words_per_row * rows],
         }
     }
 
@@ -148,13 +67,14 @@ impl ExpectedImage {
             .chunks_exact_mut(self.columns.max(1))
             .zip(self.drawn.chunks_exact_mut(self.words_per_row.max(1)))
         {
-            for (pixels, word) in row.chunks_mut(64).zip(words) {
+            for (pixels, word) in row.chunks_mut(PIECE).zip(words) {
                 if *word != 0 {
                     pixels.fill(0.0);
                     *word = 0;
                 }
             }
         }
+        self.peaks.fill(0.0);
         let mut field = std::mem::take(&mut self.background.field);
         field.clear();
         self.background = Background { light_e: flat_e, field, ..Background::default() };
@@ -186,7 +106,7 @@ impl ExpectedImage {
         let flat_e = self.flat_e();
         let mut field = vec![0.0; self.signal.len()];
         for (y, row) in field.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            self.background.row(y, row);
+            self.background.span(0, y, self.columns, row);
             row.iter_mut().for_each(|electrons| *electrons -= flat_e);
         }
         self.background = Background { light_e: flat_e, field, ..Background::default() };
@@ -199,18 +119,10 @@ impl ExpectedImage {
             self.flatten();
         }
         self.background.response = Some(response.clone());
-        // Where nothing was drawn there is nothing to multiply.
-        let rows = self.signal.chunks_exact_mut(self.columns.max(1));
-        let words = self.drawn.chunks_exact(self.words_per_row.max(1));
-        for ((signal, response), words) in rows.zip(response.chunks(self.columns.max(1))).zip(words) {
-            for ((signal, response), word) in signal.chunks_mut(64).zip(response.chunks(64)).zip(words) {
-                if *word != 0 {
-                    for (signal, &response) in signal.iter_mut().zip(response) {
-                        *signal *= f64::from(response);
-                    }
-                }
-            }
-        }
+        // A part in 10^12 for what rounding adds.
+        let largest = response.largest() * (1.0 + 1e-12);
+        self.peaks.iter_mut().for_each(|peak| *peak *= largest);
+        widest(Respond { image: self, response });
     }
 
     /// Adds `electrons` to every pixel, times a factor of its own.
@@ -248,7 +160,7 @@ impl ExpectedImage {
     pub(crate) fn empty_pixel(&mut self, x: usize, y: usize) {
         let background_e = self.background_at(x, y);
         self.signal[y * self.columns + x] = -background_e;
-        self.mark(y, x, x + 1);
+        self.mark(y, x, x + 1, 0.0);
     }
 
     /// Expected electrons of the background in a pixel.
@@ -263,28 +175,16 @@ impl ExpectedImage {
 
     /// Adds the image of an object. Pixels of the stamp that lie off the image are left out.
     pub fn add(&mut self, stamp: &Stamp) {
-        for (x, y, row) in stamp.rows() {
-            if y >= self.rows || x >= self.columns {
-                continue;
-            }
-            let row = &row[..row.len().min(self.columns - x)];
-            // Only from the first to the last pixel that has light.
-            let Some(first) = row.iter().position(|&electrons| electrons > 0.0) else { continue };
-            let end = row.iter().rposition(|&electrons| electrons > 0.0).map_or(first, |last| last + 1);
-            let start = y * self.columns + x;
-            for (pixel, electrons) in self.signal[start + first..start + end].iter_mut().zip(&row[first..end])
-            {
-                *pixel += electrons;
-            }
-            self.mark(y, x + first, x + end);
-        }
+        widest(Add { image: self, stamp });
     }
 
     /// Adds electrons to one pixel; outside the image nothing happens.
     pub fn add_pixel(&mut self, x: usize, y: usize, electrons: f64) {
         if x < self.columns && y < self.rows {
-            self.signal[y * self.columns + x] += electrons;
-            self.mark(y, x, x + 1);
+            let pixel = &mut self.signal[y * self.columns + x];
+            *pixel += electrons;
+            let peak_e = *pixel;
+            self.mark(y, x, x + 1, peak_e);
         }
     }
 
@@ -311,10 +211,10 @@ impl ExpectedImage {
     /// Expected electrons of the pixels of a row, background included; `out` is as long as a row.
     #[inline(always)]
     pub(crate) fn row(&self, y: usize, out: &mut [f64]) {
-        self.background.row(y, out);
+        self.background.span(0, y, self.columns, out);
         let signal = self.signal.chunks_exact(self.columns.max(1)).nth(y).unwrap_or_default();
         let words = self.drawn.chunks_exact(self.words_per_row.max(1)).nth(y).unwrap_or_default();
-        for ((out, signal), word) in out.chunks_mut(64).zip(signal.chunks(64)).zip(words) {
+        for ((out, signal), word) in out.chunks_mut(PIECE).zip(signal.chunks(PIECE)).zip(words) {
             if *word != 0 {
                 for (out, signal) in out.iter_mut().zip(signal) {
                     *out += signal;
@@ -323,33 +223,70 @@ impl ExpectedImage {
         }
     }
 
-    /// Marks in `columns` those that hold a pixel with more than `limit_e` expected electrons.
-    pub(crate) fn columns_above(&self, limit_e: f64, columns: &mut [bool]) {
+    /// The pixels of piece `p` of row `y`, as indices into the image.
+    pub(crate) fn piece_pixels(&self, y: usize, p: usize) -> Range<usize> {
+        y * self.columns + p * PIECE..y * self.columns + ((p + 1) * PIECE).min(self.columns)
+    }
+
+    /// [`ExpectedImage::row`] of piece `p` alone; `out` is as long as the piece.
+    #[inline(always)]
+    pub(crate) fn piece(&self, y: usize, p: usize, out: &mut [f64]) {
+        self.background.span(p * PIECE, y, self.columns, out);
+        if self.drawn_in(y, p) != 0 {
+            for (out, signal) in out.iter_mut().zip(&self.signal[self.piece_pixels(y, p)]) {
+                *out += signal;
+            }
+        }
+    }
+
+    /// The pixels of piece `p` of row `y` where something was drawn, one bit each.
+    #[inline(always)]
+    pub(crate) fn drawn_in(&self, y: usize, p: usize) -> u64 {
+        self.drawn[y * self.words_per_row + p]
+    }
+
+    /// Electrons of what was drawn in a pixel, above the background.
+    pub(crate) fn signal_at(&self, index: usize) -> f64 {
+        self.signal[index]
+    }
+
+    /// No pixel of the background of row `y` has more electrons.
+    pub(crate) fn row_bound_e(&self, y: usize) -> f64 {
+        self.background.row_bound_e(y, self.columns)
+    }
+
+    /// Whether in piece `p` of row `y` something was drawn that may bring a pixel above `limit_e`, over a background of at
+    /// most `bound_e`.
+    #[inline(always)]
+    pub(crate) fn may_rise_above(&self, y: usize, p: usize, bound_e: f64, limit_e: f64) -> bool {
+        self.drawn_in(y, p) != 0 && bound_e + self.peaks[y * self.words_per_row + p] > limit_e
+    }
+
+    /// Of each column, the rows from the first to the last pixel with more than `limit_e` expected electrons.
+    pub(crate) fn rows_above(&self, limit_e: f64) -> Vec<Range<usize>> {
+        let mut columns = vec![0..0; self.columns];
+        let extend = |rows: &mut Range<usize>, y: usize| {
+            let first = if rows.start == rows.end { y } else { rows.start };
+            *rows = first..y + 1;
+        };
         let bound_e = self.background.bound_e();
         if bound_e > limit_e {
             let mut row = vec![0.0; self.columns];
             for y in 0..self.rows {
                 self.row(y, &mut row);
-                for (column, &electrons) in columns.iter_mut().zip(&row) {
-                    *column |= electrons > limit_e;
-                }
+                let above = columns.iter_mut().zip(&row).filter(|(_, electrons)| **electrons > limit_e);
+                above.for_each(|(rows, _)| extend(rows, y));
             }
-            return;
+            return columns;
         }
         // Then only something drawn can be above it.
-        let rows = self.signal.chunks_exact(self.columns.max(1));
-        for (y, (row, words)) in rows.zip(self.drawn.chunks_exact(self.words_per_row.max(1))).enumerate() {
-            for (w, (signal, _)) in row.chunks(64).zip(words).enumerate().filter(|(_, (_, word))| **word != 0)
-            {
-                // Without an early exit, for many pixels at once.
-                let may = signal.iter().fold(false, |may, signal_e| may | (bound_e + signal_e > limit_e));
-                if may {
-                    for (x, column) in columns.iter_mut().enumerate().skip(w * 64).take(signal.len()) {
-                        *column |= self.at(x, y) > limit_e;
-                    }
-                }
+        for y in 0..self.rows {
+            for p in (0..self.words_per_row).filter(|&p| self.may_rise_above(y, p, bound_e, limit_e)) {
+                let piece = columns.iter_mut().enumerate().skip(p * PIECE).take(PIECE);
+                piece.filter(|(x, _)| self.at(*x, y) > limit_e).for_each(|(_, rows)| extend(rows, y));
             }
         }
+        columns
     }
 
     /// Index (row by row) and electrons above the background of every pixel where something was drawn, in the order
@@ -358,37 +295,101 @@ impl ExpectedImage {
         drawn_pixels(&self.drawn, self.columns, self.words_per_row).map(|index| (index, self.signal[index]))
     }
 
-    /// Marks columns `from..to` of a row as drawn.
-    fn mark(&mut self, y: usize, from: usize, to: usize) {
+    /// Marks columns `from..to` of a row as drawn, with at most `peak_e` electrons in a pixel.
+    #[inline(always)]
+    fn mark(&mut self, y: usize, from: usize, to: usize, peak_e: f64) {
         for word in from / 64..to.div_ceil(64) {
             let start = from.max(word * 64) - word * 64;
             let length = to.min((word + 1) * 64) - word * 64 - start;
-            self.drawn[y * self.words_per_row + word] |= (u64::MAX >> (64 - length)) << start;
+            let piece = y * self.words_per_row + word;
+            self.drawn[piece] |= (u64::MAX >> (64 - length)) << start;
+            self.peaks[piece] = self.peaks[piece].max(peak_e);
         }
     }
+}
+
+/// What was drawn in an image, multiplied by the response of each pixel.
+struct Respond<'a> {
+    image: &'a mut ExpectedImage,
+    response: &'a [f32],
+}
+
+impl Work for Respond<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { image, response } = self;
+        // Where nothing was drawn there is nothing to multiply.
+        let rows = image.signal.chunks_exact_mut(image.columns.max(1));
+        let words = image.drawn.chunks_exact(image.words_per_row.max(1));
+        for ((signal, response), words) in rows.zip(response.chunks(image.columns.max(1))).zip(words) {
+            let pieces = signal.chunks_mut(PIECE).zip(response.chunks(PIECE));
+            for ((signal, response), _) in pieces.zip(words).filter(|(_, word)| **word != 0) {
+                for (signal, &response) in signal.iter_mut().zip(response) {
+                    *signal *= f64::from(response);
+                }
+            }
+        }
+    }
+}
+
+/// The image of an object, added to an image.
+struct Add<'a> {
+    image: &'a mut ExpectedImage,
+    stamp: &'a Stamp,
+}
+
+impl Work for Add<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { image, stamp } = self;
+        for (x, y, row) in stamp.rows() {
+            if y >= image.rows || x >= image.columns {
+                continue;
+            }
+            let row = &row[..row.len().min(image.columns - x)];
+            // Only from the first to the last pixel that has light.
+            let Some(first) = row.iter().position(|&electrons| electrons > 0.0) else { continue };
+            let end = row.iter().rposition(|&electrons| electrons > 0.0).map_or(first, |last| last + 1);
+            let start = y * image.columns + x;
+            let pixels = &mut image.signal[start + first..start + end];
+            by_eights(pixels, &row[first..end], |pixel, electrons| *pixel += electrons);
+            let peak_e = largest(pixels);
+            image.mark(y, x + first, x + end, peak_e);
+        }
+    }
+}
+
+/// The largest of some numbers, and 0: eight at a time, for one after the other each would wait for the one before.
+#[inline(always)]
+fn largest(numbers: &[f64]) -> f64 {
+    let (eights, rest) = numbers.as_chunks::<8>();
+    let mut peaks = [0.0_f64; 8];
+    for eight in eights {
+        for (peak, &number) in peaks.iter_mut().zip(eight) {
+            *peak = if number > *peak { number } else { *peak };
+        }
+    }
+    peaks.iter().chain(rest).copied().fold(0.0, f64::max)
 }
 
 /// Indices, row by row, of the pixels that are marked in `words`.
 fn drawn_pixels(words: &[u64], columns: usize, words_per_row: usize) -> impl Iterator<Item = usize> {
     words.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(move |(i, &word)| {
         let first = i / words_per_row * columns + i % words_per_row * 64;
-        SetBits(word).map(move |bit| first + bit)
+        set_bits(word).map(move |bit| first + bit)
     })
 }
 
 /// The places of the ones in a word, lowest first.
-struct SetBits(u64);
-
-impl Iterator for SetBits {
-    type Item = usize;
-    fn next(&mut self) -> Option<usize> {
-        if self.0 == 0 {
-            return None;
-        }
-        let bit = self.0.trailing_zeros() as usize;
-        self.0 &= self.0 - 1;
-        Some(bit)
-    }
+pub(crate) fn set_bits(word: u64) -> impl Iterator<Item = usize> {
+    // Each word is the one before without its lowest one.
+    std::iter::successors(Some(word), |word| Some(word & word.wrapping_sub(1)))
+        .take_while(|word| *word != 0)
+        .map(|word| word.trailing_zeros() as usize)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Truth → scene → optics → sensor → on board: one frame, in one function.
 
-use contract::{Frame, Telemetry};
+use contract::{Frame, Telemetry, Window};
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 
@@ -10,7 +10,7 @@ use crate::onboard::{RoiExtractor, downlink};
 use crate::optics::{ImagePoint, Stamp};
 use crate::painter::Painter;
 use crate::scene::{CameraMotion, Source, planets};
-use crate::sensor::{FlatLaws, Opening, RawImage, Switch, Track};
+use crate::sensor::{Collected, FlatLaws, Opening, Sensor, SparseImage, Switch, Track};
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility, clock, shadow};
 use crate::view::{Drawn, View};
 use crate::{SimError, Simulator};
@@ -37,6 +37,16 @@ pub struct Exposure {
     pub objects: Vec<ObjectTruth>,
 }
 
+/// Which pixels of a frame are drawn of which a camera keeps regions. What it keeps is the same, bit for bit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Drawing {
+    /// Those that the camera looks at: all above the threshold of its regions, and all in its regions.
+    #[default]
+    Seen,
+    /// All of them.
+    All,
+}
+
 /// A camera of a [`Simulator`], with the buffers that frames reuse. One a thread.
 #[derive(Debug)]
 pub struct SimulatedCamera<'a> {
@@ -44,7 +54,8 @@ pub struct SimulatedCamera<'a> {
     painter: Painter,
     image: ExpectedImage,
     laws: FlatLaws,
-    raw: RawImage,
+    raw: SparseImage,
+    drawing: Drawing,
     regions: Option<RoiExtractor>,
     /// Background of an interlaced scene, electrons a second, pixel by pixel: of the first field, and of the second.
     backgrounds: [Vec<f64>; 2],
@@ -64,13 +75,19 @@ impl<'a> SimulatedCamera<'a> {
             painter: Painter::new(simulator.psf.clone()),
             image: simulator.sensor.new_expected(),
             laws: FlatLaws::new(),
-            raw: simulator.sensor.new_raw(),
+            raw: simulator.sensor.new_sparse(),
+            drawing: Drawing::Seen,
             regions,
             backgrounds: [Vec::new(), Vec::new()],
             stamps: Vec::new(),
             halves: [Stamp::new(), Stamp::new()],
             bloomed: Stamp::new(),
         })
+    }
+
+    /// The same camera, with other pixels drawn of the frames of which it keeps regions.
+    pub fn drawing(self, drawing: Drawing) -> Self {
+        Self { drawing, ..self }
     }
 
     /// Makes frame number `number`: the same bits whatever was made before.
@@ -84,15 +101,20 @@ impl<'a> SimulatedCamera<'a> {
             value: number.to_string(),
             expected: "a frame of the schedule",
         })?;
-        let exposure_s = self.exposure_s(time, number)?;
-        let (mut view, drawn) = View::of_frame(simulator, self.painter.psf(), time, exposure_s, number)?;
+        let lag_s = simulator.shutter.lag_s();
+        let watched = Moment::at(simulator, time - lag_s * Unit::Second, number)?;
+        let exposure_s = self.exposure_s(&watched, time - lag_s * Unit::Second);
+        // A control without lag looks at the frame's own moment.
+        let moment = if lag_s == 0.0 { watched } else { Moment::at(simulator, time, number)? };
+        let (mut view, drawn) =
+            View::of_frame(simulator, self.painter.psf(), time, moment, exposure_s, number)?;
         let opening = Opening { seed: simulator.seed, middle_s: clock::tt_j2000_s(time), exposure_s };
         let tracks = simulator.cosmic_rays.as_ref().map_or_else(Vec::new, |rays| {
             let rate = rays.rate_per_cm2_s(time, &view.moment.states.chaser.position_km);
             rays.tracks(&simulator.seed, number, exposure_s, rate)
         });
-        let (mut objects, smear_e_per_px) = self.draw(&mut view, &drawn, number, &opening, &tracks)?;
-        let windows = self.regions.as_mut().map(|regions| regions.extract(&self.raw));
+        let Seen { mut objects, smear_e_per_px, windows } =
+            self.draw(&mut view, &drawn, number, &opening, &tracks)?;
         if let Some(windows) = &windows {
             for (object, stamp) in objects.iter_mut().zip(&self.stamps) {
                 object.cut = stamp.cut(windows);
@@ -133,7 +155,7 @@ impl<'a> SimulatedCamera<'a> {
             number,
             exposure_s,
         );
-        let frame = downlink(&self.raw, number, windows)?;
+        let frame = downlink(self.raw.raw(), number, windows)?;
         Ok(Exposure { frame, telemetry, truth, objects })
     }
 
@@ -144,11 +166,9 @@ impl<'a> SimulatedCamera<'a> {
     }
 
     /// The exposure time that the shutter control chooses: it follows the brightest object on the detector, as it
-    /// was a lag before the exposure.
-    fn exposure_s(&self, time: Epoch, number: u64) -> Result<f64, SimError> {
+    /// is at a moment, a lag before the exposure.
+    fn exposure_s(&self, moment: &Moment, time: Epoch) -> f64 {
         let simulator = self.simulator;
-        let time = time - simulator.shutter.lag_s() * Unit::Second;
-        let moment = Moment::at(simulator, time, number)?;
         let (columns, rows) = simulator.projection.detector();
         let target = moment.target_position.filter(|position| position.is_on_detector(columns, rows));
         // A body that spans pixels has a lower peak than a point of its light.
@@ -171,8 +191,8 @@ impl<'a> SimulatedCamera<'a> {
                 brightest,
             );
         }
-        let peak = (brightest * peak_share).max(self.moon_peak_e_per_s(&moment));
-        Ok(simulator.shutter.exposure_s((peak > 0.0).then_some(peak)))
+        let peak = (brightest * peak_share).max(self.moon_peak_e_per_s(moment));
+        simulator.shutter.exposure_s((peak > 0.0).then_some(peak))
     }
 
     /// Electrons a second in the brightest pixel of the Moon, from its image without the camera's motion; 0 when it is not
@@ -192,7 +212,7 @@ impl<'a> SimulatedCamera<'a> {
     }
 
     /// Draws the expected image and the digital numbers, keeps a stamp of every object that has light on the detector,
-    /// and tells its truth; in the second place the mean smear of a pixel, electrons.
+    /// and tells its truth.
     fn draw(
         &mut self,
         view: &mut View,
@@ -200,8 +220,8 @@ impl<'a> SimulatedCamera<'a> {
         number: u64,
         opening: &Opening,
         tracks: &[Track],
-    ) -> Result<(Vec<ObjectTruth>, f64), SimError> {
-        let Self { simulator, painter, image, backgrounds, laws, raw, stamps, halves, bloomed, .. } = self;
+    ) -> Result<Seen, SimError> {
+        let Self { simulator, painter, image, backgrounds, stamps, halves, bloomed, .. } = self;
         let sensor = &simulator.sensor;
         let (columns, rows) = image.size();
         let hot_pixels = sensor.hot_pixels();
@@ -284,7 +304,7 @@ impl<'a> SimulatedCamera<'a> {
                 continue;
             }
             let mut bloom_px = 0.0;
-            if sensor.bloom_stamp(stamp, background_e, bloomed) {
+            if sensor.bloom_stamp(stamp, truth.peak_electrons, background_e, bloomed) {
                 let noise_e = (background_e + readout_noise_e * readout_noise_e).sqrt();
                 bloom_px = (bloomed.height_px(noise_e) - truth.radius_px).max(0.0);
                 std::mem::swap(stamp, bloomed);
@@ -306,9 +326,48 @@ impl<'a> SimulatedCamera<'a> {
                 cut: 0.0,
             });
         }
-        sensor.read_out(&charge, &simulator.seed, number, laws, raw)?;
-        Ok((objects, charge.smear_e_per_px()))
+        let smear_e_per_px = charge.smear_e_per_px();
+        let Self { laws, raw, regions, drawing, .. } = self;
+        let windows = match regions {
+            Some(regions) => {
+                let collected = Collected { charge: &charge, seed: simulator.seed, frame: number };
+                Some(keep_regions(sensor, &collected, regions, *drawing, laws, raw)?)
+            }
+            None => {
+                sensor.read_out(&charge, &simulator.seed, number, laws, raw.whole())?;
+                None
+            }
+        };
+        Ok(Seen { objects, smear_e_per_px, windows })
     }
+}
+
+/// What the camera has seen of a frame.
+struct Seen {
+    objects: Vec<ObjectTruth>,
+    /// Electrons that the frame transfer adds to a pixel, the mean over all.
+    smear_e_per_px: f64,
+    /// The regions that are kept; `None`: the whole image.
+    windows: Option<Vec<Window>>,
+}
+
+/// Reads out a frame as far as the camera looks at it, and finds the regions that it keeps.
+fn keep_regions(
+    sensor: &Sensor,
+    collected: &Collected<'_>,
+    regions: &mut RoiExtractor,
+    drawing: Drawing,
+    laws: &mut FlatLaws,
+    raw: &mut SparseImage,
+) -> Result<Vec<Window>, SimError> {
+    sensor.read_out_above(regions.threshold_dn(), collected, laws, raw)?;
+    if drawing == Drawing::All {
+        let (columns, rows) = raw.raw().size();
+        sensor.read_out_windows(&[Window { x: 0, y: 0, columns, rows }], collected, laws, raw);
+    }
+    let windows = regions.extract_from(raw.raw(), raw.runs());
+    sensor.read_out_windows(&windows, collected, laws, raw);
+    Ok(windows)
 }
 
 /// What the detector makes by itself, as a source that is described by its stamp.

@@ -26,7 +26,8 @@ pub mod television;
 pub mod truth;
 pub mod vector;
 mod view;
+mod widest;
 
 pub use error::SimError;
-pub use expose::{Exposure, SimulatedCamera};
+pub use expose::{Drawing, Exposure, SimulatedCamera};
 pub use simulator::{Simulation, Simulator};

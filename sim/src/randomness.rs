@@ -54,6 +54,8 @@ pub enum Effect {
     LineLevel = 45,
     /// Errors of range and range rate that the overlay of a video picture says, by the second.
     OverlayReading = 46,
+    /// Which dark pixels are above the floor of a camera that looks no lower, and the numbers of those that are not.
+    Exceedance = 47,
 }
 
 /// The generator behind every draw.

@@ -81,27 +81,29 @@ impl SmoothField {
         from + across * (to - from)
     }
 
-    /// The field of the pixels of a row; `out` is left as it is outside the detector.
+    /// The field of the pixels of a row from column `x` on; `out` is left as it is outside the detector.
     #[inline(always)]
-    pub(crate) fn row(&self, y: usize, out: &mut [f64]) {
-        let line = self.line(y);
+    pub(crate) fn span(&self, x: usize, y: usize, out: &mut [f64]) {
+        let (row, down) = between_nodes(y, self.grid.rows);
+        let end = x + out.len();
         for node in 0..NODES - 1 {
-            let columns = self.grid.starts[node]..self.grid.starts[node + 1];
-            let (from, step) = (line[node], line[node + 1] - line[node]);
-            let Some((out, across)) = out.get_mut(columns.clone()).zip(self.grid.across.get(columns)) else {
-                return;
-            };
-            for (out, across) in out.iter_mut().zip(across) {
+            let (first, last) = (self.grid.starts[node].max(x), self.grid.starts[node + 1].min(end));
+            if first >= last {
+                continue;
+            }
+            let (from, to) = (self.in_line(row, down, node), self.in_line(row, down, node + 1));
+            let step = to - from;
+            let Some(across) = self.grid.across.get(first..last) else { return };
+            for (out, across) in out[first - x..last - x].iter_mut().zip(across) {
                 *out = from + across * step;
             }
         }
     }
 
-    /// The field at the columns of the nodes, in a row of pixels.
-    #[inline(always)]
-    fn line(&self, y: usize) -> [f64; NODES] {
+    /// The largest value of a row of pixels, or a little more: that of one of its ends or of a node's column.
+    pub(crate) fn largest_of_row(&self, y: usize) -> f64 {
         let (row, down) = between_nodes(y, self.grid.rows);
-        std::array::from_fn(|i| self.in_line(row, down, i))
+        (0..NODES).map(|i| self.in_line(row, down, i)).fold(0.0, f64::max)
     }
 
     /// The field at the column of node `i`, `down` of the way from a row of nodes to the next.
@@ -156,10 +158,17 @@ mod tests {
             let mut row = vec![f64::NAN; columns];
             let mut sum = 0.0;
             for y in 0..rows {
-                field.row(y, &mut row);
+                field.span(0, y, &mut row);
                 for (x, value) in row.iter().enumerate() {
                     assert_eq!(*value, field.at(x, y), "({x}, {y}) of {columns} × {rows}");
                 }
+                let largest = row.iter().copied().fold(0.0, f64::max);
+                assert!(field.largest_of_row(y) >= largest * (1.0 - 1e-15), "row {y} of {columns} × {rows}");
+                let mut part = [f64::NAN; 7];
+                let x = (5 * y) % columns;
+                let part = &mut part[..(columns - x).min(7)];
+                field.span(x, y, part);
+                assert_eq!(part, &row[x..x + part.len()], "({x}, {y}) of {columns} × {rows}");
                 sum += row.iter().sum::<f64>();
             }
             let mean = sum / (columns * rows) as f64;

@@ -31,22 +31,26 @@ pub(crate) enum Drawn {
 }
 
 impl View {
-    /// What the camera sees about the middle of frame `number`, and what of it is drawn.
+    /// What the camera sees about the middle of frame `number`, where all is as `moment` says, and what of it is drawn.
     pub(crate) fn of_frame(
         simulator: &Simulator,
         psf: &Psf,
         time: Epoch,
+        moment: Moment,
         exposure_s: f64,
         number: u64,
     ) -> Result<(Self, Drawn), SimError> {
-        let mut middle = Self::unseen(simulator, time, exposure_s, number)?;
+        let mut middle = Self::unseen(simulator, time, moment, exposure_s, number)?;
         let Some(interlace) = simulator.sensor.config().interlace else {
             middle.look(simulator, psf, exposure_s);
             return Ok((middle, Drawn::Whole));
         };
         let [first_s, second_s] = interlace.offsets_s();
-        let mut first = Self::unseen(simulator, time + first_s * Unit::Second, exposure_s, number)?;
-        let mut second = Self::unseen(simulator, time + second_s * Unit::Second, exposure_s, number)?;
+        let field = |offset_s: f64| {
+            let time = time + offset_s * Unit::Second;
+            Self::unseen(simulator, time, Moment::at(simulator, time, number)?, exposure_s, number)
+        };
+        let (mut first, mut second) = (field(first_s)?, field(second_s)?);
         // An object at the edge may have light in one field alone: all look out as far as any of them sees.
         let cameras = [middle.camera, first.camera, second.camera];
         for view in [&mut middle, &mut first, &mut second] {
@@ -66,8 +70,13 @@ impl View {
     }
 
     /// The camera with its shutter open about `time`, before it has looked.
-    fn unseen(simulator: &Simulator, time: Epoch, exposure_s: f64, number: u64) -> Result<Self, SimError> {
-        let mut moment = Moment::at(simulator, time, number)?;
+    fn unseen(
+        simulator: &Simulator,
+        time: Epoch,
+        mut moment: Moment,
+        exposure_s: f64,
+        number: u64,
+    ) -> Result<Self, SimError> {
         let camera = moment.motion(simulator, time, exposure_s, number)?;
         Ok(Self { time, moment, camera, sources: Vec::new(), background: None })
     }

@@ -32,9 +32,9 @@ impl Row for FrameCluster {
         let labels = StringArray::from_iter_values(rows.iter().map(|row| row.cluster.label.code()));
         vec![
             Column::new("frame", UInt64Array::from_iter_values(rows.iter().map(|row| row.frame))),
-            numbers("x_px", |cluster| cluster.position.x),
-            numbers("y_px", |cluster| cluster.position.y),
-            numbers("size", |cluster| cluster.size),
+            numbers("x_px", |cluster| cluster.position.x).seldom_repeating(),
+            numbers("y_px", |cluster| cluster.position.y).seldom_repeating(),
+            numbers("size", |cluster| cluster.size).seldom_repeating(),
             Column::new("pixels", UInt32Array::from_iter_values(rows.iter().map(|row| row.cluster.pixels))),
             Column::new("label", labels),
             Column::nullable("star_id", UInt32Array::from_iter(rows.iter().map(Self::star))),

@@ -27,18 +27,24 @@ const ROW_GROUP_ROWS: usize = 131_072;
 pub struct Column {
     name: &'static str,
     nullable: bool,
+    repeats: bool,
     values: ArrayRef,
 }
 
 impl Column {
     /// A column in which every row has a value.
     pub fn new(name: &'static str, values: impl Array + 'static) -> Self {
-        Self { name, nullable: false, values: Arc::new(values) }
+        Self { name, nullable: false, repeats: true, values: Arc::new(values) }
     }
 
     /// A column in which rows may have no value.
     pub fn nullable(name: &'static str, values: impl Array + 'static) -> Self {
         Self { nullable: true, ..Self::new(name, values) }
+    }
+
+    /// The same column, of values that seldom repeat: it is written without a dictionary, which would only be in the way.
+    pub fn seldom_repeating(self) -> Self {
+        Self { repeats: false, ..self }
     }
 }
 
@@ -74,13 +80,17 @@ impl<R: Row> TableWriter<R> {
     /// # Errors
     /// [`FileError::Io`] when the file exists or cannot be created.
     pub fn create(path: &Path) -> Result<Self, FileError> {
-        let schema = Arc::new(schema(&R::columns(&[])));
-        // Dictionaries, on by default, take the columns that repeat: frame, kind, a star's place and magnitude.
+        let columns = R::columns(&[]);
+        let schema = Arc::new(schema(&columns));
+        // Dictionaries, on by default, take the columns that repeat: frame, kind, a star's number and magnitude.
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
-            .set_max_row_group_row_count(Some(ROW_GROUP_ROWS))
-            .build();
-        let writer = ArrowWriter::try_new(create_new(path)?, Arc::clone(&schema), Some(properties))
+            .set_max_row_group_row_count(Some(ROW_GROUP_ROWS));
+        let properties =
+            columns.iter().filter(|column| !column.repeats).fold(properties, |properties, column| {
+                properties.set_column_dictionary_enabled(column.name.into(), false)
+            });
+        let writer = ArrowWriter::try_new(create_new(path)?, Arc::clone(&schema), Some(properties.build()))
             .map_err(|error| parquet_error(path, error))?;
         Ok(Self { path: path.to_owned(), writer, schema, waiting: Vec::new() })
     }

@@ -56,6 +56,30 @@ pub(super) struct Detector {
     blobs: Vec<Blob>,
     /// Where the pixels of each cluster begin among the members.
     first_members: Vec<usize>,
+    transmitted: Transmitted,
+}
+
+/// The chunks of a frame that hold transmitted pixels.
+#[derive(Debug, Default)]
+struct Transmitted {
+    /// Of each chunk, whether it does.
+    chunks: Vec<bool>,
+}
+
+impl Transmitted {
+    /// Index of the first pixel of each chunk, and its pixels, in the order of the frame.
+    fn chunks<'a>(&'a mut self, frame: &'a Frame) -> impl Iterator<Item = (usize, &'a [u16])> {
+        self.chunks.clear();
+        self.chunks.resize(frame.dn().len().div_ceil(CHUNK), frame.windows().is_none());
+        for window in frame.windows().into_iter().flatten() {
+            for y in window.y..window.y + window.rows {
+                let first = y * frame.columns() + window.x;
+                self.chunks[first / CHUNK..=(first + window.columns - 1) / CHUNK].fill(true);
+            }
+        }
+        let chunks = frame.dn().chunks(CHUNK).enumerate().zip(&self.chunks);
+        chunks.filter(|(_, holds)| **holds).map(|((i, chunk), _)| (i * CHUNK, chunk))
+    }
 }
 
 /// Pixels compared at once while looking for one above I2; a multiple of any vector's length.
@@ -82,13 +106,14 @@ impl Detector {
         }
         self.members.clear();
         self.marked.resize(frame.dn().len().div_ceil(64), 0);
-        for (block, chunk) in frame.dn().chunks(CHUNK).enumerate() {
+        let mut transmitted = std::mem::take(&mut self.transmitted);
+        for (first, chunk) in transmitted.chunks(frame) {
             // A maximum over the whole chunk, without an early exit, compiles to vector instructions.
             if chunk.iter().fold(0, |most, &dn| most.max(dn)) <= thresholds.high_dn {
                 continue;
             }
             for (offset, &dn) in chunk.iter().enumerate() {
-                let index = block * CHUNK + offset;
+                let index = first + offset;
                 if dn > thresholds.high_dn && !self.is_marked(index) {
                     let first = self.members.len();
                     self.fill(frame, index, thresholds.low_dn);
@@ -99,12 +124,23 @@ impl Detector {
                 }
             }
         }
+        self.transmitted = transmitted;
         if self.blobs.len() > max_clusters {
             let kept = largest(&self.blobs, max_clusters);
             self.first_members = kept.iter().map(|&i| self.first_members[i]).collect();
             self.blobs = kept.iter().map(|&i| self.blobs[i]).collect();
         }
         &self.blobs
+    }
+
+    /// Number of pixels at full scale.
+    pub(super) fn saturated_pixels(&mut self, frame: &Frame) -> usize {
+        let full_scale = frame.full_scale_dn();
+        let chunks = self.transmitted.chunks(frame);
+        // Small counts of a chunk each, so that the loop stays in vectors of u16.
+        chunks
+            .map(|(_, chunk)| usize::from(chunk.iter().map(|&dn| u16::from(dn >= full_scale)).sum::<u16>()))
+            .sum()
     }
 
     /// The pixels of cluster `i` of the last frame, as indices into its image.
@@ -180,17 +216,6 @@ fn largest(blobs: &[Blob], max_clusters: usize) -> Vec<usize> {
     by_size
 }
 
-/// Number of pixels at full scale.
-pub(super) fn saturated_pixels(frame: &Frame) -> usize {
-    let full_scale = frame.full_scale_dn();
-    // Small counts of a chunk each, so that the loop stays in vectors of u16.
-    frame
-        .dn()
-        .chunks(4096)
-        .map(|chunk| usize::from(chunk.iter().map(|&dn| u16::from(dn >= full_scale)).sum::<u16>()))
-        .sum()
-}
-
 /// Number of transmitted pixels; overlapping windows count no more than the image holds.
 pub(super) fn transmitted_pixels(frame: &Frame) -> usize {
     let all = frame.columns() * frame.rows();
@@ -202,6 +227,7 @@ pub(super) fn transmitted_pixels(frame: &Frame) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use contract::Window;
     use proptest::prelude::*;
 
     /// A 12-bit frame drawn in characters: '.' 0, digits hundreds of DN, '#' full scale.
@@ -309,7 +335,29 @@ mod tests {
 
     #[test]
     fn saturated_pixels_are_counted() {
-        assert_eq!(saturated_pixels(&drawn(&["##.", "9.#"])), 3);
+        assert_eq!(Detector::default().saturated_pixels(&drawn(&["##.", "9.#"])), 3);
+    }
+
+    /// A frame with windows is looked at in their chunks alone: that is all that is not 0.
+    #[test]
+    fn windows_and_the_whole_of_what_they_hold_are_the_same() {
+        let windows: Vec<Window> =
+            [(0, 0, 9, 4), (60, 2, 20, 8), (70, 5, 20, 8), (130, 31, 20, 8), (0, 39, 150, 1)]
+                .map(|(x, y, columns, rows)| Window { x, y, columns, rows })
+                .to_vec();
+        let dn: Vec<u16> = (0..150 * 40)
+            .map(|i| {
+                let is_sent = windows.iter().any(|window| window.contains(i % 150, i / 150));
+                if is_sent { [0, 150, 4095, 300, 500, 0, 0][i * i / 7 % 7] } else { 0 }
+            })
+            .collect();
+        let whole = Frame::new(0, 150, 40, 12, dn.clone(), None).unwrap();
+        let windowed = Frame::new(0, 150, 40, 12, dn, Some(windows)).unwrap();
+        let mut detector = Detector::default();
+        let blobs = detector.detect(&whole, THRESHOLDS, 0.0, 1000).to_vec();
+        assert!(blobs.len() > 10);
+        assert_eq!(detector.detect(&windowed, THRESHOLDS, 0.0, 1000), blobs);
+        assert_eq!(detector.saturated_pixels(&windowed), detector.saturated_pixels(&whole));
     }
 
     proptest! {

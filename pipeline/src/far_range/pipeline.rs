@@ -11,7 +11,7 @@ use super::attitude::{MountingFilter, StarPair, solve_q_method};
 use super::background::BackgroundEstimator;
 use super::centroid::{CentroidConfig, CentroidFitter};
 use super::config::{AberrationConfig, FarRangeConfig};
-use super::detect::{Blob, Detector, Weights, saturated_pixels, transmitted_pixels};
+use super::detect::{Blob, Detector, Weights, transmitted_pixels};
 use super::hotspots::Hotspots;
 use super::identify::{StarList, identify};
 use super::line_of_sight::line_of_sight;
@@ -86,7 +86,7 @@ impl FarRange {
 
     /// The clusters of a frame (section 2.1), or why there are none.
     fn detect(&mut self, frame: &Frame) -> Result<Vec<Blob>, NoSolution> {
-        if 2 * saturated_pixels(frame) > transmitted_pixels(frame) {
+        if 2 * self.detector.saturated_pixels(frame) > transmitted_pixels(frame) {
             return Err(NoSolution::SaturatedFrame);
         }
         let above_background = self.config.weights == Weights::AboveBackground;

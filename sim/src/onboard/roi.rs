@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::downlink::region_bytes;
 use crate::SimError;
+use crate::draw::PIECE;
 use crate::error::require;
 use crate::sensor::RawImage;
 
@@ -113,6 +114,11 @@ impl RoiExtractor {
         })
     }
 
+    /// The digital number that a bright pixel is above.
+    pub(crate) fn threshold_dn(&self) -> u16 {
+        self.config.threshold_dn
+    }
+
     /// The regions of an image, in the order of the scan.
     ///
     /// A bright pixel that belongs to no object met before is a new object: the bright pixels connected to it, by
@@ -120,7 +126,18 @@ impl RoiExtractor {
     /// it would leave the image. Regions of neighbouring objects may overlap. When there are too many, those of the
     /// brightest peaks are kept; of equal peaks, the one met first.
     pub fn extract(&mut self, image: &RawImage) -> Vec<Window> {
-        let mut blobs = self.blobs(image);
+        let runs = image.dn().chunks(PIECE).enumerate().map(|(p, piece)| (p * PIECE, piece));
+        self.extract_from(image, runs)
+    }
+
+    /// [`RoiExtractor::extract`] of an image that is dark outside of `runs`, each the index of its first pixel and its digital
+    /// numbers, in the order of the image.
+    pub(crate) fn extract_from<'a>(
+        &mut self,
+        image: &RawImage,
+        runs: impl Iterator<Item = (usize, &'a [u16])>,
+    ) -> Vec<Window> {
+        let mut blobs = self.blobs(image, runs);
         if blobs.len() > self.config.count {
             // Stable: equal peaks stay in the order of the scan.
             blobs.sort_by_key(|blob| std::cmp::Reverse(blob.peak_dn));
@@ -141,11 +158,11 @@ impl RoiExtractor {
     }
 
     /// All objects, in the order of the scan.
-    fn blobs(&mut self, image: &RawImage) -> Vec<Blob> {
+    fn blobs<'a>(&mut self, image: &RawImage, runs: impl Iterator<Item = (usize, &'a [u16])>) -> Vec<Blob> {
         let (columns, rows) = image.size();
         self.taken.resize(columns * rows, false);
         let mut bright = std::mem::take(&mut self.bright);
-        self.find_bright(image, &mut bright);
+        self.find_bright(columns, runs, &mut bright);
         let mut blobs = Vec::new();
         for &(x, y) in &bright {
             if !self.taken[y * columns + x] {
@@ -160,18 +177,21 @@ impl RoiExtractor {
     }
 
     /// Makes `bright` the pixels above the threshold, in the order of the scan.
-    fn find_bright(&self, image: &RawImage, bright: &mut Vec<(usize, usize)>) {
-        /// Pixels looked at in one go: nearly all such pieces of a row are dark.
-        const PIECE: usize = 64;
-        let columns = image.size().0;
+    fn find_bright<'a>(
+        &self,
+        columns: usize,
+        runs: impl Iterator<Item = (usize, &'a [u16])>,
+        bright: &mut Vec<(usize, usize)>,
+    ) {
         let RoiConfig { threshold_dn, scan, .. } = self.config;
         bright.clear();
-        for (p, piece) in image.dn().chunks(PIECE).enumerate() {
-            if piece.iter().fold(0, |peak, &dn| peak.max(dn)) <= threshold_dn {
+        for (first, run) in runs {
+            // Nearly all are dark.
+            if run.iter().fold(0, |peak, &dn| peak.max(dn)) <= threshold_dn {
                 continue;
             }
-            let above = piece.iter().enumerate().filter(|&(_, &dn)| dn > threshold_dn);
-            bright.extend(above.map(|(i, _)| ((p * PIECE + i) % columns, (p * PIECE + i) / columns)));
+            let above = run.iter().enumerate().filter(|&(_, &dn)| dn > threshold_dn);
+            bright.extend(above.map(|(i, _)| ((first + i) % columns, (first + i) / columns)));
         }
         // They have been found by rows.
         if scan != ScanOrder::Rows {

@@ -2,6 +2,8 @@
 
 use contract::{PixelPoint, Window};
 
+use crate::widest::{Work, by_eights, widest};
+
 /// Expected electrons of one object, in a rectangle of the detector. Reused from object to object.
 ///
 /// A stamp is clipped to the detector: what falls off it is in no pixel and in no sum.
@@ -94,24 +96,7 @@ impl Stamp {
     /// Multiplies every pixel by its factor of a detector of `columns`, whose factors stand row by row; beyond them it stays.
     pub(crate) fn respond(&mut self, factors: &[f32], columns: usize) {
         let (x, y) = (self.x, self.y);
-        for (j, row) in self.electrons.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            let factors = factors.get((y + j) * columns + x..).unwrap_or_default();
-            for (electrons, &factor) in row.iter_mut().zip(factors) {
-                *electrons *= f64::from(factor);
-            }
-        }
-    }
-
-    /// Its brightest pixel, electrons; 0 without light.
-    pub(crate) fn peak_e(&self) -> f64 {
-        let (fours, rest) = self.electrons.as_chunks::<4>();
-        let mut peaks = [0.0; 4];
-        for four in fours {
-            for (peak, &signal) in peaks.iter_mut().zip(four) {
-                *peak = if signal > *peak { signal } else { *peak };
-            }
-        }
-        peaks.iter().chain(rest).copied().fold(0.0, f64::max)
+        widest(Respond { stamp: self, factors: factors.get(y * columns + x..).unwrap_or_default(), columns });
     }
 
     /// Where the light of the undisturbed image has its mean, off the detector included.
@@ -139,33 +124,11 @@ impl Stamp {
     /// What the truth table tells, over a flat background of `background_e` electrons a pixel (sky and dark
     /// current) and a readout that adds a noise of `readout_noise_e` to a pixel.
     pub fn truth(&self, background_e: f64, readout_noise_e: f64) -> StampTruth {
-        let variance = background_e + readout_noise_e * readout_noise_e;
-        let noise_e = variance.sqrt();
-        // Four sums side by side: one after the other each sum would wait for the one before. Where there is neither light nor
-        // noise the quotient is 0, not no number.
-        let variance = variance.max(f64::MIN_POSITIVE);
-        let (mut electrons, mut snr2) = ([0.0; 4], [0.0; 4]);
-        let mut add = |signals: [f64; 4]| {
-            for lane in 0..4 {
-                let lit = if signals[lane] > 0.0 { signals[lane] } else { 0.0 };
-                electrons[lane] += lit;
-                snr2[lane] += lit * (lit / (lit + variance));
-            }
-        };
-        let (fours, rest) = self.electrons.as_chunks::<4>();
-        fours.iter().for_each(|four| add(*four));
-        add(std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0)));
-        let sum = |lanes: [f64; 4]| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-        let peak_electrons = self.peak_e();
-        StampTruth {
-            electrons: sum(electrons),
-            peak_electrons,
-            snr: sum(snr2).sqrt(),
-            radius_px: if peak_electrons > noise_e { self.radius_px(noise_e) } else { 0.5 },
-        }
+        widest(Truth { stamp: self, background_e, readout_noise_e })
     }
 
     /// Distance from the centre to the farthest pixel centre with more than `electrons`, px; at least 0.5.
+    #[inline(always)]
     fn radius_px(&self, electrons: f64) -> f64 {
         let mut radius2 = 0.25_f64;
         for (x, y, row) in self.rows() {
@@ -190,14 +153,40 @@ impl Stamp {
             .fold(0.0, f64::max)
     }
 
+    /// The electrons of each row, added up from the left: four rows side by side, for one after the other each sum would wait for the
+    /// one before.
+    fn row_sums(&self) -> impl Iterator<Item = f64> {
+        let columns = self.columns.max(1);
+        self.electrons.chunks(4 * columns).flat_map(move |rows| {
+            let mut sums = [0.0; 4];
+            if rows.len() == 4 * columns {
+                for x in 0..columns {
+                    for (j, sum) in sums.iter_mut().enumerate() {
+                        *sum += rows[j * columns + x];
+                    }
+                }
+            } else {
+                for (sum, row) in sums.iter_mut().zip(rows.chunks_exact(columns)) {
+                    row.iter().for_each(|electrons| *sum += electrons);
+                }
+            }
+            sums.into_iter().take(rows.len() / columns)
+        })
+    }
+
     /// The fraction of its electrons outside every window, in [0, 1]; 0 for an empty stamp.
     pub fn cut(&self, windows: &[Window]) -> f64 {
         let (right, bottom) = (self.x + self.columns, self.y + self.rows);
-        // Most windows of a frame are elsewhere, most stamps in one window or in none.
-        let touched: Vec<&Window> = windows
-            .iter()
-            .filter(|w| w.x < right && self.x < w.x + w.columns && w.y < bottom && self.y < w.y + w.rows)
-            .collect();
+        // Most windows of a frame are elsewhere, most stamps in one window or in none. Without an early exit, for many windows
+        // at once.
+        let touches = |w: &&Window| {
+            (w.x < right) & (self.x < w.x + w.columns) & (w.y < bottom) & (self.y < w.y + w.rows)
+        };
+        let touched: Vec<&Window> = if windows.iter().fold(false, |any, w| any | touches(&w)) {
+            windows.iter().filter(touches).collect()
+        } else {
+            Vec::new()
+        };
         let covers = |w: &&Window| {
             w.x <= self.x && w.y <= self.y && right <= w.x + w.columns && bottom <= w.y + w.rows
         };
@@ -208,10 +197,14 @@ impl Stamp {
             return if self.electrons.iter().any(|&signal| signal > 0.0) { 1.0 } else { 0.0 };
         }
         let (mut total, mut lost) = (0.0, 0.0);
-        for (x, y, row) in self.rows() {
+        for ((x, y, row), sum) in self.rows().zip(self.row_sums()) {
             // From the left: what lies before the next window that begins, and so on, windows that overlap counting once.
             let mut from = 0;
-            total += row.iter().sum::<f64>();
+            total += sum;
+            if !touched.iter().any(|w| w.contains(w.x, y)) {
+                lost += sum;
+                continue;
+            }
             while from < row.len() {
                 let covered_to = touched
                     .iter()
@@ -236,6 +229,67 @@ impl Stamp {
             }
         }
         if total > 0.0 { (lost / total).min(1.0) } else { 0.0 }
+    }
+}
+
+/// [`Stamp::respond`] with the factors from its first pixel on.
+struct Respond<'a> {
+    stamp: &'a mut Stamp,
+    factors: &'a [f32],
+    columns: usize,
+}
+
+impl Work for Respond<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let rows = self.stamp.electrons.chunks_exact_mut(self.stamp.columns.max(1));
+        for (j, row) in rows.enumerate() {
+            let factors = self.factors.get(j * self.columns..).unwrap_or_default();
+            by_eights(row, factors, |electrons, factor| *electrons *= f64::from(factor));
+        }
+    }
+}
+
+/// [`Stamp::truth`].
+struct Truth<'a> {
+    stamp: &'a Stamp,
+    background_e: f64,
+    readout_noise_e: f64,
+}
+
+impl Work for Truth<'_> {
+    type Output = StampTruth;
+
+    #[inline(always)]
+    fn run(self) -> StampTruth {
+        let Self { stamp, background_e, readout_noise_e } = self;
+        let variance = background_e + readout_noise_e * readout_noise_e;
+        let noise_e = variance.sqrt();
+        // Four sums side by side: one after the other each sum would wait for the one before. Where there is neither light nor
+        // noise the quotient is 0, not no number.
+        let variance = variance.max(f64::MIN_POSITIVE);
+        let (mut electrons, mut snr2, mut peaks) = ([0.0; 4], [0.0; 4], [0.0; 4]);
+        let mut add = |signals: [f64; 4]| {
+            for lane in 0..4 {
+                let lit = if signals[lane] > 0.0 { signals[lane] } else { 0.0 };
+                electrons[lane] += lit;
+                snr2[lane] += lit * (lit / (lit + variance));
+                peaks[lane] = if lit > peaks[lane] { lit } else { peaks[lane] };
+            }
+        };
+        let (fours, rest) = stamp.electrons.as_chunks::<4>();
+        fours.iter().for_each(|four| add(*four));
+        add(std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0)));
+        let sum = |lanes: [f64; 4]| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+        let peak_electrons = peaks.into_iter().fold(0.0, f64::max);
+        StampTruth {
+            electrons: sum(electrons),
+            peak_electrons,
+            snr: sum(snr2).sqrt(),
+            radius_px: if peak_electrons > noise_e { stamp.radius_px(noise_e) } else { 0.5 },
+        }
     }
 }
 

@@ -45,7 +45,8 @@ pub(crate) struct LitMoon {
     phase_rad: f64,
     astrometric: Direction<Icrs>,
     apparent: Direction<Icrs>,
-    magnitude: f64,
+    /// Of all that is sunlit, as if nothing were before it and no shadow on it.
+    bare_magnitude: f64,
 }
 
 impl LitMoon {
@@ -76,7 +77,9 @@ impl LitMoon {
         let earth_to_moon_km = chaser.position_km + centre_km;
         let sine = MOON_RADIUS_KM / distance_km;
         let earth_sine = shadow::EARTH_RADIUS_KM / chaser.position_km.norm();
-        let mut lit = Self {
+        let phase_rad = angle(&sun_km, &-centre_km);
+        let far = distance_km / MOON_MEAN_DISTANCE_KM * (sun_km.norm() / AU_KM);
+        Some(Self {
             centre_km,
             towards,
             across: [first, towards.cross(&first)],
@@ -87,16 +90,17 @@ impl LitMoon {
             near_shadow: angle(&earth_to_moon_km, &-earth_to_sun_km) < ECLIPSE_RAD,
             earth_cos: (chaser.position_km.norm() < distance_km)
                 .then(|| (1.0 - earth_sine * earth_sine).max(0.0).sqrt()),
-            phase_rad: angle(&sun_km, &-centre_km),
+            phase_rad,
             astrometric,
             // Too near for the light deflection of a star: it passes no Sun.
             apparent: aberrate(astrometric, &(velocity_km_s / LIGHT_SPEED_KM_S)),
-            magnitude: f64::INFINITY,
-        };
-        let far = distance_km / MOON_MEAN_DISTANCE_KM * (sun_km.norm() / AU_KM);
-        lit.magnitude = moon::moon_magnitude(lit.phase_rad.to_degrees()) + 5.0 * libm::log10(far)
-            - 2.5 * libm::log10(lit.seen_fraction());
-        Some(lit)
+            bare_magnitude: moon::moon_magnitude(phase_rad.to_degrees()) + 5.0 * libm::log10(far),
+        })
+    }
+
+    /// Of what of it is seen; infinite when that is nothing.
+    fn magnitude(&self) -> f64 {
+        self.bare_magnitude - 2.5 * libm::log10(self.seen_fraction())
     }
 
     /// The Moon as a source of light at the place of its disk's centre; `None` when no light comes from it, and when its image,
@@ -108,20 +112,28 @@ impl LitMoon {
         radiometry: &Radiometry,
         reach_px: impl Fn(f64) -> f64,
     ) -> Option<Source> {
-        if !self.magnitude.is_finite() {
-            return None;
-        }
-        let electrons_per_s = radiometry.star(self.magnitude, Some(MOON_B_V), None);
         let position = projection.project(&(camera.middle * self.apparent))?;
         let [half_width, half_height] = self.disk(camera.middle, projection).half_sides_px()?;
-        let margin_px = half_width.max(half_height) + camera.reach_px(projection) + reach_px(electrons_per_s);
-        is_within(position, projection, margin_px).then(|| Source {
+        let side_px = half_width.max(half_height) + camera.reach_px(projection);
+        let electrons_per_s = |magnitude: f64| radiometry.star(magnitude, Some(MOON_B_V), None);
+        let is_near =
+            |electrons_per_s: f64| is_within(position, projection, side_px + reach_px(electrons_per_s));
+        // How much of it is seen takes long to tell, and it is seldom in the field.
+        if !is_near(electrons_per_s(self.bare_magnitude)) {
+            return None;
+        }
+        let magnitude = self.magnitude();
+        if !magnitude.is_finite() {
+            return None;
+        }
+        let electrons_per_s = electrons_per_s(magnitude);
+        is_near(electrons_per_s).then(|| Source {
             kind: ObjectKind::Moon,
             id: 0,
             position,
             ends: camera.ends.map(|end| projection.project(&(end * self.apparent)).unwrap_or(position)),
             astrometric: Some(self.astrometric),
-            magnitude: Some(self.magnitude),
+            magnitude: Some(magnitude),
             electrons_per_s,
         })
     }
@@ -340,7 +352,7 @@ mod tests {
     fn behind_the_earth_it_gives_no_light_and_at_its_limb_half() {
         let full = seen_from("2020-01-01T00:00:00Z", 90.0);
         assert_eq!(full.seen_fraction(), 1.0);
-        assert_eq!(seen_from("2020-01-01T00:00:00Z", 180.0).magnitude, f64::INFINITY);
+        assert_eq!(seen_from("2020-01-01T00:00:00Z", 180.0).magnitude(), f64::INFINITY);
         let limb_deg = 180.0 - libm::asin(shadow::EARTH_RADIUS_KM / 7_000.0).to_degrees();
         // The parallax of 7000 km brings it back to the limb.
         let mut moon = seen_from("2020-01-01T00:00:00Z", limb_deg - 0.95);
@@ -355,7 +367,7 @@ mod tests {
     /// magnitude 0.653.
     #[test]
     fn eclipses_are_those_of_the_catalogue() {
-        assert_eq!(seen_from("2018-07-27T20:21:44Z", 90.0).magnitude, f64::INFINITY);
+        assert_eq!(seen_from("2018-07-27T20:21:44Z", 90.0).magnitude(), f64::INFINITY);
         let partial = seen_from("2019-07-16T21:30:44Z", 90.0);
         let to_axis = -partial.earth_to_sun_km.normalize();
         let axis = Vector2::new(partial.across[0].dot(&to_axis), partial.across[1].dot(&to_axis));
@@ -370,8 +382,8 @@ mod tests {
             .count();
         // The catalogue's shadow is 1 to 2 % larger, for the atmosphere: 0.03 of the Moon's diameter; 0.02° of the ephemeris is 0.04.
         assert!((dark as f64 / 1000.0 - 0.653).abs() < 0.08, "{dark}");
-        let bright = seen_from("2019-07-15T21:30:44Z", 90.0).magnitude;
-        assert!(partial.magnitude > bright + 0.5 && partial.magnitude.is_finite());
+        let bright = seen_from("2019-07-15T21:30:44Z", 90.0).magnitude();
+        assert!(partial.magnitude() > bright + 0.5 && partial.magnitude().is_finite());
     }
 
     #[test]
@@ -379,6 +391,6 @@ mod tests {
         // New on 2020-01-24 at 21:42 UTC, 3° from the Sun.
         let new = seen_from("2020-01-24T21:42:00Z", 90.0);
         assert!(new.phase_rad.to_degrees() > 174.0);
-        assert!(new.magnitude > -3.5, "{}", new.magnitude);
+        assert!(new.magnitude() > -3.5, "{}", new.magnitude());
     }
 }

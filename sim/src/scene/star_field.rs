@@ -59,7 +59,8 @@ impl StarField {
         let motion_px = camera.reach_px(projection);
         let margin_px = reach_px(self.brightest_e_per_s) + motion_px;
         for star in self.around(camera.middle, projection, margin_px) {
-            let apparent = observer.apparent(&star.motion);
+            let astrometric = observer.astrometric(&star.motion);
+            let apparent = observer.apparent_of(astrometric);
             if let Some(position) = projection.project(&(camera.middle * apparent))
                 && (is_within(position, projection, 0.0)
                     || is_within(position, projection, reach_px(star.electrons_per_s) + motion_px))
@@ -69,7 +70,7 @@ impl StarField {
                     id: star.id,
                     position,
                     ends: camera.ends.map(|end| projection.project(&(end * apparent)).unwrap_or(position)),
-                    astrometric: Some(observer.astrometric(&star.motion)),
+                    astrometric: Some(astrometric),
                     magnitude: Some(star.magnitude),
                     electrons_per_s: star.electrons_per_s,
                 });

@@ -105,13 +105,19 @@ impl Sensor {
         }
     }
 
-    /// The image of an object alone, over a background, as it is after its full wells have spilt: `bloomed`. `false` when
-    /// nothing spills, or when blooming is off.
-    pub(crate) fn bloom_stamp(&self, stamp: &Stamp, background_e: f64, bloomed: &mut Stamp) -> bool {
+    /// The image of an object alone, over a background, as it is after its full wells have spilt: `bloomed`. Its brightest pixel
+    /// has `peak_e`. `false` when nothing spills, or when blooming is off.
+    pub(crate) fn bloom_stamp(
+        &self,
+        stamp: &Stamp,
+        peak_e: f64,
+        background_e: f64,
+        bloomed: &mut Stamp,
+    ) -> bool {
         let full_well_e = self.config().full_well_e;
         let Some(blooming) = &self.config().blooming else { return false };
         let Some(window) = stamp.window() else { return false };
-        if stamp.peak_e() + background_e <= full_well_e {
+        if peak_e + background_e <= full_well_e {
             return false;
         }
         let rows = self.size().1;
@@ -234,12 +240,14 @@ mod tests {
         let config = SensorConfig { blooming: bloom, full_well_e: 5000.0, ..twelve_bit() };
         let sensor = Sensor::new(&config, 65, 48).unwrap();
         let (stamp, mut bloomed) = (star(&sensor, 1e5), Stamp::new());
-        assert!(sensor.bloom_stamp(&stamp, 20.0, &mut bloomed));
+        let peak_e = |stamp: &Stamp| stamp.truth(20.0, 15.0).peak_electrons;
+        assert!(sensor.bloom_stamp(&stamp, peak_e(&stamp), 20.0, &mut bloomed));
         // Some ten columns round to a whole electron each, at either end.
         assert!((sum(&bloomed) - sum(&stamp)).abs() < 20.0, "{}", sum(&bloomed) - sum(&stamp));
         // It overflows 16 times: over some ten columns, four of which have most of it.
         let radius_px = stamp.truth(20.0, 15.0).radius_px;
         assert!(stamp.height_px(15.7) <= radius_px && bloomed.height_px(15.7) > 1.5 * radius_px);
-        assert!(!sensor.bloom_stamp(&star(&sensor, 1e3), 20.0, &mut bloomed));
+        let faint = star(&sensor, 1e3);
+        assert!(!sensor.bloom_stamp(&faint, peak_e(&faint), 20.0, &mut bloomed));
     }
 }

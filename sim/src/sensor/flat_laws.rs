@@ -7,11 +7,16 @@
 
 use std::collections::BTreeMap;
 
+use rand::Rng;
+
 use super::alias::AliasTable;
+use super::config::Switch;
+use super::exceedance::Exceedance;
 use super::own_means::OwnMeans;
 use super::pixel_law::PixelLaw;
 use super::poisson_digits::{FEW, PoissonDigits, few};
 use super::ziggurat::Ziggurat;
+use crate::randomness::{Stream, Streams};
 
 /// Tables for the means met so far, kept from frame to frame. What they give does not depend on what they
 /// keep: an empty one works as well, only slower.
@@ -21,6 +26,7 @@ pub struct FlatLaws {
     /// By the bits of the mean.
     means: BTreeMap<u64, FlatLaw>,
     own_means: Option<OwnMeans>,
+    exceedance: Option<Exceedance>,
     digits: PoissonDigits,
     normal: Ziggurat,
 }
@@ -52,6 +58,14 @@ impl FlatLaws {
         self.own_means.get_or_insert_with(|| OwnMeans::new(law))
     }
 
+    /// The law of the numbers above a floor.
+    pub(super) fn exceedance(&mut self, law: &PixelLaw, floor_dn: u16) -> &mut Exceedance {
+        if self.exceedance.as_ref().is_some_and(|kept| !kept.is_of(law, floor_dn)) {
+            self.exceedance = None;
+        }
+        self.exceedance.get_or_insert_with(|| Exceedance::new(law, floor_dn))
+    }
+
     /// The tables of numbers of electrons and of the read noise, for pixels whose law no table holds.
     pub(super) fn in_parts(&mut self) -> (&mut PoissonDigits, &Ziggurat) {
         (&mut self.digits, &self.normal)
@@ -76,21 +90,41 @@ pub(super) struct FlatLaw {
 
 impl FlatLaw {
     /// Signals up to this have their tables.
-    pub(super) const FAINT_E: f64 = 4.0;
+    const FAINT_E: f64 = 4.0;
 
     fn new(law: PixelLaw, mean_e: f64) -> Self {
         let table = table(&law, mean_e, 0);
         Self { law, mean_e, flat: table, more: vec![None; FEW + 1] }
     }
 
-    /// The table of the pixels without signal.
-    pub(super) fn flat(&self) -> &AliasTable {
-        &self.flat
+    /// Draws pixels without signal, two from a word.
+    #[inline(always)]
+    pub(super) fn draw_row(&self, row: &mut [u16], stream: &mut Stream) {
+        let mut pairs = row.chunks_exact_mut(2);
+        for pair in &mut pairs {
+            let word = stream.next_u64();
+            pair[0] = self.flat.draw(word as u32);
+            pair[1] = self.flat.draw((word >> 32) as u32);
+        }
+        if let [last] = pairs.into_remainder() {
+            *last = self.flat.draw(stream.next_u64() as u32);
+        }
+    }
+
+    /// Draws a pixel where something was drawn, from its place.
+    pub(super) fn draw_lit(&mut self, signal_e: f64, streams: &Streams, place: u64) -> u16 {
+        // Without shot noise electrons are not counted, and there is nothing to superpose. A dead pixel has less than the flat
+        // level.
+        if (0.0..=Self::FAINT_E).contains(&signal_e) && self.law.shot == Switch::On {
+            self.draw_faint(signal_e, streams.word(place))
+        } else {
+            self.law.sample(self.mean_e + signal_e, 0.0, &mut streams.at(place))
+        }
     }
 
     /// A digital number of a pixel with a signal of at most [`FlatLaw::FAINT_E`], from a uniform word: its upper half
     /// decides the number of signal electrons (to 2^-32), its lower half the digital number.
-    pub(super) fn draw_faint(&mut self, signal_e: f64, word: u64) -> u16 {
+    fn draw_faint(&mut self, signal_e: f64, word: u64) -> u16 {
         let n = few(signal_e, (word >> 32) as u32);
         if n == 0 {
             return self.flat.draw(word as u32);
@@ -112,7 +146,6 @@ mod tests {
     use super::*;
     use crate::randomness::{Effect, Seed};
     use crate::sensor::SensorConfig;
-    use rand::Rng;
 
     fn law(gain_e_per_dn: f64) -> PixelLaw {
         PixelLaw::new(&SensorConfig { gain_e_per_dn, ..twelve_bit() })
@@ -124,7 +157,7 @@ mod tests {
             let law = law(2.0);
             let mut stream = Seed { seed: 21, case: 0 }.stream(0, Effect::PixelNoise, place as u64);
             let mut laws = FlatLaws::new();
-            let table = laws.of(&law, mean_e).flat();
+            let table = laws.of(&law, mean_e).flat.clone();
             let n = 500_000;
             let drawn = counts_of((0..n).map(|_| usize::from(table.draw(stream.next_u32()))));
             let p = chi_square_p(&drawn, &from_zero(&law.probabilities(mean_e, 0)));
@@ -165,8 +198,8 @@ mod tests {
             kept.of(&law(1.0), f64::from(i));
         }
         kept.of(&law(3.0), 17.0);
-        let fresh = FlatLaws::new().of(&law(1.0), 17.0).flat().clone();
-        let kept = kept.of(&law(1.0), 17.0).flat();
+        let fresh = FlatLaws::new().of(&law(1.0), 17.0).flat.clone();
+        let kept = &kept.of(&law(1.0), 17.0).flat;
         assert!((0..10_000).all(|i| fresh.draw(word(i)) == kept.draw(word(i))));
     }
 }

@@ -10,6 +10,7 @@
 use super::alias::AliasTable;
 use super::pixel_law::PixelLaw;
 use super::poisson_digits::by_inversion;
+use crate::draw::PIECE;
 use crate::lanes::{LANES, Lanes};
 use crate::randomness::Stream;
 
@@ -33,8 +34,6 @@ const TABLES: usize = 4 * END_E as usize * OF_A_MEAN;
 /// The end of the grid in quarters of an electron.
 const QUARTERS: f32 = 4.0 * END_E as f32;
 const TWO_TO_23: f32 = 8_388_608.0;
-/// Pixels of a piece.
-const PIECE: usize = 64;
 
 impl OwnMeans {
     /// Digital numbers in a table at most.
@@ -67,17 +66,29 @@ impl OwnMeans {
             for words in words.as_chunks_mut::<LANES>().0 {
                 *words = lanes.next();
             }
-            let mut means = [0.0; PIECE];
-            for (mean, &mean_e) in means.iter_mut().zip(means_e) {
-                *mean = mean_e.max(0.0) as f32;
-            }
-            let (numbers, cells) = self.draw_piece(&means, &words);
-            row.copy_from_slice(&numbers[..row.len()]);
-            if cells.iter().fold(false, |open, &cell| open | is_open(cell)) {
-                for (i, (number, mean_e)) in row.iter_mut().zip(means_e).enumerate() {
-                    if is_open(cells[i]) {
-                        *number = self.draw(*mean_e, words[i], || own(p * PIECE + i));
-                    }
+            self.draw_piece(means_e, &words, row, |i| own(p * PIECE + i));
+        }
+    }
+
+    /// [`OwnMeans::draw_row`] of one piece of a row, from its words.
+    #[inline(always)]
+    pub(super) fn draw_piece(
+        &mut self,
+        means_e: &[f64],
+        words: &[u64; PIECE],
+        piece: &mut [u16],
+        own: impl Fn(usize) -> Stream,
+    ) {
+        let mut means = [0.0; PIECE];
+        for (mean, &mean_e) in means.iter_mut().zip(means_e) {
+            *mean = mean_e.max(0.0) as f32;
+        }
+        let (numbers, cells) = self.pick(&means, words);
+        piece.copy_from_slice(&numbers[..piece.len()]);
+        if cells.iter().fold(false, |open, &cell| open | is_open(cell)) {
+            for (i, (number, mean_e)) in piece.iter_mut().zip(means_e).enumerate() {
+                if is_open(cells[i]) {
+                    *number = self.draw(*mean_e, words[i], || own(i));
                 }
             }
         }
@@ -85,7 +96,7 @@ impl OwnMeans {
 
     /// The numbers of a piece and the cells that they are from.
     #[inline(always)]
-    fn draw_piece(&self, means: &[f32; PIECE], words: &[u64; PIECE]) -> ([u16; PIECE], [u64; PIECE]) {
+    fn pick(&self, means: &[f32; PIECE], words: &[u64; PIECE]) -> ([u16; PIECE], [u64; PIECE]) {
         let mut places = [0_u32; PIECE];
         for i in 0..PIECE {
             places[i] = self.place(Choice::of(means[i], words[i]), words[i]);
@@ -267,7 +278,7 @@ mod tests {
         assert_the_law_midway(1_000_000);
     }
 
-    /// In full: `cargo test --release -p boresight-sim midway -- --ignored`.
+    /// In full: `cargo test --release -p boresight-sim --lib midway -- --ignored`, 15 s of CPU time.
     #[test]
     #[ignore = "2e9 draws: for a scheduled job"]
     fn midway_between_nodes_the_law_is_exact_in_a_hundred_million_draws() {

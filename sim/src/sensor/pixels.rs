@@ -3,7 +3,7 @@
 use rand::Rng;
 
 use super::config::Switch;
-use super::flat_laws::{FlatLaw, FlatLaws};
+use super::flat_laws::FlatLaws;
 use super::own_means::OwnMeans;
 use super::poisson_digits::PoissonDigits;
 use super::raw_image::RawImage;
@@ -35,29 +35,11 @@ impl Sensor {
         raw: &mut RawImage,
     ) {
         let flat = laws.of(&self.law, expected.flat_e());
-        let table = flat.flat();
         for (y, row) in raw.dn.chunks_exact_mut(self.columns.max(1)).enumerate() {
-            let mut stream = streams.at(y as u64);
-            let mut pairs = row.chunks_exact_mut(2);
-            for pair in &mut pairs {
-                let word = stream.next_u64();
-                pair[0] = table.draw(word as u32);
-                pair[1] = table.draw((word >> 32) as u32);
-            }
-            if let [last] = pairs.into_remainder() {
-                *last = table.draw(stream.next_u64() as u32);
-            }
+            flat.draw_row(row, &mut streams.at(y as u64));
         }
         for (index, signal_e) in expected.drawn() {
-            let place = (self.rows + index) as u64;
-            // Without shot noise electrons are not counted, and there is nothing to superpose. A dead pixel has less than
-            // the flat level.
-            let faint = (0.0..=FlatLaw::FAINT_E).contains(&signal_e) && self.law.shot == Switch::On;
-            raw.dn[index] = if faint {
-                flat.draw_faint(signal_e, streams.word(place))
-            } else {
-                self.law.sample(expected.flat_e() + signal_e, 0.0, &mut streams.at(place))
-            };
+            raw.dn[index] = flat.draw_lit(signal_e, streams, (self.rows + index) as u64);
         }
     }
 

@@ -1,6 +1,6 @@
 //! From expected photo-electrons to digital numbers.
 
-use super::blooming::BloomingConfig;
+use super::blooming::Overflow;
 use super::charge::Charge;
 use super::config::{SensorConfig, Switch};
 use super::fixed_pattern::FixedPattern;
@@ -11,7 +11,7 @@ use super::pixels::LineOffsets;
 use super::raw_image::RawImage;
 use crate::SimError;
 use crate::draw::ExpectedImage;
-use crate::randomness::{Effect, Seed, Streams, normal};
+use crate::randomness::{Effect, Seed, normal};
 
 /// A detector with its readout. What is fixed for its life, hot pixels included, is made once.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,13 +118,7 @@ impl Sensor {
         raw: &mut RawImage,
     ) -> Result<(), SimError> {
         let expected = charge.expected();
-        if expected.size() != (self.columns, self.rows) {
-            return Err(SimError::Parameter {
-                field: "size of the expected image",
-                value: format!("{:?}", expected.size()),
-                expected: "the columns and rows of the sensor",
-            });
-        }
+        self.check_size(expected)?;
         (raw.columns, raw.rows, raw.bit_depth) = (self.columns, self.rows, self.config.bit_depth);
         raw.dn.resize(self.columns * self.rows, 0);
         let streams = seed.streams(frame, Effect::PixelNoise);
@@ -135,22 +129,33 @@ impl Sensor {
             _ => self.draw_in_parts(expected, offsets.as_ref(), &streams, laws, raw),
         }
         if let Some(blooming) = &self.config.blooming {
-            self.bloom(blooming, expected, offsets.as_ref(), &streams, raw);
+            let overflow = Overflow { blooming, expected, offsets: offsets.as_ref(), streams: &streams };
+            self.bloom(&overflow, |index, dn| raw.dn[index] = dn);
         }
         Ok(())
+    }
+
+    /// Refuses an image that is not of the sensor's size.
+    pub(super) fn check_size(&self, expected: &ExpectedImage) -> Result<(), SimError> {
+        if expected.size() == (self.columns, self.rows) {
+            return Ok(());
+        }
+        Err(SimError::Parameter {
+            field: "size of the expected image",
+            value: format!("{:?}", expected.size()),
+            expected: "the columns and rows of the sensor",
+        })
     }
 
     /// What the readout adds to rows and columns: noise of this frame, and the fixed offsets. `None` when there is none of
     /// it.
     fn line_offsets(&self, seed: &Seed, frame: u64) -> Option<LineOffsets> {
-        let read = self.config.noise.read;
-        let (row_e, column_e) =
-            (read.of(self.config.line_noise.row_e), read.of(self.config.line_noise.column_e));
+        let (row_e, column_e) = self.line_noise_e();
         let fixed_e = &self.pattern.column_offsets_e;
         let noise = |sigma_e: f64, effect: Effect, place: usize| {
             if sigma_e > 0.0 { sigma_e * normal(&mut seed.stream(frame, effect, place as u64)) } else { 0.0 }
         };
-        (row_e > 0.0 || column_e > 0.0 || !fixed_e.is_empty()).then(|| LineOffsets {
+        self.has_line_offsets().then(|| LineOffsets {
             rows: (0..self.rows).map(|y| noise(row_e, Effect::RowNoise, y)).collect(),
             columns: (0..self.columns)
                 .map(|x| noise(column_e, Effect::ColumnNoise, x) + fixed_e.get(x).copied().unwrap_or(0.0))
@@ -158,47 +163,23 @@ impl Sensor {
         })
     }
 
-    /// Draws anew the columns that have pixels above the full well.
-    ///
-    /// Electrons are drawn first, then they spill, then they are read. A pixel is drawn at its own address, place =
-    /// rows + index, where a pixel with signal was drawn already: what neither overflows nor receives is left as it is.
-    fn bloom(
-        &self,
-        blooming: &BloomingConfig,
-        expected: &ExpectedImage,
-        offsets: Option<&LineOffsets>,
-        streams: &Streams,
-        raw: &mut RawImage,
-    ) {
-        let threshold_e = self.law.may_overflow_from_e();
-        let mut overflows = vec![false; self.columns];
-        expected.columns_above(threshold_e, &mut overflows);
-        let (mut collected, mut held) = (Vec::with_capacity(self.rows), Vec::with_capacity(self.rows));
-        for x in (0..self.columns).filter(|&x| overflows[x]) {
-            let stream = |y: usize| streams.at((self.rows + y * self.columns + x) as u64);
-            let mean_e = |y: usize| expected.at(x, y).max(0.0);
-            collected.clear();
-            collected.extend((0..self.rows).map(|y| self.law.collect(mean_e(y), &mut stream(y))));
-            held.clone_from(&collected);
-            blooming.spill(&mut held, self.law.full_well_e());
-            for y in 0..self.rows {
-                // Those that may overflow were drawn before with a well of their own, perhaps from a table.
-                if held[y] != collected[y] || mean_e(y) > threshold_e {
-                    let mut stream = stream(y);
-                    // What was collected is drawn again only to leave the stream where the read noise begins.
-                    self.law.collect(mean_e(y), &mut stream);
-                    let offset_e = offsets.map_or(0.0, |offsets| offsets.at(x, y));
-                    raw.dn[y * self.columns + x] = self.law.convert(held[y], offset_e, &mut stream);
-                }
-            }
-        }
+    /// Noise of rows and of columns, standard deviations, as far as it is simulated.
+    fn line_noise_e(&self) -> (f64, f64) {
+        let read = self.config.noise.read;
+        (read.of(self.config.line_noise.row_e), read.of(self.config.line_noise.column_e))
+    }
+
+    /// Whether the readout adds anything to rows or columns.
+    pub(super) fn has_line_offsets(&self) -> bool {
+        let (row_e, column_e) = self.line_noise_e();
+        row_e > 0.0 || column_e > 0.0 || !self.pattern.column_offsets_e.is_empty()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::LineNoiseConfig;
     use super::super::config::tests::{opening, twelve_bit};
+    use super::super::{BloomingConfig, LineNoiseConfig};
     use super::*;
     use crate::optics::{Psf, PsfConfig, Stamp};
     use contract::PixelPoint;

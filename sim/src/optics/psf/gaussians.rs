@@ -7,6 +7,7 @@ use super::condense::condensed;
 use super::error_function::ErrorFunction;
 use super::pixels_within;
 use crate::optics::{ImagePoint, Stamp};
+use crate::widest::{Work, by_eights, widest};
 
 /// A sum of circular Gaussians about one centre.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,19 +27,21 @@ pub(super) struct Profiles {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Component {
-    pub(super) weight: f64,
-    pub(super) sigma_px: f64,
+    weight: f64,
+    sigma_px: f64,
+    /// Share of its light in the column, or the row, of pixels about its centre, when that is in their middle.
+    central_share: f64,
 }
 
 impl Gaussians {
     pub(super) fn one(sigma_px: f64) -> Self {
-        Self { components: vec![Component { weight: 1.0, sigma_px }], floor_share: 1.0 }
+        Self { components: vec![Component::new(1.0, sigma_px)], floor_share: 1.0 }
     }
 
     /// A core and a wider halo that holds `halo_fraction` of the light.
     pub(super) fn halo(sigma_px: f64, halo_sigma_px: f64, halo_fraction: f64) -> Self {
-        let core = Component { weight: 1.0 - halo_fraction, sigma_px };
-        let halo = Component { weight: halo_fraction, sigma_px: halo_sigma_px };
+        let core = Component::new(1.0 - halo_fraction, sigma_px);
+        let halo = Component::new(halo_fraction, halo_sigma_px);
         Self { components: vec![core, halo], floor_share: 1.0 }
     }
 
@@ -68,33 +71,12 @@ impl Gaussians {
         profiles: &mut Profiles,
         stamp: &mut Stamp,
     ) {
-        let floor_e = floor_e * self.floor_share;
-        let (right, bottom) = (stamp.x + stamp.columns, stamp.y + stamp.rows);
         for component in self.components.iter().map(|component| component.scaled(scale)) {
-            let own_px = component.reach_px(electrons, floor_e);
-            if own_px == 0.0 {
-                continue;
-            }
-            let condensed = condensed(points, component.sigma_px);
-            let points = condensed.as_ref().map_or(points, |(few, count)| &few[..*count]);
-            for point in points {
-                let own_x = pixels_within((point.position.x, point.position.x), own_px, right);
-                let own_y = pixels_within((point.position.y, point.position.y), own_px, bottom);
-                let (own_x, own_y) = ((own_x.0.max(stamp.x), own_x.1), (own_y.0.max(stamp.y), own_y.1));
-                if own_x.0 >= own_x.1 || own_y.0 >= own_y.1 {
-                    continue;
-                }
-                component.profile(point.position.x, own_x, &mut profiles.x);
-                component.profile(point.position.y, own_y, &mut profiles.y);
-                let flux = electrons * component.weight * point.share;
-                let (left, width) = (own_x.0 - stamp.x, own_x.1 - own_x.0);
-                let rows = stamp.electrons.chunks_exact_mut(stamp.columns).skip(own_y.0 - stamp.y);
-                for (row, share_y) in rows.zip(&profiles.y) {
-                    let row_flux = flux * share_y;
-                    for (pixel, share_x) in row[left..left + width].iter_mut().zip(&profiles.x) {
-                        *pixel += row_flux * share_x;
-                    }
-                }
+            let own_px = component.reach_px(electrons, floor_e * self.floor_share);
+            if own_px > 0.0 {
+                let condensed = condensed(points, component.sigma_px);
+                let points = condensed.as_ref().map_or(points, |(few, count)| &few[..*count]);
+                widest(Images { component, points, electrons, own_px, profiles, stamp });
             }
         }
     }
@@ -103,17 +85,58 @@ impl Gaussians {
     pub(super) fn peak_share(&self) -> f64 {
         self.components
             .iter()
-            .map(|component| {
-                let along = component.share(-0.5, 0.5);
-                component.weight * along * along
-            })
+            .map(|component| component.weight * component.central_share * component.central_share)
             .sum()
     }
 }
 
+/// The images of points, added to a stamp: each of its share of the electrons, followed to `own_px`.
+struct Images<'a> {
+    component: Component,
+    points: &'a [ImagePoint],
+    electrons: f64,
+    own_px: f64,
+    profiles: &'a mut Profiles,
+    stamp: &'a mut Stamp,
+}
+
+impl Work for Images<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { component, points, electrons, own_px, profiles, stamp } = self;
+        let (right, bottom) = (stamp.x + stamp.columns, stamp.y + stamp.rows);
+        for point in points {
+            let own_x = pixels_within((point.position.x, point.position.x), own_px, right);
+            let own_y = pixels_within((point.position.y, point.position.y), own_px, bottom);
+            let (own_x, own_y) = ((own_x.0.max(stamp.x), own_x.1), (own_y.0.max(stamp.y), own_y.1));
+            if own_x.0 >= own_x.1 || own_y.0 >= own_y.1 {
+                continue;
+            }
+            component.profile(point.position.x, own_x, &mut profiles.x);
+            component.profile(point.position.y, own_y, &mut profiles.y);
+            let flux = electrons * component.weight * point.share;
+            let (left, width) = (own_x.0 - stamp.x, own_x.1 - own_x.0);
+            let rows = stamp.electrons.chunks_exact_mut(stamp.columns).skip(own_y.0 - stamp.y);
+            for (row, share_y) in rows.zip(&profiles.y) {
+                let row_flux = flux * share_y;
+                by_eights(&mut row[left..left + width], &profiles.x, |pixel, share_x| {
+                    *pixel += row_flux * share_x;
+                });
+            }
+        }
+    }
+}
+
 impl Component {
+    pub(super) fn new(weight: f64, sigma_px: f64) -> Self {
+        let half = 0.5 / (sigma_px * std::f64::consts::SQRT_2);
+        Self { weight, sigma_px, central_share: libm::erf(half) }
+    }
+
     fn scaled(self, scale: f64) -> Self {
-        Self { sigma_px: self.sigma_px * scale, ..self }
+        if scale == 1.0 { self } else { Self::new(self.weight, self.sigma_px * scale) }
     }
 
     /// Distance from the centre beyond which, along a column or a row, no pixel holds `floor_e`, px; 0 when no
@@ -121,7 +144,7 @@ impl Component {
     /// normal density n.
     fn reach_px(&self, electrons: f64, floor_e: f64) -> f64 {
         let density = 1.0 / (self.sigma_px * (2.0 * std::f64::consts::PI).sqrt());
-        let brightest = electrons * self.weight * density * self.share(-0.5, 0.5);
+        let brightest = electrons * self.weight * density * self.central_share;
         if brightest > floor_e {
             0.5 + self.sigma_px * (2.0 * libm::log(brightest / floor_e)).sqrt()
         } else {
@@ -129,23 +152,21 @@ impl Component {
         }
     }
 
-    /// Share of the flux between two distances from the centre along one axis.
-    fn share(&self, from_px: f64, to_px: f64) -> f64 {
-        let scale = 1.0 / (self.sigma_px * std::f64::consts::SQRT_2);
-        0.5 * (libm::erf(to_px * scale) - libm::erf(from_px * scale))
-    }
-
     /// Shares of the flux in each pixel of a range along one axis.
+    #[inline(always)]
     fn profile(&self, centre: f64, range: (usize, usize), shares: &mut Vec<f64>) {
         let scale = 1.0 / (self.sigma_px * std::f64::consts::SQRT_2);
         let erf = ErrorFunction::shared();
         let edge = |i: usize| erf.at((i as f64 - 0.5 - centre) * scale);
+        // First the error function at every edge, each by itself, then their differences in place.
         shares.clear();
-        let mut left = edge(range.0);
-        for i in range.0..range.1 {
-            let right = edge(i + 1);
-            shares.push(0.5 * (right - left));
-            left = right;
+        shares.resize(range.1 - range.0 + 1, 0.0);
+        for (share, i) in shares.iter_mut().zip(range.0..) {
+            *share = edge(i);
         }
+        for i in 1..shares.len() {
+            shares[i - 1] = 0.5 * (shares[i] - shares[i - 1]);
+        }
+        shares.pop();
     }
 }

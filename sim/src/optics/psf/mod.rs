@@ -21,6 +21,7 @@ pub use config::PsfConfig;
 use super::field::FieldRadius;
 use super::{ImagePoint, Stamp};
 use crate::SimError;
+use crate::widest::{Work, widest};
 use gaussians::{Gaussians, Profiles};
 use tabulated::{Edges, Tabulated};
 
@@ -152,10 +153,7 @@ impl Psf {
                 shape.draw(points, electrons, reach_px, scale, &mut self.edges, stamp);
             }
         }
-        for pixel in &mut stamp.electrons {
-            // A choice and not a branch, for many pixels at once.
-            *pixel = if *pixel < floor_e { 0.0 } else { *pixel };
-        }
+        widest(Emptied { pixels: &mut stamp.electrons, below: floor_e });
     }
 
     /// How far off the detector an object of `electrons` may be and still leave `floor_e` electrons in a pixel of it, px;
@@ -228,7 +226,26 @@ impl Extent {
     }
 }
 
+/// Pixels with less light than a floor, made 0.
+struct Emptied<'a> {
+    pixels: &'a mut [f64],
+    below: f64,
+}
+
+impl Work for Emptied<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for pixel in self.pixels {
+            // A choice and not a branch, for many pixels at once.
+            *pixel = if *pixel < self.below { 0.0 } else { *pixel };
+        }
+    }
+}
+
 /// The range of pixels of an axis of `count` whose centres lie within `reach_px` of the interval `span`.
+#[inline(always)]
 fn pixels_within(span: (f64, f64), reach_px: f64, count: usize) -> (usize, usize) {
     let last = count as f64;
     // A cast of a float saturates, and NaN gives 0: an empty range.

@@ -41,10 +41,8 @@ pub(super) fn moffat(fwhm_px: f64, beta: f64) -> Gaussians {
     let components = (0..count).map(|i| {
         let log_t = (last - i as f64) * step;
         let t = libm::exp(log_t);
-        Component {
-            weight: step * libm::exp((beta - 1.0) * log_t - t - log_gamma_flux),
-            sigma_px: alpha_px / (2.0 * t).sqrt(),
-        }
+        let weight = step * libm::exp((beta - 1.0) * log_t - t - log_gamma_flux);
+        Component::new(weight, alpha_px / (2.0 * t).sqrt())
     });
     Gaussians::mixture(components.collect())
 }

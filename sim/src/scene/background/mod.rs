@@ -307,7 +307,7 @@ impl BackgroundField {
         out.clear();
         out.resize(columns * rows, 0.0);
         for (y, row) in out.chunks_exact_mut(columns.max(1)).enumerate() {
-            self.e_per_s.row(y, row);
+            self.e_per_s.span(0, y, row);
         }
     }
 }

@@ -1,0 +1,109 @@
+//! What is in every pixel of an expected image, in layers.
+
+use crate::pixel_factors::PixelFactors;
+use crate::smooth_field::SmoothField;
+
+/// The background of every pixel: (light + smooth + field) · response + dark + pattern.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Background {
+    /// Electrons of flat light.
+    pub(super) light_e: f64,
+    /// A smooth field of light and the factor that makes it electrons.
+    pub(super) smooth: Option<(SmoothField, f64)>,
+    /// Electrons of light above those, row by row; empty when there are none.
+    pub(super) field: Vec<f64>,
+    /// Factors of the light, row by row; where it ends they are 1.
+    pub(super) response: Option<PixelFactors>,
+    /// Flat electrons that no response changes.
+    pub(super) dark_e: f64,
+    /// Electrons that no response changes, and a factor of each pixel for them, row by row; where it ends there are none.
+    pub(super) pattern: Option<(f64, PixelFactors)>,
+}
+
+impl Background {
+    /// The background of the pixels of row `y` from column `x` on, in an image of `columns`.
+    #[inline(always)]
+    pub(super) fn span(&self, x: usize, y: usize, columns: usize, out: &mut [f64]) {
+        let pixels = y * columns + x..y * columns + x + out.len();
+        match &self.smooth {
+            Some((smooth, scale)) => {
+                out.fill(0.0);
+                smooth.span(x, y, out);
+                for out in out.iter_mut() {
+                    *out = self.light_e + scale * *out;
+                }
+            }
+            None => out.fill(self.light_e),
+        }
+        if let Some(field) = self.field.get(pixels.clone()) {
+            for (out, field) in out.iter_mut().zip(field) {
+                *out += field;
+            }
+        }
+        if let Some(response) = self.response.as_ref().and_then(|response| response.get(pixels.clone())) {
+            for (out, &response) in out.iter_mut().zip(response) {
+                *out *= f64::from(response);
+            }
+        }
+        match self.pattern.as_ref().and_then(|(e, factors)| Some((e, factors.get(pixels)?))) {
+            Some((electrons, factors)) => {
+                for (out, &factor) in out.iter_mut().zip(factors) {
+                    *out += self.dark_e + electrons * f64::from(factor);
+                }
+            }
+            None => {
+                for out in out.iter_mut() {
+                    *out += self.dark_e;
+                }
+            }
+        }
+    }
+
+    /// [`Background::span`] of one pixel of an image of `columns`, by the same steps.
+    pub(super) fn at(&self, x: usize, y: usize, columns: usize) -> f64 {
+        let index = y * columns + x;
+        // A pattern ends at the end of a row, as `span` takes it.
+        let of_row = |length: usize| length >= (y + 1) * columns;
+        let mut electrons = match &self.smooth {
+            Some((smooth, scale)) => self.light_e + scale * smooth.at(x, y),
+            None => self.light_e,
+        };
+        if let Some(field) = self.field.get(index).filter(|_| of_row(self.field.len())) {
+            electrons += field;
+        }
+        if let Some(response) = self.response.as_ref().filter(|response| of_row(response.len())) {
+            electrons *= f64::from(response[index]);
+        }
+        match self.pattern.as_ref().filter(|(_, factors)| of_row(factors.len())) {
+            Some((e, factors)) => electrons + (self.dark_e + e * f64::from(factors[index])),
+            None => electrons + self.dark_e,
+        }
+    }
+
+    /// No pixel has more.
+    pub(super) fn bound_e(&self) -> f64 {
+        let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.largest());
+        self.bound_with(smooth_e, &self.field)
+    }
+
+    /// No pixel of a row has more, in an image of `columns`.
+    pub(super) fn row_bound_e(&self, y: usize, columns: usize) -> f64 {
+        let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.largest_of_row(y));
+        self.bound_with(smooth_e, self.field.get(y * columns..(y + 1) * columns).unwrap_or_default())
+    }
+
+    /// No pixel has more whose light is at most `smooth_e` and one of `field`.
+    fn bound_with(&self, smooth_e: f64, field: &[f64]) -> f64 {
+        let field_e = field.iter().copied().fold(0.0, f64::max);
+        let response = self.response.as_ref().map_or(1.0, |response| response.largest().max(1.0));
+        let pattern_e =
+            self.pattern.as_ref().map_or(0.0, |(electrons, factors)| electrons * factors.largest());
+        // A part in 10^12 for what rounding adds on the way.
+        ((self.light_e + smooth_e + field_e) * response + self.dark_e + pattern_e) * (1.0 + 1e-12)
+    }
+
+    /// Whether it may differ from pixel to pixel.
+    pub(super) fn is_uneven(&self) -> bool {
+        self.smooth.is_some() || !self.field.is_empty() || self.response.is_some() || self.pattern.is_some()
+    }
+}

@@ -1,0 +1,467 @@
+//! Frames of which only what is looked at is drawn.
+//!
+//! A camera that keeps regions around bright pixels looks at a pixel if its digital number is above a floor, its threshold, or
+//! if it lies in a region. Most pixels are neither, and need no number. So that a frame drawn in part *is* the whole frame
+//! wherever anybody looks, the whole frame is drawn in two steps:
+//!
+//! 1. *Which dark pixels exceed the floor.* A pixel is dark if its mean is at most the limit λ₀ of its row, which is the largest
+//!    mean of the row's background, held between the means that exceed the floor once in 2^20 and once in 64 times. No dark pixel
+//!    exceeds it with a higher probability than p₀ = p(λ₀). Candidates come with p₀ from pixel to pixel, their gaps geometric
+//!    (Devroye, Non-Uniform Random Variate Generation, 1986, X.2): their number is binomial, their places uniform. A dark
+//!    candidate of mean λ is kept with p(λ)/p₀ (PRNU, DSNU and gradients make every pixel's mean its own), and gets a number
+//!    from its law above the floor ([`Exceedance`]).
+//! 2. *All other pixels.* They are drawn from the words of their row, as without a floor. A dark pixel whose number is above the
+//!    floor, but was not among those of the first step, is drawn again until it is not: its law given that it does not exceed.
+//!
+//! Pixels brighter than λ₀, near sources, are drawn outright by the second step alone. Every pixel so has the law that it has
+//! without a floor, and, where nothing exceeds, the same number.
+//!
+//! The first step costs a candidate a row or fewer. The second can be done for any piece of 64 pixels of a row alone: for those
+//! in which a pixel may be brighter than λ₀, and then, once the camera has found its regions among the pixels above the floor,
+//! for those of its regions. What overflows is drawn column by column from the pixels' own addresses in either case.
+//!
+//! Frames whose lines have noise or offsets of their own, of detectors without shot noise, and of high flat levels are not
+//! drawn from tables: there all pixels are drawn outright.
+
+use contract::Window;
+use rand::Rng;
+
+use super::blooming::Overflow;
+use super::charge::Charge;
+use super::config::Switch;
+use super::exceedance::{DarkLimit, Exceedance};
+use super::flat_laws::{FlatLaw, FlatLaws};
+use super::own_means::OwnMeans;
+use super::pixel_law::PixelLaw;
+use super::readout::Sensor;
+use super::sparse_image::{Piece, Pixel, SparseImage};
+use crate::SimError;
+use crate::draw::{ExpectedImage, PIECE};
+use crate::lanes::{LANES, Lanes};
+use crate::randomness::{Effect, Seed, Streams, uniform};
+
+/// What a frame is read out from.
+pub(crate) struct Collected<'a> {
+    pub(crate) charge: &'a Charge<'a>,
+    pub(crate) seed: Seed,
+    pub(crate) frame: u64,
+}
+
+impl Sensor {
+    /// A raw image of which nothing is drawn.
+    pub(crate) fn new_sparse(&self) -> SparseImage {
+        let pieces_per_row = self.columns.div_ceil(PIECE);
+        SparseImage {
+            raw: self.new_raw(),
+            pieces_per_row,
+            pieces: vec![Piece::Blank; pieces_per_row * self.rows],
+            limits: Vec::new(),
+            exceeding: Vec::new(),
+            bloomed: Vec::new(),
+            floor_dn: 0,
+        }
+    }
+
+    /// Draws every pixel whose digital number is above `floor_dn`.
+    ///
+    /// # Errors
+    /// As [`Sensor::read_out`].
+    pub(crate) fn read_out_above(
+        &self,
+        floor_dn: u16,
+        collected: &Collected<'_>,
+        laws: &mut FlatLaws,
+        image: &mut SparseImage,
+    ) -> Result<(), SimError> {
+        let &Collected { charge, seed, frame } = collected;
+        let expected = charge.expected();
+        image.clear();
+        image.floor_dn = floor_dn;
+        if !self.is_drawn_from_tables(expected) {
+            return self.read_out(charge, &seed, frame, laws, image.whole());
+        }
+        self.check_size(expected)?;
+        let exceedances = seed.streams(frame, Effect::Exceedance);
+        let exceedance = laws.exceedance(&self.law, floor_dn);
+        for y in 0..self.rows {
+            let bound_e = expected.row_bound_e(y);
+            let limit = exceedance.dark_limit(bound_e);
+            image.limits.push(limit);
+            thin_row(expected, y, limit, exceedance, &exceedances, &mut image.exceeding);
+            image.want(y, |p| bound_e > limit.mean_e || expected.may_rise_above(y, p, bound_e, limit.mean_e));
+        }
+        self.draw_wanted(collected, laws, image);
+        if let Some(blooming) = &self.config().blooming {
+            let streams = seed.streams(frame, Effect::PixelNoise);
+            self.bloom(&Overflow { blooming, expected, offsets: None, streams: &streams }, |index, dn| {
+                image.bloomed.push(Pixel { index, dn });
+            });
+        }
+        image.set_single_pixels();
+        Ok(())
+    }
+
+    /// Draws all pixels of some windows of the frame of which [`Sensor::read_out_above`] has drawn the pixels above a floor.
+    pub(crate) fn read_out_windows(
+        &self,
+        windows: &[Window],
+        collected: &Collected<'_>,
+        laws: &mut FlatLaws,
+        image: &mut SparseImage,
+    ) {
+        for window in windows {
+            let right = window.x + window.columns;
+            for y in window.y..window.y + window.rows {
+                image.want(y, |p| window.x < (p + 1) * PIECE && p * PIECE < right);
+            }
+        }
+        self.draw_wanted(collected, laws, image);
+        image.set_single_pixels();
+    }
+
+    /// Draws the pieces that are wanted and not yet drawn.
+    fn draw_wanted(&self, collected: &Collected<'_>, laws: &mut FlatLaws, image: &mut SparseImage) {
+        let &Collected { charge, seed, frame } = collected;
+        let expected = charge.expected();
+        let (words, again) =
+            (seed.streams(frame, Effect::PixelNoise), seed.streams(frame, Effect::Exceedance));
+        let (law, columns, rows) = (&self.law, self.columns, self.rows);
+        let task = Task { law, expected, words: &words, again: &again, columns, rows };
+        if expected.has_field() {
+            let tables = laws.own_means(law);
+            // The same steps on every machine, on the widest registers that it has.
+            pulp::Arch::new().dispatch(OwnMeansPieces { task, tables, image });
+        } else {
+            task.draw_flat_pieces(laws.of(law, expected.flat_e()), image);
+        }
+    }
+
+    /// Whether tables hold the laws of nearly all pixels.
+    fn is_drawn_from_tables(&self, expected: &ExpectedImage) -> bool {
+        let is_even = !expected.has_field();
+        self.law.shot == Switch::On
+            && !self.has_line_offsets()
+            && (is_even || expected.flat_e() < OwnMeans::end_e(&self.law))
+    }
+}
+
+/// Appends the dark pixels of a row that are above the floor.
+fn thin_row(
+    expected: &ExpectedImage,
+    y: usize,
+    limit: DarkLimit,
+    exceedance: &mut Exceedance,
+    streams: &Streams,
+    exceeding: &mut Vec<Pixel>,
+) {
+    let columns = expected.size().0;
+    if limit.probability <= 0.0 {
+        return;
+    }
+    let mut stream = streams.at(y as u64);
+    let mut level = uniform(&mut stream);
+    // P(no candidate) = (1 − p)ⁿ ≥ 1 − n p: nearly all rows need no logarithm.
+    if level <= 1.0 - columns as f64 * limit.probability {
+        return;
+    }
+    let per_pixel = libm::log1p(-limit.probability);
+    let mut x = 0.0;
+    loop {
+        x += (libm::log(level) / per_pixel).floor();
+        if x >= columns as f64 {
+            return;
+        }
+        let mean_e = expected.at(x as usize, y);
+        let levels = std::array::from_fn(|_| uniform(&mut stream));
+        if mean_e <= limit.mean_e
+            && let Some(dn) = exceedance.thin(mean_e, limit, levels)
+        {
+            exceeding.push(Pixel { index: y * columns + x as usize, dn });
+        }
+        x += 1.0;
+        level = uniform(&mut stream);
+    }
+}
+
+/// What the pieces of a frame are drawn from.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    law: &'a PixelLaw,
+    expected: &'a ExpectedImage,
+    /// The words of rows and pixels.
+    words: &'a Streams,
+    /// What dark pixels are drawn again from.
+    again: &'a Streams,
+    columns: usize,
+    rows: usize,
+}
+
+impl Task<'_> {
+    /// The place of a pixel of its own: rows have the places before.
+    #[inline(always)]
+    fn place(&self, index: usize) -> u64 {
+        (self.rows + index) as u64
+    }
+
+    /// Draws again the dark pixels that are above the floor; `means_e` are those of the pixels from index `first` on.
+    #[inline(always)]
+    fn keep_dark_pixels_below(
+        &self,
+        floor_dn: u16,
+        limit: DarkLimit,
+        first: usize,
+        means_e: &[f64],
+        dn: &mut [u16],
+    ) {
+        if dn.iter().fold(0, |peak, &dn| peak.max(dn)) <= floor_dn {
+            return;
+        }
+        for (i, (dn, &mean_e)) in dn.iter_mut().zip(means_e).enumerate() {
+            if *dn > floor_dn && mean_e <= limit.mean_e {
+                let mut stream = self.again.at(self.place(first + i));
+                // A dark pixel exceeds the floor once in 64 times or less.
+                while *dn > floor_dn {
+                    *dn = self.law.sample(mean_e.max(0.0), 0.0, &mut stream);
+                }
+            }
+        }
+    }
+
+    /// The wanted pieces of an even detector.
+    fn draw_flat_pieces(&self, flat: &mut FlatLaw, image: &mut SparseImage) {
+        let (flat_e, floor_dn) = (self.expected.flat_e(), image.floor_dn);
+        for y in 0..self.rows {
+            let pieces = &mut image.pieces[y * image.pieces_per_row..(y + 1) * image.pieces_per_row];
+            if !pieces.contains(&Piece::Wanted) {
+                continue;
+            }
+            let mut stream = self.words.at(y as u64);
+            let mut next = 0;
+            for (p, piece) in pieces.iter_mut().enumerate().filter(|(_, piece)| **piece == Piece::Wanted) {
+                // Two pixels take a word.
+                (next * PIECE / 2..p * PIECE / 2).for_each(|_| _ = stream.next_u64());
+                next = p + 1;
+                *piece = Piece::Drawn;
+                let pixels = self.expected.piece_pixels(y, p);
+                let first = pixels.start;
+                let row = &mut image.raw.dn[pixels];
+                flat.draw_row(row, &mut stream);
+                let mut means_e = [flat_e; PIECE];
+                for bit in crate::draw::set_bits(self.expected.drawn_in(y, p)) {
+                    let signal_e = self.expected.signal_at(first + bit);
+                    row[bit] = flat.draw_lit(signal_e, self.words, self.place(first + bit));
+                    means_e[bit] = flat_e + signal_e;
+                }
+                self.keep_dark_pixels_below(floor_dn, image.limits[y], first, &means_e[..row.len()], row);
+            }
+        }
+    }
+}
+
+/// The wanted pieces of a detector in which every pixel has a mean of its own.
+struct OwnMeansPieces<'a> {
+    task: Task<'a>,
+    tables: &'a mut OwnMeans,
+    image: &'a mut SparseImage,
+}
+
+impl pulp::WithSimd for OwnMeansPieces<'_> {
+    type Output = ();
+
+    // Inline, all of it: only so is it compiled for the registers of the machine.
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { task, tables, image } = self;
+        let floor_dn = image.floor_dn;
+        for y in 0..task.rows {
+            let pieces = &mut image.pieces[y * image.pieces_per_row..(y + 1) * image.pieces_per_row];
+            if !pieces.contains(&Piece::Wanted) {
+                continue;
+            }
+            let mut lanes = Lanes::at(task.words, y as u64);
+            let mut next = 0;
+            for (p, piece) in pieces.iter_mut().enumerate() {
+                if *piece != Piece::Wanted {
+                    continue;
+                }
+                for _ in next * PIECE / LANES..p * PIECE / LANES {
+                    lanes.next();
+                }
+                next = p + 1;
+                *piece = Piece::Drawn;
+                let mut words = [0; PIECE];
+                for words in words.as_chunks_mut::<LANES>().0 {
+                    *words = lanes.next();
+                }
+                let first = y * task.columns + p * PIECE;
+                let length = PIECE.min(task.columns - p * PIECE);
+                let mut means_e = [0.0; PIECE];
+                let means_e = &mut means_e[..length];
+                task.expected.piece(y, p, means_e);
+                let row = &mut image.raw.dn[first..first + length];
+                let own = |i: usize| task.words.at(task.place(first + i));
+                tables.draw_piece(means_e, &words, row, own);
+                task.keep_dark_pixels_below(floor_dn, image.limits[y], first, means_e, row);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::config::tests::{opening, twelve_bit};
+    use super::super::pixel_law::tests::{chi_square_p, counts_of, from_zero};
+    use super::super::{BloomingConfig, FixedPatternConfig, LineNoiseConfig, SensorConfig};
+    use super::*;
+
+    const SEED: Seed = Seed { seed: 44, case: 0 };
+
+    /// A detector of a gain of 2 e⁻/DN over a sky of 20 e⁻: background pixels have 60.3 DN and a noise of 2.7 DN.
+    fn detector(prnu_fraction: f64) -> SensorConfig {
+        SensorConfig {
+            gain_e_per_dn: 2.0,
+            read_noise_e: 3.0,
+            full_well_e: 7000.0,
+            background_e_per_s: 20.0,
+            dark_current_e_per_s: 0.0,
+            hot_pixels: Default::default(),
+            blooming: Some(BloomingConfig { spill_fraction: 1.0 }),
+            fixed_pattern: FixedPatternConfig { prnu_fraction, ..Default::default() },
+            ..twelve_bit()
+        }
+    }
+
+    /// Frame `number` of a detector of 301 × 60 pixels with bright pixels, one of which overflows; as far as it is above
+    /// `floor_dn`, in `windows`, and as a whole.
+    fn frames(config: &SensorConfig, number: u64, floor_dn: u16, windows: &[Window]) -> [Vec<u16>; 3] {
+        let sensor = Sensor::new(config, 301, 60).unwrap();
+        let mut image = sensor.new_expected();
+        image.clear(sensor.sky_electrons(1.0));
+        (0..60).for_each(|y| image.add_pixel(5 * y, y, libm::exp(0.16 * y as f64)));
+        let charge = sensor.collect(&mut image, &opening(1.0));
+        let collected = Collected { charge: &charge, seed: SEED, frame: number };
+        let mut laws = FlatLaws::new();
+        let mut draw = |windows: &[Window]| {
+            let mut sparse = sensor.new_sparse();
+            // Left over from the frame before.
+            sparse.whole().dn.fill(4095);
+            sensor.read_out_above(floor_dn, &collected, &mut laws, &mut sparse).unwrap();
+            sensor.read_out_windows(windows, &collected, &mut laws, &mut sparse);
+            let mut from_runs = vec![0; sparse.raw.dn.len()];
+            sparse.runs().for_each(|(first, run)| from_runs[first..first + run.len()].copy_from_slice(run));
+            assert_eq!(from_runs, sparse.raw.dn);
+            sparse.raw.dn
+        };
+        let whole = Window { x: 0, y: 0, columns: 301, rows: 60 };
+        [draw(&[]), draw(windows), draw(&[whole])]
+    }
+
+    #[test]
+    fn a_sparse_frame_is_the_whole_frame_wherever_anybody_looks() {
+        let windows = [(0, 0, 20, 8), (55, 3, 20, 8), (60, 7, 9, 9), (281, 52, 20, 8)]
+            .map(|(x, y, columns, rows)| Window { x, y, columns, rows });
+        // Floors below the background, within its noise and above all of it.
+        for floor_dn in [55, 62, 65, 68, 72, 90, 300, 4095] {
+            for (config, number) in [(detector(0.02), 0), (detector(0.3), 1), (detector(0.0), 2)] {
+                let [above, seen, all] = frames(&config, number, floor_dn, &windows);
+                for (index, &dn) in all.iter().enumerate() {
+                    let (x, y) = (index % 301, index / 301);
+                    assert!(
+                        dn == above[index] || dn <= floor_dn && above[index] <= floor_dn,
+                        "{x}, {y} over {floor_dn}"
+                    );
+                    let is_seen = windows.iter().any(|window| window.contains(x, y));
+                    assert!(dn == seen[index] || dn <= floor_dn && !is_seen, "{x}, {y} over {floor_dn}");
+                }
+                // High floors save drawing, but for a detector whose brightest background pixels are above them.
+                if floor_dn >= 72 && number != 1 {
+                    assert!(seen.iter().filter(|dn| **dn == 0).count() > all.len() / 2);
+                }
+            }
+        }
+    }
+
+    /// A floor leaves every pixel its law: here of many frames, over floors that are exceeded once in 3 to once in 10^4 times.
+    #[test]
+    fn pixels_have_the_same_law_with_a_floor_and_without() {
+        for (config, means) in [(detector(0.0), [20.0, 28.0]), (detector(1e-9), [20.0, 28.0])] {
+            let sensor = Sensor::new(&config, 128, 64).unwrap();
+            let (mut laws, mut image, mut sparse) =
+                (FlatLaws::new(), sensor.new_expected(), sensor.new_sparse());
+            for floor_dn in [62, 64, 66, 70] {
+                let mut drawn = [vec![], vec![]];
+                for number in 0..60 {
+                    image.clear(sensor.sky_electrons(1.0));
+                    // Every third pixel brighter than the background.
+                    (0..64).for_each(|y| (0..128).step_by(3).for_each(|x| image.add_pixel(x, y, 8.0)));
+                    let charge = sensor.collect(&mut image, &opening(1.0));
+                    let collected = Collected { charge: &charge, seed: SEED, frame: number };
+                    sensor.read_out_above(floor_dn, &collected, &mut laws, &mut sparse).unwrap();
+                    let whole = Window { x: 0, y: 0, columns: 128, rows: 64 };
+                    sensor.read_out_windows(&[whole], &collected, &mut laws, &mut sparse);
+                    for (index, &dn) in sparse.raw.dn.iter().enumerate() {
+                        drawn[usize::from(index % 128 % 3 == 0)].push(usize::from(dn));
+                    }
+                }
+                for (drawn, mean_e) in drawn.into_iter().zip(means) {
+                    let p = chi_square_p(
+                        &counts_of(drawn.into_iter()),
+                        &from_zero(&sensor.law.probabilities(mean_e, 0)),
+                    );
+                    // Sixteen tests.
+                    assert!(p > 1e-4, "{mean_e} e⁻ over {floor_dn}: p = {p}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_floor_that_nothing_exceeds_changes_no_pixel() {
+        for config in [detector(0.02), detector(0.0)] {
+            let sensor = Sensor::new(&config, 301, 60).unwrap();
+            let mut image = sensor.new_expected();
+            image.clear(sensor.sky_electrons(1.0));
+            (0..60).for_each(|y| image.add_pixel(5 * y, y, libm::exp(0.16 * y as f64)));
+            let charge = sensor.collect(&mut image, &opening(1.0));
+            let mut raw = sensor.new_raw();
+            sensor.read_out(&charge, &SEED, 3, &mut FlatLaws::new(), &mut raw).unwrap();
+            assert_eq!(frames(&config, 3, 100, &[])[2], raw.dn);
+        }
+    }
+
+    #[test]
+    fn where_no_table_holds_the_law_all_is_drawn() {
+        let config =
+            SensorConfig { line_noise: LineNoiseConfig { row_e: 2.0, column_e: 0.0 }, ..detector(0.02) };
+        let [above, _, all] = frames(&config, 4, 100, &[]);
+        assert_eq!(above, all);
+    }
+
+    #[test]
+    fn the_registers_of_the_machine_change_no_bit() {
+        let sensor = Sensor::new(&detector(0.02), 301, 40).unwrap();
+        let mut image = sensor.new_expected();
+        image.clear(sensor.sky_electrons(1.0));
+        (0..40).for_each(|y| image.add_pixel(7 * y, y, libm::exp(0.2 * y as f64)));
+        let charge = sensor.collect(&mut image, &opening(1.0));
+        let expected = charge.expected();
+        let (words, again) = (SEED.streams(3, Effect::PixelNoise), SEED.streams(3, Effect::Exceedance));
+        let draw = |widest: bool| {
+            let (mut image, mut laws) = (sensor.new_sparse(), FlatLaws::new());
+            image.floor_dn = 65;
+            let limit = laws.exceedance(&sensor.law, 65).dark_limit(22.0);
+            image.limits.resize(40, limit);
+            (0..40).for_each(|y| image.want(y, |p| (y + p) % 2 == 0));
+            let task =
+                Task { law: &sensor.law, expected, words: &words, again: &again, columns: 301, rows: 40 };
+            let pieces = OwnMeansPieces { task, tables: laws.own_means(&sensor.law), image: &mut image };
+            if widest {
+                pulp::Arch::new().dispatch(pieces);
+            } else {
+                pulp::WithSimd::with_simd(pieces, pulp::Scalar::new());
+            }
+            image.raw.dn
+        };
+        assert_eq!(draw(true), draw(false));
+    }
+}

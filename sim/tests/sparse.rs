@@ -1,0 +1,109 @@
+//! Frames of which the camera keeps regions, drawn as far as it looks at them, are those drawn as a whole.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    reason = "a panic is how a test fails, in its helpers too"
+)]
+
+#[allow(dead_code, reason = "each suite uses a part of it")]
+mod small_scene;
+
+use std::ops::Range;
+
+use boresight_sim::{Drawing, Simulation, Simulator};
+use serde::de::DeserializeOwned;
+
+/// The frames with their regions, telemetry, truth and objects, to the bit.
+fn assert_sparse_is_whole(simulator: &Simulator, frames: Range<u64>) {
+    let mut seen = simulator.camera().unwrap();
+    let mut all = simulator.camera().unwrap().drawing(Drawing::All);
+    let mut regions = 0;
+    for number in frames.clone() {
+        let (seen, all) = (seen.expose(number).unwrap(), all.expose(number).unwrap());
+        assert!(seen == all, "frame {number}");
+        regions += seen.frame.windows().unwrap().len();
+    }
+    assert!(regions as u64 > frames.end - frames.start, "{regions} regions");
+}
+
+/// Regions about all that is above `threshold_dn`.
+fn restless(threshold_dn: u16) -> Simulation {
+    let mut simulation = small_scene::restless();
+    simulation.roi.as_mut().unwrap().threshold_dn = threshold_dn;
+    simulation
+}
+
+/// The background has 41 DN with a noise of 1.6 DN: these thresholds are exceeded by sources alone, by some pixels of the
+/// background, and by a tenth of it.
+#[test]
+fn a_sparse_frame_is_the_whole_frame_with_few_regions_and_with_many() {
+    for (threshold_dn, count) in [(67, 500), (46, 100), (43, 20)] {
+        assert_sparse_is_whole(&small_scene::simulator(&restless(threshold_dn)), 0..count);
+    }
+}
+
+#[test]
+fn a_sparse_frame_is_the_whole_frame_on_an_even_detector() {
+    let mut simulation = small_scene::still();
+    simulation.roi = restless(46).roi;
+    assert_sparse_is_whole(&small_scene::simulator(&simulation), 0..400);
+}
+
+/// Wells that overflow, particles, dead pixels, smear: with and without the noise of lines, which leaves no pixel undrawn.
+#[test]
+fn a_sparse_frame_is_the_whole_frame_with_every_effect_of_the_detector() {
+    for lines in [true, false] {
+        let mut simulation = small_scene::defective(restless(67));
+        simulation.sensor.full_well_e = 3000.0;
+        if !lines {
+            simulation.sensor.line_noise = Default::default();
+            simulation.sensor.fixed_pattern.column_offset_e = 0.0;
+        }
+        assert_sparse_is_whole(&small_scene::simulator(&simulation), 0..40);
+    }
+}
+
+/// A section of the scenario `argon`; one that is missing is an empty one.
+fn section<T: DeserializeOwned>(table: &toml::Table, name: &str) -> T {
+    let empty = toml::Value::Table(toml::Table::new());
+    table.get(name).unwrap_or(&empty).clone().try_into().unwrap()
+}
+
+/// Two hundred frames of each of the five days, every sixteenth of them drawn here.
+#[test]
+fn sparse_frames_of_argon_are_whole_frames() {
+    assert_argon(16);
+}
+
+/// In full: `cargo test --release -p boresight-sim --test sparse -- --ignored`, 10 s of CPU time.
+#[test]
+#[ignore = "1,000 frames of 752 × 580 pixels, twice: for a scheduled job"]
+fn a_thousand_sparse_frames_of_argon_are_whole_frames() {
+    assert_argon(1);
+}
+
+fn assert_argon(step: u64) {
+    let table: toml::Table = include_str!("../../scenarios/argon.toml").parse().unwrap();
+    let simulator = small_scene::simulator(&Simulation {
+        seed: section(&table, "seed"),
+        catalog: section(&table, "catalog"),
+        orbit: section(&table, "orbit"),
+        schedule: section(&table, "schedule"),
+        attitude: section(&table, "attitude"),
+        knowledge: section(&table, "knowledge"),
+        mounting: section(&table, "mounting"),
+        camera: section(&table, "camera"),
+        psf: section(&table, "psf"),
+        optics: section(&table, "optics"),
+        radiometry: section(&table, "radiometry"),
+        background: section(&table, "background"),
+        sensor: section(&table, "sensor"),
+        shutter: section(&table, "shutter"),
+        roi: Some(section(&table, "roi")),
+        target: section(&table, "target"),
+        solar_system: section(&table, "solar_system"),
+    });
+    for day_start in [0, 1700, 5000, 9000, 14_000] {
+        assert_sparse_is_whole(&simulator, day_start..day_start + 200 / step);
+    }
+}
