@@ -54,6 +54,14 @@ pub enum Effect {
     LineLevel = 45,
     /// Errors of range and range rate that the overlay of a video picture says, by the second.
     OverlayReading = 46,
+    /// Values of a study's dispersed parameters (addressed with the study's seed and the case).
+    StudyParameter = 60,
+    /// Shifts and permutations of a study's design (addressed with the study's seed).
+    StudyDesign = 61,
+    /// The seed of a case's scenario (addressed with the study's seed and the case).
+    CaseSeed = 62,
+    /// Resampling of cases for the intervals of a study's figures (addressed with the study's seed).
+    Bootstrap = 63,
 }
 
 /// The generator behind every draw.
