@@ -15,12 +15,14 @@ use crate::docking_table::docking;
 use crate::docking_writer::FieldImages;
 use crate::failure::Failure;
 use crate::files::RunDirectory;
+use crate::pipeline_choice::PipelineChoice;
 use crate::run::{Expectation, Flight, Prepared};
 use crate::scenario::Scenario;
 use crate::study::{
     CaseRow, CaseTable, Plan, ShardManifest, ShardStore, Study, StudyFile, Summary, is_narrow_enough,
     run_cases,
 };
+use crate::study_engine::{Engine, run_on_dask};
 use crate::study_table::{live, study_table};
 use crate::table::{TableStyle, far_range};
 
@@ -53,7 +55,10 @@ pub(super) struct RunArguments {
     /// Number of shards; default: one for 32 cases, at most 1000
     #[arg(long, value_name = "N", conflicts_with = "shard")]
     shards: Option<u64>,
-    /// Threads; default: all cores. The results do not depend on it
+    /// Who runs the shards: `local`, this process; `dask`, a Dask cluster on this machine; or `dask=ADDRESS` of a scheduler
+    #[arg(long, value_name = "ENGINE", default_value = "local", conflicts_with = "shard")]
+    engine: Engine,
+    /// Threads, or workers of a cluster on this machine; default: all cores. The results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     #[command(flatten)]
@@ -157,9 +162,21 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
         )));
     }
     let store = ShardStore::open(&arguments.out, Plan::new(&study, hash.clone(), shards)?)?;
-    let scratch = super::scratch_directory()?;
     let jobs = arguments.jobs.map_or_else(default_jobs, usize::from);
     let empty = study.table();
+    if let Engine::Dask(address) = &arguments.engine {
+        let planned = planned(&study, store.plan(), &arguments.study, &choice)?;
+        let progress = output.progress_of(store.plan().cases, "cases", &study.name);
+        let done = |shard: u64| {
+            let cases = store.plan().cases_of(shard);
+            progress.inc(cases.end - cases.start);
+        };
+        let ran = run_on_dask(&to_json(&planned)?, &arguments.out, address.as_deref(), jobs, done);
+        progress.finish_and_clear();
+        ran?;
+        return merged(&study, &store, &hash, &arguments.study, output);
+    }
+    let scratch = super::scratch_directory()?;
     let todo: Vec<u64> = match arguments.shard {
         Some(shard) => vec![shard.shard],
         None => (1..=store.plan().shards).collect(),
@@ -207,6 +224,11 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     }
     let table = known.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     finish(&study, &store, &hash, &arguments.study, &table, output)
+}
+
+fn to_json(value: &impl Serialize) -> Result<String, Failure> {
+    serde_json::to_string(value)
+        .map_err(|error| Failure::Usage(format!("the plan cannot be written as JSON: {error}")))
 }
 
 /// A thread that panicked while it held the rows cannot have left half a row in them.
@@ -266,42 +288,45 @@ struct Piece {
 
 fn plan(arguments: &PlanArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
+    let choice = arguments.pipeline.choice();
+    let plan = Plan::new(&study, study.hash_with(&choice), arguments.shards)?;
+    let planned = planned(&study, &plan, &arguments.study, &choice)?;
+    let path = arguments.study.display();
+    let text = format!(
+        "{}: {} cases in {shards} shards of about {}\nboresight study run {path} --out DIR --shard I/{shards}, for I from 1 to {shards}\n\
+         boresight study merge {path} --out DIR",
+        study.name,
+        plan.cases,
+        plan.cases.div_ceil(plan.shards),
+        shards = plan.shards,
+    );
+    output.answer(&planned, text)?;
+    Ok(Answer::Yes)
+}
+
+fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> Result<Planned, Failure> {
     if study.file.stop.until.is_some() {
         return Err(Failure::Usage(format!(
             "`{}` stops by a figure (stop.until), expected a study of a fixed number of cases: no shard knows the figure alone",
             study.name
         )));
     }
-    let choice = arguments.pipeline.choice();
-    let plan = Plan::new(&study, study.hash_with(&choice), arguments.shards)?;
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let piece = |shard: u64| {
         let cases = plan.cases_of(shard);
-        let words = ["study", "run"].map(str::to_owned).into_iter();
-        let words = words.chain([arguments.study.display().to_string()]);
-        let words = words.chain(["--shard".to_owned(), format!("{shard}/{}", plan.shards)]);
-        let pipeline = choice.word.iter().flat_map(|word| ["--pipeline".to_owned(), word.clone()]);
-        Piece {
-            shard,
-            first_case: cases.start,
-            cases: cases.end - cases.start,
-            arguments: words.chain(pipeline).collect(),
+        let mut arguments = ["study", "run"].map(str::to_owned).to_vec();
+        arguments.extend([
+            path.display().to_string(),
+            "--shard".to_owned(),
+            format!("{shard}/{}", plan.shards),
+        ]);
+        if let Some(word) = &choice.word {
+            let timeout = choice.timeout_s.to_string();
+            arguments.extend(["--pipeline", word, "--timeout-s", &timeout].map(str::to_owned));
         }
+        Piece { shard, first_case: cases.start, cases: cases.end - cases.start, arguments }
     };
-    let planned = Planned { pieces: (1..=plan.shards).map(piece).collect(), plan };
-    let last = planned.pieces.last().map_or(0, |piece| piece.cases);
-    let text = format!(
-        "{}: {} cases in {} shards of about {last}\nboresight study run {} --out DIR --shard I/{}, for I from 1 to {}\n\
-         boresight study merge {} --out DIR",
-        study.name,
-        planned.plan.cases,
-        planned.plan.shards,
-        arguments.study.display(),
-        planned.plan.shards,
-        planned.plan.shards,
-        arguments.study.display()
-    );
-    output.answer(&planned, text)?;
-    Ok(Answer::Yes)
+    Ok(Planned { pieces: (1..=plan.shards).map(piece).collect(), plan: plan.clone() })
 }
 
 fn merge(arguments: &MergeArguments, output: &Output) -> Result<Answer, Failure> {
@@ -314,23 +339,35 @@ fn merge(arguments: &MergeArguments, output: &Output) -> Result<Answer, Failure>
         )));
     };
     let store = ShardStore::open(&arguments.out, Plan::new(&study, hash.clone(), Some(shards))?)?;
+    merged(&study, &store, &hash, &arguments.study, output)
+}
+
+/// Puts the shards together; none may be missing, none be another study's.
+fn merged(
+    study: &Study,
+    store: &ShardStore,
+    hash: &str,
+    path: &Path,
+    output: &Output,
+) -> Result<Answer, Failure> {
     store.check_foreign()?;
-    let mut table = study.table();
+    let empty = study.table();
+    let mut table = empty.clone();
     let mut missing = Vec::new();
-    for shard in 1..=shards {
-        match store.read(shard, &table.with_rows(Vec::new()))? {
+    for shard in 1..=store.plan().shards {
+        match store.read(shard, &empty)? {
             Some((rows, _)) => table.rows.extend(rows.rows),
             None => missing.push(shard.to_string()),
         }
     }
     if !missing.is_empty() {
         return Err(Failure::Usage(format!(
-            "{}: shards {} of {shards} are missing or were damaged; `boresight study run` makes them",
-            arguments.out.display(),
-            missing.join(", ")
+            "shards {} of {} are missing or were damaged; `boresight study run` makes them",
+            missing.join(", "),
+            store.plan().shards
         )));
     }
-    finish(&study, &store, &hash, &arguments.study, &table, output)
+    finish(study, store, hash, path, &table, output)
 }
 
 fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failure> {

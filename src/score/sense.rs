@@ -70,7 +70,7 @@ mod tests {
         is("paper_success_rate", Kind::Rate, Better::More);
         // A bias is the only amount that is best at nought.
         for name in figure_names().into_iter().chain(docking::figure_names()) {
-            let is_bias = name.ends_with("_mean_deg") || name.ends_with("_median_deg");
+            let is_bias = name.contains("_mean_") || name.contains("_median_");
             assert_eq!(sense(&name).better == Better::Near(0.0), is_bias, "{name}");
         }
     }

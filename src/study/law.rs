@@ -238,3 +238,99 @@ pub(super) fn euler_123([u, v, w]: [f64; 3]) -> [f64; 3] {
 fn standard_normal(x: f64) -> f64 {
     0.5 * libm::erfc(-x / std::f64::consts::SQRT_2)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Values at the middles of so many equal parts of the unit interval.
+    fn values(law: Law, n: usize) -> Vec<f64> {
+        assert_eq!(law.check(), Ok(()));
+        let law = Drawable::Law(law);
+        (0..n).map(|i| law.value((i as f64 + 0.5) / n as f64).as_f64().unwrap()).collect()
+    }
+
+    fn moments(values: &[f64]) -> (f64, f64) {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        (mean, (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt())
+    }
+
+    /// Mean and standard deviation of each law in closed form; the sum over 100,000 middles is good to a few parts in 10⁵.
+    #[test]
+    fn the_moments_are_those_of_the_laws() {
+        let near = |law: Law, mean: f64, sigma: f64| {
+            let (got_mean, got_sigma) = moments(&values(law.clone(), 100_000));
+            assert!((got_mean - mean).abs() < 1e-4 * sigma, "{law:?}: mean {got_mean}, {mean}");
+            assert!((got_sigma / sigma - 1.0).abs() < 1e-3, "{law:?}: sigma {got_sigma}, {sigma}");
+        };
+        near(Law::Normal { mean: 3.0, sigma: 2.0, min: None, max: None }, 3.0, 2.0);
+        // Half a normal law: mean σ√(2/π), variance σ²(1 − 2/π).
+        let two_over_pi = 2.0 / std::f64::consts::PI;
+        near(
+            Law::Normal { mean: 0.0, sigma: 1.0, min: Some(0.0), max: None },
+            two_over_pi.sqrt(),
+            (1.0 - two_over_pi).sqrt(),
+        );
+        near(Law::Uniform { min: -1.0, max: 5.0 }, 2.0, 6.0 / 12f64.sqrt());
+        near(Law::Whole { min: 1, max: 6 }, 3.5, (35.0f64 / 12.0).sqrt());
+        let s2 = 0.25f64;
+        let mean = 2.0 * libm::exp(0.5 * s2);
+        near(Law::LogNormal { median: 2.0, sigma_ln: 0.5 }, mean, mean * libm::expm1(s2).sqrt());
+        // (a² + b² + c² − ab − ac − bc)/18.
+        near(Law::Triangular { min: 0.0, mode: 1.0, max: 4.0 }, 5.0 / 3.0, (13.0f64 / 18.0).sqrt());
+    }
+
+    #[test]
+    fn a_choice_comes_as_often_as_its_weight() {
+        let law = Law::Choice {
+            values: [1.0, 2.0, 3.0].map(Value::from).to_vec(),
+            weights: Some(vec![1.0, 0.0, 3.0]),
+        };
+        let values = values(law, 1000);
+        let count = |value: f64| values.iter().filter(|v| **v == value).count();
+        assert_eq!([count(1.0), count(2.0), count(3.0)], [250, 0, 750]);
+    }
+
+    /// Archimedes: each coordinate of a direction that is uniform on the sphere is uniform. And a rotation that is uniform over
+    /// all rotations takes any direction to a uniform one.
+    #[test]
+    fn isotropic_attitudes_prefer_no_direction() {
+        use nalgebra::{Rotation3, Vector3};
+        let n = 48;
+        let middle = |i: usize| (i as f64 + 0.5) / n as f64;
+        let (mut sum, mut squares, mut boresights) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
+        for i in 0..n * n * n {
+            let u = [middle(i % n), middle(i / n % n), middle(i / n / n)];
+            let [phi, theta, psi] = euler_123(u).map(f64::to_radians);
+            let about = |axis: Vector3<f64>, angle: f64| Rotation3::from_scaled_axis(axis * angle);
+            let turned = about(Vector3::z(), psi)
+                * about(Vector3::y(), theta)
+                * about(Vector3::x(), phi)
+                * Vector3::new(0.48, 0.6, 0.64);
+            sum += turned;
+            squares += turned.component_mul(&turned);
+            let [ra, dec, _] = boresight(u).map(f64::to_radians);
+            boresights +=
+                Vector3::new(libm::cos(dec) * libm::cos(ra), libm::cos(dec) * libm::sin(ra), libm::sin(dec));
+        }
+        let count = (n * n * n) as f64;
+        assert!((sum / count).norm() < 1e-3 && (boresights / count).norm() < 1e-3);
+        for k in 0..3 {
+            assert!((squares[k] / count - 1.0 / 3.0).abs() < 1e-3, "{}", squares / count);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_cut_law_stays_within_its_limits(
+            u in 1e-12..1.0f64, mean in -5.0..5.0f64, sigma in 0.1..10.0f64, min in -5.0..0.0f64, width in 0.5..5.0f64,
+        ) {
+            let law = Law::Normal { mean, sigma, min: Some(min), max: Some(min + width) };
+            prop_assume!(law.check().is_ok());
+            let value = Drawable::Law(law).value(u).as_f64().unwrap();
+            prop_assert!((min..=min + width).contains(&value), "{value}");
+        }
+    }
+}

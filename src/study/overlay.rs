@@ -24,7 +24,8 @@ impl ValuePath {
         let mut steps = Vec::new();
         for part in text.split('.') {
             let (name, places) = part.split_once('[').map_or((part, None), |(name, rest)| (name, Some(rest)));
-            if name.is_empty() {
+            let is_of_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+            if name.is_empty() || !name.chars().all(is_of_name) {
                 return Err(EXPECTED);
             }
             steps.push(Step::Key(name.to_owned()));

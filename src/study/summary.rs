@@ -371,3 +371,67 @@ fn worst(table: &CaseTable, by: &str, path: &str) -> Vec<WorstCase> {
     };
     cases.into_iter().map(named).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sim::randomness::uniform;
+
+    fn case(count: u64, of: u64) -> CaseFigure {
+        CaseFigure { value: (of > 0).then(|| count as f64 / of as f64), count, of }
+    }
+
+    #[test]
+    fn a_rate_over_single_frames_has_wilsons_interval() {
+        let cases: Vec<CaseFigure> = (0..29).map(|k| case(u64::from(k == 3), 1)).collect();
+        let got = rate(&cases).unwrap();
+        // Newcombe (1998), Table I: 1 of 29.
+        assert!(
+            (got.low.unwrap() - 0.0061).abs() < 5e-5 && (got.high.unwrap() - 0.1718).abs() < 5e-5,
+            "{got:?}"
+        );
+    }
+
+    /// Frames of a case that go together count as one: the interval holds the truth in 95 % of the studies, where one that takes
+    /// frames for independent holds it in few.
+    #[test]
+    fn the_interval_of_a_rate_knows_that_frames_come_in_cases() {
+        let (mut held, studies) = (0, 400);
+        for study in 0..studies {
+            let mut stream = Seed { seed: 11, case: study }.stream(0, Effect::StudyParameter, 0);
+            // Each case has a rate of its own, uniform from 0.6 to 1: the truth is 0.8.
+            let cases: Vec<CaseFigure> = (0..60)
+                .map(|_| {
+                    let p = 0.6 + 0.4 * uniform(&mut stream);
+                    case((0..50).filter(|_| uniform(&mut stream) < p).count() as u64, 50)
+                })
+                .collect();
+            let got = rate(&cases).unwrap();
+            held += u64::from(got.low.unwrap() <= 0.8 && 0.8 <= got.high.unwrap());
+        }
+        // Binomial of 400 at 0.95: standard deviation 4.4; four of them below.
+        assert!((362..=397).contains(&held), "{held} of {studies}");
+    }
+
+    #[test]
+    fn a_rate_over_nothing_is_none() {
+        assert_eq!(rate(&[]), None);
+        assert_eq!(rate(&[case(0, 0)]), None);
+    }
+
+    /// The percentile bootstrap of the median of 101 normal numbers holds the truth in about 95 % of the samples.
+    #[test]
+    fn the_interval_of_a_quantile_holds_its_truth() {
+        let (mut held, samples) = (0, 200);
+        for sample in 0..samples {
+            let mut draws = Seed { seed: 3, case: sample }.stream(0, Effect::StudyParameter, 0);
+            let mut values: Vec<f64> = (0..101).map(|_| sim::randomness::normal(&mut draws)).collect();
+            values.sort_by(f64::total_cmp);
+            let [median] = quantiles(&values, [0.5], &mut stream(9, sample));
+            let median = median.unwrap();
+            held += u64::from(median.low.unwrap() <= 0.0 && 0.0 <= median.high.unwrap());
+        }
+        // Binomial of 200 at 0.95: standard deviation 3.1; four of them below.
+        assert!((178..=200).contains(&held), "{held} of {samples}");
+    }
+}
