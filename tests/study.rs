@@ -159,7 +159,7 @@ fn a_sweep_has_the_same_draws_at_each_of_its_points() {
     assert!(points.iter().all(|point| point["cases"] == 3));
     let rows = rows(&bench, "out");
     let cell = |row: &str, name: &str| -> String {
-        row.split(&format!("\"{name}\": ")).nth(1).unwrap().split([',', '}']).next().unwrap().to_owned()
+        row.split(&format!("{name}: ")).nth(1).unwrap().split([',', '}']).next().unwrap().to_owned()
     };
     let row = |name: &str, noise: f64| -> Vec<String> {
         let of = |row: &&String| cell(row, "set.sensor.read_noise_e").parse::<f64>().unwrap() == noise;
@@ -203,7 +203,7 @@ fn docking_is_studied_too() {
         [stop]
         cases = 4
         [[vary]]
-        path = "television.noise_dn"
+        path = "television.noise.sigma_dn8"
         law = { kind = "uniform", min = 0.5, max = 4.0 }
         "#,
     );

@@ -161,7 +161,12 @@ impl Study {
         };
         study.hash = study.make_hash()?;
         study.check_names()?;
-        study.case(0)?;
+        let first = study.case(0)?.source;
+        let count = match &first.scenario {
+            Scenario::FarRange(scenario) => first.simulator(scenario)?.schedule().frame_count(),
+            Scenario::Docking(scenario) => first.docking_simulator(scenario)?.field_count(),
+        };
+        study.frames(count)?;
         Ok(study)
     }
 
