@@ -189,7 +189,7 @@ mod tests {
         let design = design(DesignKind::Sobol, 3, 8);
         for (k, expected) in published.iter().enumerate() {
             for (dimension, expected) in expected.iter().enumerate() {
-                let bits = (expected * 2f64.powi(53)) as u64;
+                let bits = (expected / UNIT) as u64;
                 let shifted = ((bits ^ (design.word(dimension) >> 11)) as f64 + 0.5) * UNIT;
                 assert_eq!(design.point(k as u64)[dimension], shifted, "point {k}, dimension {dimension}");
             }

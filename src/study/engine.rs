@@ -7,8 +7,8 @@ use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 use super::cases::CaseRow;
+use super::definition::Study;
 use super::evaluate::evaluate;
-use super::study::Study;
 use crate::failure::Failure;
 use crate::pipeline_choice::PipelineChoice;
 

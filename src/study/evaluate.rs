@@ -5,7 +5,7 @@ use std::path::Path;
 use indexmap::IndexMap;
 
 use super::cases::{CaseFigure, CaseRow};
-use super::study::{Case, Study};
+use super::definition::{Case, Study};
 use crate::docking_renderer::DockingRenderer;
 use crate::docking_run::PreparedDocking;
 use crate::failure::Failure;

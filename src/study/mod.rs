@@ -11,6 +11,7 @@
 //! - [`Summary`]: figures with intervals, sensitivities, the worst cases.
 
 mod cases;
+mod definition;
 mod design;
 mod engine;
 mod evaluate;
@@ -20,10 +21,10 @@ mod overlay;
 mod quantile;
 mod sensitivity;
 mod shard;
-mod study;
 mod summary;
 
 pub use cases::{CaseFigure, CaseRow, CaseTable, Drawn};
+pub use definition::{Case, Study};
 pub use design::DesignKind;
 pub use engine::run_cases;
 pub use evaluate::evaluate;
@@ -31,5 +32,4 @@ pub use file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};
 pub use law::Law;
 pub use sensitivity::{RankCorrelation, SobolIndex};
 pub use shard::{Plan, ShardManifest, ShardStore};
-pub use study::{Case, Study};
 pub use summary::{Estimate, FigureSummary, Summary, SweepPoint, WorstCase, is_narrow_enough, overall};

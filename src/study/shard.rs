@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use tempfile::NamedTempFile;
 
 use super::cases::CaseTable;
-use super::study::Study;
+use super::definition::Study;
 use crate::failure::Failure;
 use crate::files::FileError;
 

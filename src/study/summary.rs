@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed, Stream};
 
 use super::cases::{CaseFigure, CaseRow, CaseTable, Drawn};
+use super::definition::Study;
 use super::design::DesignKind;
 use super::sensitivity::{RankCorrelation, SobolIndex, rank_correlation, sobol_index};
-use super::study::Study;
 use crate::score::{Better, Kind, sense};
 use crate::statistics::wilson;
 
