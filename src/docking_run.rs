@@ -163,6 +163,30 @@ impl PreparedDocking {
         Ok(DockingRan { score, first_failure })
     }
 
+    /// Makes fields on this thread, has the pipeline process them and scores its answers; nothing is written.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the pipeline cannot be built.
+    pub fn score(
+        &self,
+        fields: Range<u64>,
+        factory: &dyn DockingPipelineFactory,
+    ) -> Result<DockingScore, Failure> {
+        let mut pipeline = factory.build(&self.setup)?;
+        let mut scorer = DockingScorer::new(context(&self.run_file, &self.setup));
+        let mut workspace = self.simulator.workspace()?;
+        let mut digitiser = Digitiser::default();
+        for number in fields {
+            let exposure = self.renderer.expose(&self.simulator, &self.setup, &mut workspace, number)?;
+            let outcome =
+                pipeline.process(&exposure.video.digitise(&digitiser), &exposure.telemetry(digitiser));
+            digitiser = outcome.digitiser.filter(|wish| wish.check().is_ok()).unwrap_or(digitiser);
+            let truth = true_field(&exposure.truth, &self.setup);
+            scorer.add(&truth, Some(&outcome)).map_err(unscorable)?;
+        }
+        Ok(scorer.finish())
+    }
+
     fn fly(
         &self,
         flight: &DockingFlight,

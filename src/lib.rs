@@ -19,5 +19,8 @@ pub mod scenario;
 pub mod score;
 pub mod star_list;
 pub mod statistics;
+pub mod study;
+pub mod study_engine;
+pub mod study_table;
 pub mod table;
 pub mod toml_file;

@@ -56,6 +56,14 @@ pub enum Effect {
     OverlayReading = 46,
     /// Which dark pixels are above the floor of a camera that looks no lower, and the numbers of those that are not.
     Exceedance = 47,
+    /// Values of a study's dispersed parameters (addressed with the study's seed and the case).
+    StudyParameter = 60,
+    /// Shifts and permutations of a study's design (addressed with the study's seed).
+    StudyDesign = 61,
+    /// The seed of a case's scenario (addressed with the study's seed and the case).
+    CaseSeed = 62,
+    /// Resampling of cases for the intervals of a study's figures (addressed with the study's seed).
+    Bootstrap = 63,
 }
 
 /// The generator behind every draw.

@@ -6,6 +6,7 @@ mod output;
 mod run;
 mod scenario;
 mod score;
+mod study;
 
 use std::process::ExitCode;
 
@@ -36,6 +37,9 @@ enum Command {
     Process(dataset::ProcessArguments),
     /// Score anybody's measurements against the truth of a dataset or run directory
     Score(score::ScoreArguments),
+    /// Monte Carlo: a scenario over everything that can vary
+    #[command(subcommand)]
+    Study(study::StudyCommand),
     /// List, check and start scenarios
     #[command(subcommand)]
     Scenario(scenario::ScenarioCommand),
@@ -64,6 +68,7 @@ pub fn main() -> ExitCode {
         Command::Render(arguments) => dataset::render(&arguments, &output),
         Command::Process(arguments) => dataset::process(&arguments, &output),
         Command::Score(arguments) => score::score(&arguments, &output),
+        Command::Study(command) => study::study(&command, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
     };
     match answer {

@@ -176,9 +176,13 @@ impl Selection {
 
     /// The number of threads.
     pub(super) fn jobs(&self) -> usize {
-        let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        self.jobs.map_or_else(cores, usize::from)
+        self.jobs.map_or_else(default_jobs, usize::from)
     }
+}
+
+/// A thread a core.
+pub(super) fn default_jobs() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
 /// The format that an option asks for, of those of a world.

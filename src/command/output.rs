@@ -77,11 +77,16 @@ impl Output {
 
     /// A progress bar over `frames` on stderr; hidden when stderr is not a terminal.
     pub(super) fn progress(&self, frames: u64, what: &str) -> ProgressBar {
+        self.progress_of(frames, "frames", what)
+    }
+
+    /// A progress bar over so many of something.
+    pub(super) fn progress_of(&self, count: u64, unit: &str, what: &str) -> ProgressBar {
         if !std::io::stderr().is_terminal() {
             return ProgressBar::hidden();
         }
-        let style = "{msg} {wide_bar} {pos}/{len} frames, {per_sec}, {eta} left";
-        let bar = ProgressBar::new(frames).with_message(what.to_owned());
+        let style = &format!("{{msg}} {{wide_bar}} {{pos}}/{{len}} {unit}, {{per_sec}}, {{eta}} left");
+        let bar = ProgressBar::new(count).with_message(what.to_owned());
         bar.enable_steady_tick(Duration::from_millis(200));
         match ProgressStyle::with_template(style) {
             Ok(style) => bar.with_style(style),

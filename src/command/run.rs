@@ -20,7 +20,7 @@ use crate::score::ARGON_TABLE_2;
 use crate::table::{TableStyle, far_range};
 
 /// Where numbered run directories go when `--out` is not given.
-const RUNS: &str = "runs";
+pub(super) const RUNS: &str = "runs";
 
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {

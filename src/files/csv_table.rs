@@ -207,7 +207,7 @@ fn unknown_column(path: &Path, column: &str, layout: Layout) -> FileError {
     FileError::UnknownColumn { path: path.to_owned(), column: column.to_owned(), nearest: nearest.to_owned() }
 }
 
-fn csv_error(path: &Path, error: &csv::Error) -> FileError {
+pub(super) fn csv_error(path: &Path, error: &csv::Error) -> FileError {
     let line =
         |position: &Option<csv::Position>| Place::Line(position.as_ref().map_or(0, csv::Position::line));
     match error.kind() {

@@ -134,11 +134,11 @@ pub enum FileError {
 }
 
 impl FileError {
-    pub(super) fn io(path: &Path, doing: &'static str, source: io::Error) -> Self {
+    pub(crate) fn io(path: &Path, doing: &'static str, source: io::Error) -> Self {
         Self::Io { path: path.to_owned(), doing, source }
     }
 
-    pub(super) fn format(path: &Path, format: &'static str, reason: impl ToString) -> Self {
+    pub(crate) fn format(path: &Path, format: &'static str, reason: impl ToString) -> Self {
         Self::Format { path: path.to_owned(), format, reason: reason.to_string() }
     }
 

@@ -5,6 +5,7 @@
 //! [`contract::Camera::MAX_SIDE_PX`] justify. No writer overwrites.
 
 mod clusters;
+mod column;
 mod csv_table;
 mod dataset;
 mod directory;
@@ -32,12 +33,14 @@ mod windows;
 
 pub use self::exr::{Expected, read_expected, read_radiance, write_expected, write_radiance};
 pub use clusters::FrameCluster;
+pub use column::read_column;
 pub use dataset::{CameraFile, Dataset, DatasetFrame};
 pub use directory::RunDirectory;
 pub use error::{FileError, Place};
 pub use field_telemetry::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
 pub use frame_file::{FrameHeader, ImageFormat, read_frame, write_frame};
 pub use measurements::{MeasurementWriter, read_measurements};
+pub(crate) use parquet_table::guarded;
 pub use parquet_table::{Column, Columns, Row, TableReader, TableWriter};
 pub use partial::PartialFiles;
 pub use stars::{StarRow, read_stars, write_stars};

@@ -239,7 +239,7 @@ impl<R: Row> Iterator for TableReader<R> {
 
 /// Runs a call into the crate `parquet`, which has assertions that a damaged file can break: such a panic is the
 /// file's fault and becomes its error.
-fn guarded<T>(path: &Path, call: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
+pub(crate) fn guarded<T>(path: &Path, call: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
     catch_unwind(AssertUnwindSafe(call))
         .unwrap_or_else(|_| Err(FileError::format(path, "Parquet", "it is damaged")))
 }

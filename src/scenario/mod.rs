@@ -17,6 +17,7 @@ use std::str::FromStr;
 
 use schemars::{JsonSchema, Schema, schema_for};
 
+use crate::failure::Failure;
 use crate::toml_file;
 
 /// A scenario of either world.
@@ -43,6 +44,18 @@ impl Scenario {
             Self::FarRange(scenario) => scenario.seed = seed,
             Self::Docking(scenario) => scenario.seed = seed,
         }
+    }
+
+    /// All its values, defaults included.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when they cannot be written as JSON.
+    pub fn to_json(&self) -> Result<serde_json::Value, Failure> {
+        let json = match self {
+            Self::FarRange(scenario) => serde_json::to_value(scenario),
+            Self::Docking(scenario) => serde_json::to_value(scenario),
+        };
+        json.map_err(|error| Failure::Usage(format!("the scenario cannot be written as JSON: {error}")))
     }
 
     /// The JSON Schema of scenario files, from the types that read them: of one world, or of either.

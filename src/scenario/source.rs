@@ -3,6 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use pipeline::PipelineError;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 use sim::catalog::CatalogSource;
 use sim::docking::DockingSimulator;
 use sim::optics::PsfConfig;
@@ -95,6 +98,31 @@ impl ScenarioSource {
             }
         };
         Ok(Self { name, folder, scenario, file, text })
+    }
+
+    /// The same scenario with other values, from [`Scenario::to_json`], and another seed. `label` is what mistakes are told of.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the path of a value of the wrong type, or of one that there is not.
+    pub fn with_values(&self, values: &Value, seed: u64, label: String) -> Result<Self, Failure> {
+        fn typed<S: DeserializeOwned + Serialize>(values: &Value, label: &str) -> Result<S, Failure> {
+            serde_path_to_error::deserialize(values).map_err(
+                |error: serde_path_to_error::Error<serde_json::Error>| {
+                    Failure::Usage(format!("{label}: {}: {}", error.path(), error.inner()))
+                },
+            )
+        }
+        let mut scenario = match &self.scenario {
+            Scenario::FarRange(_) => Scenario::FarRange(typed(values, &label)?),
+            Scenario::Docking(_) => Scenario::Docking(typed(values, &label)?),
+        };
+        scenario.set_seed(seed);
+        let text = match &scenario {
+            Scenario::FarRange(scenario) => toml::to_string(scenario),
+            Scenario::Docking(scenario) => toml::to_string(scenario),
+        };
+        let text = text.map_err(|error| Failure::Usage(format!("{label}: cannot be written: {error}")))?;
+        Ok(Self { name: self.name.clone(), folder: self.folder.clone(), scenario, file: label.into(), text })
     }
 
     /// The far-range scenario that it is.

@@ -155,6 +155,11 @@ impl<'a> Scorer<'a> {
     }
 }
 
+/// Names of the figures of every score, in their order.
+pub fn figure_names() -> Vec<String> {
+    figures(&[]).into_keys().collect()
+}
+
 /// The score of some sequences of frames taken together.
 fn group_score(sequences: &[&[&FrameVerdict]]) -> GroupScore {
     let frames = || sequences.iter().copied().flatten();

@@ -19,12 +19,14 @@ pub mod docking;
 #[cfg(test)]
 mod hand_made;
 mod report;
+mod sense;
 mod verdict;
 
-pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, Unproject};
+pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, Unproject, figure_names};
 pub use angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
 pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
 pub use belonging::belonging_to;
 pub use cause::Cause;
 pub use report::{Figure, GroupScore, Score, names};
+pub use sense::{Better, Kind, Sense, sense};
 pub use verdict::{FrameVerdict, Taken, Verdict, VerdictRow};

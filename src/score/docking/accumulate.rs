@@ -219,6 +219,11 @@ impl DockingScorer {
     }
 }
 
+/// Names of the figures of every score, in their order.
+pub fn figure_names() -> Vec<String> {
+    group_score(&[]).figures.into_keys().chain([names::LATENCY_FIELDS.to_owned()]).collect()
+}
+
 /// Fields from the first clear one to the first success at or after it; `None` when there is no such pair.
 fn latency(verdicts: &[FieldVerdict]) -> Option<f64> {
     let after = &verdicts[verdicts.iter().position(|field| field.is_clear)?..];

@@ -1,0 +1,1 @@
+"""Boresight's Python side. The simulator and the oracle are the program `boresight`."""

@@ -1,0 +1,41 @@
+//! Runs the cases of a shard on the threads of this machine.
+
+use std::ops::Range;
+use std::path::Path;
+
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
+
+use super::cases::CaseRow;
+use super::definition::Study;
+use super::evaluate::evaluate;
+use crate::failure::Failure;
+use crate::pipeline_choice::PipelineChoice;
+
+/// Evaluates cases on `jobs` threads, a case a thread; `done` is told of each, in no order. The rows are in order, and depend on
+/// neither. A program finds its images in folders of its own below `scratch`.
+///
+/// # Errors
+/// The failure of the first case, in order, that has one.
+pub fn run_cases(
+    study: &Study,
+    cases: Range<u64>,
+    choice: &PipelineChoice,
+    jobs: usize,
+    scratch: &Path,
+    done: impl Fn(&CaseRow) + Sync,
+) -> Result<Vec<CaseRow>, Failure> {
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(jobs)
+        .build()
+        .map_err(|error| Failure::Usage(format!("{jobs} threads cannot be started: {error}")))?;
+    let one = |case: u64| {
+        let own = tempfile::tempdir_in(scratch)
+            .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))?;
+        let row = evaluate(study, case, choice, own.path())?;
+        done(&row);
+        Ok(row)
+    };
+    let rows: Vec<Result<CaseRow, Failure>> = pool.install(|| cases.into_par_iter().map(one).collect());
+    rows.into_iter().collect()
+}

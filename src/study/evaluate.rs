@@ -1,0 +1,68 @@
+//! What comes of a case.
+
+use std::path::Path;
+
+use indexmap::IndexMap;
+
+use super::cases::{CaseFigure, CaseRow};
+use super::definition::{Case, Study};
+use crate::docking_renderer::DockingRenderer;
+use crate::docking_run::PreparedDocking;
+use crate::failure::Failure;
+use crate::pipeline_choice::PipelineChoice;
+use crate::run::Prepared;
+use crate::scenario::Scenario;
+use crate::score::{self, Figure};
+
+/// Simulates, processes and scores a case on this thread; nothing is written. A program finds its images in `scratch`.
+///
+/// # Errors
+/// A [`Failure`] when the values drawn make no scenario that can be simulated, named with the case, or the pipeline cannot be built.
+pub fn evaluate(
+    study: &Study,
+    number: u64,
+    choice: &PipelineChoice,
+    scratch: &Path,
+) -> Result<CaseRow, Failure> {
+    let case = study.case(number)?;
+    let figures = figures_of(study, &case, choice, scratch)?;
+    let figure = |name: &String| {
+        figures.get(name).map_or(CaseFigure { value: None, count: 0, of: 0 }, |figure| CaseFigure {
+            value: figure.value,
+            count: figure.count,
+            of: figure.of,
+        })
+    };
+    let figures = study.figures().iter().map(figure).collect();
+    Ok(CaseRow { case: number, seed: case.seed, drawn: case.drawn, figures })
+}
+
+fn figures_of(
+    study: &Study,
+    case: &Case,
+    choice: &PipelineChoice,
+    scratch: &Path,
+) -> Result<IndexMap<String, Figure>, Failure> {
+    match &case.source.scenario {
+        Scenario::FarRange(_) => {
+            let prepared = Prepared::new(&case.source)?;
+            let factory = choice.factory(&prepared.scenario().far_range, scratch)?;
+            let frames = study.frames(prepared.frame_count())?;
+            Ok(prepared.score(frames, factory.as_ref())?.figures)
+        }
+        Scenario::Docking(_) => {
+            let prepared = PreparedDocking::new(&case.source, DockingRenderer::Fast)?;
+            let factory = choice.docking_factory(&prepared.scenario().docking, scratch)?;
+            let fields = study.frames(prepared.field_count())?;
+            Ok(prepared.score(fields, factory.as_ref())?.figures)
+        }
+    }
+}
+
+/// Names of all figures of a score of a scenario's world, in their order.
+pub(super) fn figure_names(scenario: &Scenario) -> Vec<String> {
+    match scenario {
+        Scenario::FarRange(_) => score::figure_names(),
+        Scenario::Docking(_) => score::docking::figure_names(),
+    }
+}

@@ -1,0 +1,35 @@
+//! Studies: a pipeline over everything that can vary (Monte Carlo, sweeps, designs of experiments).
+//!
+//! A study is a scenario and the laws of some of its parameters ([`StudyFile`]). Case k is a scenario of its own: its values are
+//! drawn from the address (seed of the study, k), so that any shard, in any order, on any machine, gives the same rows. What
+//! is made of a case is one row of a table ([`CaseRow`]): the values drawn, and every figure of its score.
+//!
+//! - [`StudyFile`], [`Law`], [`DesignKind`]: what is asked for.
+//! - [`Study`]: what was asked for, checked; makes the scenario of a case.
+//! - [`evaluate`]: simulates, processes and scores a case.
+//! - [`ShardStore`]: shards as files, each written at once or not at all; what is missing, what is whole.
+//! - [`Summary`]: figures with intervals, sensitivities, the worst cases.
+
+mod cases;
+mod definition;
+mod design;
+mod engine;
+mod evaluate;
+mod file;
+mod law;
+mod overlay;
+mod quantile;
+mod sensitivity;
+mod shard;
+mod summary;
+
+pub use cases::{CaseFigure, CaseRow, CaseTable, Drawn};
+pub use definition::{Case, Study};
+pub use design::DesignKind;
+pub use engine::run_cases;
+pub use evaluate::evaluate;
+pub use file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};
+pub use law::Law;
+pub use sensitivity::{RankCorrelation, SobolIndex};
+pub use shard::{Plan, ShardManifest, ShardStore};
+pub use summary::{Estimate, FigureSummary, Summary, SweepPoint, WorstCase, is_narrow_enough, overall};
