@@ -13,7 +13,7 @@ use sim::mitsuba::Settings;
 
 fn main() -> Result<(), MitsubaError> {
     let mut arguments = std::env::args().skip(1);
-    let folder = PathBuf::from(arguments.next().unwrap());
+    let folder = PathBuf::from(arguments.next().expect("usage: golden_docking FOLDER"));
     let only = arguments.next();
     let (cases, target) = docking_cases::load();
     target.check()?;

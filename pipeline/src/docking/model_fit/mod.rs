@@ -390,8 +390,9 @@ fn judge(
 }
 
 fn marks(samples: &Samples, scene: &Scene, pose: &Pose) -> Vec<Mark> {
-    let rejected = |index: usize| {
-        samples.patches.iter().any(|patch| patch.feature == Feature::Mark(index) && !patch.is_used)
+    // A mark whose pixels were all left out, in shadow or beside it, has no patch any more.
+    let is_used = |index: usize| {
+        samples.patches.iter().any(|patch| patch.feature == Feature::Mark(index) && patch.is_used)
     };
     scene
         .target
@@ -404,7 +405,7 @@ fn marks(samples: &Samples, scene: &Scene, pose: &Pose) -> Vec<Mark> {
             Some(Mark {
                 index: index as u32,
                 position: project(scene.camera, pose, &Vector3::new(middle(0), middle(1), 0.0))?,
-                usage: if rejected(index) { MarkUse::Rejected } else { *usage },
+                usage: if *usage == MarkUse::Used && !is_used(index) { MarkUse::Rejected } else { *usage },
             })
         })
         .collect()
