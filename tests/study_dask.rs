@@ -54,6 +54,29 @@ fn wait_for(what: &str, mut is_so: impl FnMut() -> bool) {
     }
 }
 
+/// The command that runs the study in 20 shards on a cluster.
+fn on_dask(bench: &Bench, engine: &str) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("boresight"));
+    command
+        .args([
+            "study",
+            "run",
+            "study.toml",
+            "--out",
+            "out",
+            "--shards",
+            "20",
+            "--jobs",
+            "2",
+            "--engine",
+            engine,
+        ])
+        .env("BORESIGHT_PYTHON", python())
+        .current_dir(bench.path(""))
+        .stdout(Stdio::null());
+    command
+}
+
 /// A scheduler on this machine, and its address.
 fn scheduler() -> (Killed, String) {
     let mut child = Command::new(python())
@@ -111,24 +134,7 @@ fn a_killed_worker_costs_its_shard_and_no_other() {
 
     let (_scheduler, address) = scheduler();
     let mut workers = [worker(&address, &bench), worker(&address, &bench)];
-    let driver = Command::new(assert_cmd::cargo::cargo_bin!("boresight"))
-        .args([
-            "study",
-            "run",
-            "study.toml",
-            "--out",
-            "out",
-            "--shards",
-            "20",
-            "--engine",
-            &format!("dask={address}"),
-        ])
-        .env("BORESIGHT_PYTHON", python())
-        .current_dir(bench.path(""))
-        .stdout(Stdio::null())
-        .stderr(Stdio::inherit())
-        .spawn()
-        .unwrap();
+    let driver = on_dask(&bench, &format!("dask={address}")).spawn().unwrap();
     let mut driver = Killed(driver);
     wait_for("six shards", || shards(&bench) >= 6);
     let before = bench.tree("out/shards");
@@ -161,25 +167,8 @@ fn a_killed_worker_costs_its_shard_and_no_other() {
 fn a_killed_driver_is_started_again_and_makes_what_is_missing() {
     let bench = Bench::new();
     bench.write("study.toml", STUDY);
-    let mut driver = Command::new(assert_cmd::cargo::cargo_bin!("boresight"));
-    driver
-        .args([
-            "study",
-            "run",
-            "study.toml",
-            "--out",
-            "out",
-            "--shards",
-            "20",
-            "--engine",
-            "dask",
-            "--jobs",
-            "2",
-        ])
-        .env("BORESIGHT_PYTHON", python())
-        .current_dir(bench.path(""))
-        .stdout(Stdio::null())
-        .stderr(Stdio::null());
+    let mut driver = on_dask(&bench, "dask");
+    driver.stderr(Stdio::null());
     let mut first = Killed(driver.spawn().unwrap());
     wait_for("five shards", || shards(&bench) >= 5);
     first.0.kill().unwrap();
