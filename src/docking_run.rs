@@ -12,7 +12,7 @@ use contract::docking::{Digitiser, DockingPipelineFactory, DockingSetup};
 use sim::docking::{DockingSimulator, DockingWorkspace, FieldExposure, FieldTruth};
 
 use crate::docking_renderer::DockingRenderer;
-use crate::docking_writer::{Answers, FieldDataset, FieldImages};
+use crate::docking_writer::{Answers, FieldDataset, FieldImages, answer_as_filed};
 use crate::failure::Failure;
 use crate::files::docking::{SetupFile, read_field_measurements, read_motion, truth_as_filed};
 use crate::files::{FieldSource, PartialFiles, RunDirectory, TableReader, Y4mWriter};
@@ -181,8 +181,9 @@ impl PreparedDocking {
             let outcome =
                 pipeline.process(&exposure.video.digitise(&digitiser), &exposure.telemetry(digitiser));
             digitiser = outcome.digitiser.filter(|wish| wish.check().is_ok()).unwrap_or(digitiser);
-            let truth = true_field(&exposure.truth, &self.setup);
-            scorer.add(&truth, Some(&outcome)).map_err(unscorable)?;
+            // What the files of a run would give back, so that both have the same score to the bit.
+            let truth = true_field(&truth_as_filed(exposure.truth), &self.setup);
+            scorer.add(&truth, Some(&answer_as_filed(&outcome))).map_err(unscorable)?;
         }
         Ok(scorer.finish())
     }

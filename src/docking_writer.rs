@@ -204,9 +204,7 @@ impl Answers {
             }
             features.write(FeatureRow::of(field, &outcome.features))?;
         }
-        let mut answered = outcome_as_filed(outcome);
-        answered.motion = outcome.motion.as_ref().map(report_as_filed);
-        Ok(answered)
+        Ok(answer_as_filed(outcome))
     }
 
     pub(crate) fn finish(self) -> Result<Option<FirstFailure>, FileError> {
@@ -217,4 +215,11 @@ impl Answers {
         }
         Ok(self.first_failure)
     }
+}
+
+/// An answer as it stands in the files.
+pub(crate) fn answer_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
+    let mut answered = outcome_as_filed(outcome);
+    answered.motion = outcome.motion.as_ref().map(report_as_filed);
+    answered
 }

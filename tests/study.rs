@@ -209,6 +209,11 @@ fn docking_is_studied_too() {
     );
     let summary = bench.boresight("study run docking.toml --out out --json").done().json();
     assert_eq!(summary["figures"]["success_rate"]["all"]["value"], 1.0);
+    // A replayed case has the figures of its row, to the bit.
+    let score = bench.boresight("study replay docking.toml --case 2 --out again --json").done().json();
+    let row = rows(&bench, "out").remove(2);
+    let range_rms_m = row.split("range_rms_m: ").nth(1).unwrap().split(',').next().unwrap().to_owned();
+    assert_eq!(range_rms_m.parse::<f64>().unwrap(), figure(&score, "range_rms_m"));
 }
 
 #[test]

@@ -4,57 +4,32 @@
 //! `cargo bench -p boresight-sim --bench frame`
 #![allow(clippy::unwrap_used, reason = "a benchmark ends by panicking")]
 
+#[path = "../tests/argon/mod.rs"]
+mod argon;
+
 use std::cell::{LazyCell, RefCell};
 use std::hint::black_box;
 use std::path::Path;
 
+use boresight_sim::Simulator;
 use boresight_sim::optics::{Psf, PsfConfig, Stamp};
 use boresight_sim::randomness::{Effect, Seed};
 use boresight_sim::sensor::{FixedPatternConfig, FlatLaws, Opening, Sensor, SensorConfig};
-use boresight_sim::{Simulation, Simulator};
 use contract::PixelPoint;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use rand::Rng;
-use serde::de::DeserializeOwned;
 
 const SEED: Seed = Seed { seed: 1, case: 0 };
-const ARGON: &str = include_str!("../../scenarios/argon.toml");
 
-/// A section of the scenario `argon`; a section that is missing is an empty one.
-fn section<T: DeserializeOwned>(table: &toml::Table, name: &str) -> T {
-    let empty = toml::Value::Table(toml::Table::new());
-    table.get(name).unwrap_or(&empty).clone().try_into().unwrap()
-}
-
-fn argon() -> Simulator {
-    let table: toml::Table = ARGON.parse().unwrap();
-    let simulation = Simulation {
-        seed: section(&table, "seed"),
-        catalog: section(&table, "catalog"),
-        orbit: section(&table, "orbit"),
-        schedule: section(&table, "schedule"),
-        attitude: section(&table, "attitude"),
-        knowledge: section(&table, "knowledge"),
-        mounting: section(&table, "mounting"),
-        camera: section(&table, "camera"),
-        psf: section(&table, "psf"),
-        optics: section(&table, "optics"),
-        radiometry: section(&table, "radiometry"),
-        background: section(&table, "background"),
-        sensor: section(&table, "sensor"),
-        shutter: section(&table, "shutter"),
-        roi: Some(section(&table, "roi")),
-        target: section(&table, "target"),
-        solar_system: section(&table, "solar_system"),
-    };
-    Simulator::new(&simulation, Path::new("")).unwrap()
+fn simulator() -> Simulator {
+    Simulator::new(&argon::simulation(), Path::new("")).unwrap()
 }
 
 /// A detector of so many pixels, 4 columns to 3 rows, whose every pixel has a mean of its own.
 fn uneven(pixels: usize) -> Sensor {
     let rows = (pixels as f64 * 0.75).sqrt() as usize;
-    let table: toml::Table = ARGON.parse().unwrap();
-    let config: SensorConfig = section(&table, "sensor");
+    let table = argon::table();
+    let config: SensorConfig = argon::section(&table, "sensor");
     let pattern =
         FixedPatternConfig { prnu_fraction: 0.01, dsnu_fraction: 0.1, ..config.fixed_pattern.clone() };
     Sensor::new(&SensorConfig { fixed_pattern: pattern, ..config }, pixels / rows, rows).unwrap()
@@ -74,7 +49,7 @@ fn floors(c: &mut Criterion) {
 }
 
 fn whole_frames(c: &mut Criterion) {
-    let simulator = argon();
+    let simulator = simulator();
     let mut camera = simulator.camera().unwrap();
     let mut group = c.benchmark_group("argon");
     for day_start in [0_u64, 1700, 5000, 9000, 14_000] {

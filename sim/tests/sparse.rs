@@ -5,13 +5,14 @@
     reason = "a panic is how a test fails, in its helpers too"
 )]
 
+#[allow(dead_code, reason = "the benchmark asks for sections of it")]
+mod argon;
 #[allow(dead_code, reason = "each suite uses a part of it")]
 mod small_scene;
 
 use std::ops::Range;
 
 use boresight_sim::{Drawing, Simulation, Simulator};
-use serde::de::DeserializeOwned;
 
 /// The frames with their regions, telemetry, truth and objects, to the bit.
 fn assert_sparse_is_whole(simulator: &Simulator, frames: Range<u64>) {
@@ -63,12 +64,6 @@ fn a_sparse_frame_is_the_whole_frame_with_every_effect_of_the_detector() {
     }
 }
 
-/// A section of the scenario `argon`; one that is missing is an empty one.
-fn section<T: DeserializeOwned>(table: &toml::Table, name: &str) -> T {
-    let empty = toml::Value::Table(toml::Table::new());
-    table.get(name).unwrap_or(&empty).clone().try_into().unwrap()
-}
-
 /// Two hundred frames of each of the five days, every sixteenth of them drawn here.
 #[test]
 fn sparse_frames_of_argon_are_whole_frames() {
@@ -83,26 +78,7 @@ fn a_thousand_sparse_frames_of_argon_are_whole_frames() {
 }
 
 fn assert_argon(step: u64) {
-    let table: toml::Table = include_str!("../../scenarios/argon.toml").parse().unwrap();
-    let simulator = small_scene::simulator(&Simulation {
-        seed: section(&table, "seed"),
-        catalog: section(&table, "catalog"),
-        orbit: section(&table, "orbit"),
-        schedule: section(&table, "schedule"),
-        attitude: section(&table, "attitude"),
-        knowledge: section(&table, "knowledge"),
-        mounting: section(&table, "mounting"),
-        camera: section(&table, "camera"),
-        psf: section(&table, "psf"),
-        optics: section(&table, "optics"),
-        radiometry: section(&table, "radiometry"),
-        background: section(&table, "background"),
-        sensor: section(&table, "sensor"),
-        shutter: section(&table, "shutter"),
-        roi: Some(section(&table, "roi")),
-        target: section(&table, "target"),
-        solar_system: section(&table, "solar_system"),
-    });
+    let simulator = small_scene::simulator(&argon::simulation());
     for day_start in [0, 1700, 5000, 9000, 14_000] {
         assert_sparse_is_whole(&simulator, day_start..day_start + 200 / step);
     }

@@ -189,13 +189,14 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     let known = Mutex::new(empty.clone());
     let mut manifests = Vec::new();
     for shard in todo {
-        let made = match store.read(shard, &empty)? {
+        let made = match store.read(shard, &empty) {
             Some((table, manifest)) => {
                 progress.inc(table.rows.len() as u64);
                 lock(&known).rows.extend(table.rows);
                 manifest
             }
             None => {
+                store.clear(shard)?;
                 let done = |row: &CaseRow| {
                     progress.inc(1);
                     let mut known = lock(&known);
@@ -355,7 +356,7 @@ fn merged(
     let mut table = empty.clone();
     let mut missing = Vec::new();
     for shard in 1..=store.plan().shards {
-        match store.read(shard, &empty)? {
+        match store.read(shard, &empty) {
             Some((rows, _)) => table.rows.extend(rows.rows),
             None => missing.push(shard.to_string()),
         }

@@ -182,26 +182,25 @@ impl ShardStore {
         self.shards().join(format!("{shard:0width$}-of-{}.parquet", self.plan.shards))
     }
 
-    /// The rows of a shard when its file is there and whole. A file that is damaged, or of another study, is removed.
+    /// The rows of a shard when its file is there, whole, and of this study.
+    pub fn read(&self, shard: u64, empty: &CaseTable) -> Option<(CaseTable, ShardManifest)> {
+        let (table, metadata) = empty.read(&self.path(shard)).ok()?;
+        let manifest = self.manifest_of(shard, &table, &metadata)?;
+        Some((table, manifest))
+    }
+
+    /// Makes room for a shard that [`ShardStore::read`] does not find: removes the file that stands in its place, if one does.
     ///
     /// # Errors
-    /// [`FileError::Io`] when such a file cannot be removed.
-    pub fn read(
-        &self,
-        shard: u64,
-        empty: &CaseTable,
-    ) -> Result<Option<(CaseTable, ShardManifest)>, FileError> {
+    /// [`FileError::Io`] when it cannot be removed.
+    pub fn clear(&self, shard: u64) -> Result<(), FileError> {
         let path = self.path(shard);
-        if !path.exists() {
-            return Ok(None);
+        match std::fs::remove_file(&path) {
+            Err(source) if source.kind() != ErrorKind::NotFound => {
+                Err(FileError::io(&path, "remove", source))
+            }
+            _ => Ok(()),
         }
-        if let Ok((table, metadata)) = empty.read(&path)
-            && let Some(manifest) = self.manifest_of(shard, &table, &metadata)
-        {
-            return Ok(Some((table, manifest)));
-        }
-        std::fs::remove_file(&path).map_err(|source| FileError::io(&path, "remove", source))?;
-        Ok(None)
     }
 
     /// The manifest of rows, if what is written beside them is just that.

@@ -26,7 +26,8 @@ RETRIES = 3
 """How often a shard is tried again after its worker died or its program failed."""
 
 DEATHS = 100
-"""How many workers may die over a shard before the scheduler gives it up: a cluster that takes machines away is no fault of a shard."""
+"""How many workers may die over a shard before the scheduler gives it up: a cluster that takes machines away is no fault of a shard.
+Of a cluster on this machine; a scheduler elsewhere has its own configuration."""
 
 
 def die_with_parent() -> None:

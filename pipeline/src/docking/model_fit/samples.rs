@@ -1,6 +1,6 @@
 //! Which pixels are looked at: bands along the edges of marks and cross, away from what is not in the model.
 
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
 use contract::PixelPoint;
 use contract::docking::{Field, MarkUse, TargetModel};
@@ -61,6 +61,25 @@ pub(super) struct Patch {
     pub(super) is_used: bool,
     /// A shadow falls on the mark: it is not used again.
     pub(super) is_shaded: bool,
+}
+
+impl Patch {
+    /// The patch of some pixels; nothing is known of its levels.
+    pub(super) fn new(feature: Feature, pixels: Range<usize>, centre: (f64, f64)) -> Self {
+        Self {
+            feature,
+            first: pixels.start,
+            end: pixels.end,
+            centre,
+            levels: [0.0; LOCALS],
+            squares: 0.0,
+            levels_inverse: SMatrix::zeros(),
+            levels_by_globals: SMatrix::zeros(),
+            used_samples: 0,
+            is_used: true,
+            is_shaded: false,
+        }
+    }
 }
 
 /// Pixels below which a patch says nothing beyond its own levels.
@@ -335,19 +354,7 @@ impl Samples {
         let n = pixels.len() as f64;
         let centre =
             (pixels.iter().map(|p| p.u).sum::<f64>() / n, pixels.iter().map(|p| p.v).sum::<f64>() / n);
-        self.patches.push(Patch {
-            feature,
-            first,
-            end: self.pixels.len(),
-            centre,
-            levels: [0.0; LOCALS],
-            squares: 0.0,
-            levels_inverse: SMatrix::zeros(),
-            levels_by_globals: SMatrix::zeros(),
-            used_samples: 0,
-            is_used: true,
-            is_shaded: false,
-        });
+        self.patches.push(Patch::new(feature, first..self.pixels.len(), centre));
         true
     }
 

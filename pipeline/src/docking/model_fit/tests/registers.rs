@@ -1,7 +1,7 @@
 //! The equations of a patch, whatever the registers of the machine.
 
 use contract::docking::Pose;
-use nalgebra::{SMatrix, Vector3};
+use nalgebra::Vector3;
 use pulp::{Arch, Scalar, WithSimd};
 
 use super::super::chunk::{COLUMNS, FIRST_GLOBAL, Gram};
@@ -9,7 +9,7 @@ use super::super::coverage::{CrossImage, MarkImage};
 use super::super::edge::Blur;
 use super::super::equations::{Cover, Image, Look, NormalEquations, Work, regressors};
 use super::super::sampled::Tables;
-use super::super::samples::{Feature, LOCALS, Patch, Sample};
+use super::super::samples::{Feature, Patch, Sample};
 use super::render::{camera, target};
 use crate::CameraModel;
 use crate::docking::geometry::View;
@@ -29,22 +29,6 @@ fn samples(u: f64, v: f64) -> Vec<Sample> {
         is_used: k % 11 != 3,
     };
     (0..75).map(sample).collect()
-}
-
-fn patch(centre: (f64, f64)) -> Patch {
-    Patch {
-        feature: Feature::Cross,
-        first: 0,
-        end: 75,
-        centre,
-        levels: [0.0; LOCALS],
-        squares: 0.0,
-        levels_inverse: SMatrix::zeros(),
-        levels_by_globals: SMatrix::zeros(),
-        used_samples: 0,
-        is_used: true,
-        is_shaded: false,
-    }
 }
 
 fn products(gram: &Gram) -> Vec<f64> {
@@ -69,7 +53,7 @@ fn equations_are_the_sums_over_pixels_and_the_same_bits_on_all_registers() {
     let on_ring = view.see(&Vector3::new(0.125, 0.217, 0.0)).unwrap();
     for (image, at) in [(Image::Cross(&cross), end_of_arm), (Image::Mark(&mark), on_ring)] {
         let look = Look { image, tables: &tables, share: 0.7 };
-        let patch = patch((at.u + 0.3, at.v));
+        let patch = Patch::new(Feature::Cross, 0..75, (at.u + 0.3, at.v));
         let (level, origin) = (80.0, 110.0);
         let found = |widest: bool, stride: usize| {
             let (mut pixels, mut work) = (samples(at.u, at.v), Work::NEW);
