@@ -1,58 +1,73 @@
 //! The expected image: photo-electrons before any noise.
 
 mod background;
+mod objects;
 
 use std::ops::Range;
 
 use background::Background;
+use objects::Objects;
+use pulp::Simd;
 
 use crate::optics::Stamp;
 use crate::pixel_factors::PixelFactors;
 use crate::smooth_field::SmoothField;
-use crate::widest::{Work, by_eights, widest};
+use crate::widest::{Eight, LANES, Work, widest};
 
 /// Pixels of a piece of a row, the unit in which images are looked at: of each there is one word of bits.
 pub(crate) const PIECE: usize = u64::BITS as usize;
 
-/// Expected photo-electrons of a frame: a flat level, what makes the background uneven, and signal where something was drawn.
+/// Expected photo-electrons of a frame: a flat level, what makes the background uneven, the images of objects, and single pixels.
 ///
-/// The background is kept as it was told, in layers, and made row by row when it is asked for: an image is not walked through
-/// for each of them. The image knows the pixels where something was drawn, so that clearing it, and drawing the noise of a flat
-/// background, cost as much as there is signal. It is reused from frame to frame.
+/// All of it is kept as it was told, the background in layers and the images of objects as stamps, and made for a row, or for a
+/// piece of it, when that is asked for: an image is not walked through for each of them, and what nobody looks at costs
+/// nothing. It is reused from frame to frame.
 #[derive(Debug, Clone)]
 pub struct ExpectedImage {
     columns: usize,
     rows: usize,
     background: Background,
-    /// Electrons of what was drawn, above the background, row by row.
-    signal: Vec<f64>,
-    /// One bit a pixel, `words_per_row` words a row: whether something was drawn there.
-    drawn: Vec<u64>,
+    /// What each pixel makes of the light that falls on it; `None`: all of it.
+    response: Option<PixelFactors>,
+    objects: Objects,
+    /// Electrons of single pixels, above all that, row by row.
+    single: Vec<f64>,
+    /// One bit a pixel, `words_per_row` words a row: whether it is such a pixel.
+    is_single: Vec<u64>,
     words_per_row: usize,
-    /// Of each piece, no pixel has more electrons of what was drawn.
+    /// Of each piece, no pixel has more electrons above the background.
     peaks: Vec<f64>,
 }
 
 /// Images are equal that have the same electrons in every pixel, however they were told.
 impl PartialEq for ExpectedImage {
     fn eq(&self, other: &Self) -> bool {
-        self.size() == other.size() && self.drawn == other.drawn && self.iter().eq(other.iter())
+        self.size() == other.size() && self.iter().eq(other.iter())
     }
 }
 
 impl ExpectedImage {
-    /// An image without light.
+    /// An image without light, on pixels that collect all of it.
     pub fn new(columns: usize, rows: usize) -> Self {
         let words_per_row = columns.div_ceil(64);
         Self {
             columns,
             rows,
             background: Background::default(),
-            signal: vec![0.0; columns * rows],
-            drawn: vec![0; words_per_row * rows],
+            response: None,
+            objects: Objects::new(rows),
+            single: vec![0.0; columns * rows],
+            is_single: vec![0; words_per_row * rows],
             words_per_row,
             peaks: vec![0.0; words_per_row * rows],
         }
+    }
+
+    /// The same on pixels that respond differently: each collects the light that falls on it times its factor.
+    pub(crate) fn responding(mut self, response: &PixelFactors) -> Self {
+        self.response = (!response.is_empty()).then(|| response.clone());
+        self.background.response = self.response.clone();
+        self
     }
 
     /// Columns and rows.
@@ -62,22 +77,19 @@ impl ExpectedImage {
 
     /// Takes away everything drawn and all that is uneven, and sets the flat level, electrons a pixel.
     pub fn clear(&mut self, flat_e: f64) {
-        for (row, words) in self
-            .signal
-            .chunks_exact_mut(self.columns.max(1))
-            .zip(self.drawn.chunks_exact_mut(self.words_per_row.max(1)))
-        {
-            for (pixels, word) in row.chunks_mut(PIECE).zip(words) {
-                if *word != 0 {
-                    pixels.fill(0.0);
-                    *word = 0;
-                }
+        let rows = self.single.chunks_exact_mut(self.columns.max(1));
+        for (row, words) in rows.zip(self.is_single.chunks_exact_mut(self.words_per_row.max(1))) {
+            for (pixels, word) in row.chunks_mut(PIECE).zip(words).filter(|(_, word)| **word != 0) {
+                pixels.fill(0.0);
+                *word = 0;
             }
         }
+        self.objects.clear();
         self.peaks.fill(0.0);
         let mut field = std::mem::take(&mut self.background.field);
         field.clear();
-        self.background = Background { light_e: flat_e, field, ..Background::default() };
+        let response = self.response.clone();
+        self.background = Background { light_e: flat_e, field, response, ..Background::default() };
     }
 
     /// Sets light that varies from pixel to pixel: `scale` · `field`, electrons above the flat level, row by row;
@@ -86,8 +98,9 @@ impl ExpectedImage {
         let held = &mut self.background.field;
         held.clear();
         if let Some(field) = field {
-            held.extend(field.iter().take(self.signal.len()).map(|electrons| scale * electrons));
-            held.resize(self.signal.len(), 0.0);
+            let pixels = self.columns * self.rows;
+            held.extend(field.iter().take(pixels).map(|electrons| scale * electrons));
+            held.resize(pixels, 0.0);
         }
     }
 
@@ -104,25 +117,12 @@ impl ExpectedImage {
     /// Makes one field of all layers of the background, the flat level being kept: for a step that is not a layer.
     fn flatten(&mut self) {
         let flat_e = self.flat_e();
-        let mut field = vec![0.0; self.signal.len()];
+        let mut field = vec![0.0; self.columns * self.rows];
         for (y, row) in field.chunks_exact_mut(self.columns.max(1)).enumerate() {
             self.background.span(0, y, self.columns, row);
             row.iter_mut().for_each(|electrons| *electrons -= flat_e);
         }
         self.background = Background { light_e: flat_e, field, ..Background::default() };
-    }
-
-    /// Multiplies the light of every pixel, background and signal, by its response.
-    pub(crate) fn respond(&mut self, response: &PixelFactors) {
-        let Background { response: other, pattern, dark_e, .. } = &self.background;
-        if other.is_some() || pattern.is_some() || *dark_e != 0.0 {
-            self.flatten();
-        }
-        self.background.response = Some(response.clone());
-        // A part in 10^12 for what rounding adds.
-        let largest = response.largest() * (1.0 + 1e-12);
-        self.peaks.iter_mut().for_each(|peak| *peak *= largest);
-        widest(Respond { image: self, response });
     }
 
     /// Adds `electrons` to every pixel, times a factor of its own.
@@ -158,9 +158,15 @@ impl ExpectedImage {
 
     /// Empties one pixel, background included.
     pub(crate) fn empty_pixel(&mut self, x: usize, y: usize) {
+        self.objects.empty(x, y);
         let background_e = self.background_at(x, y);
-        self.signal[y * self.columns + x] = -background_e;
-        self.mark(y, x, x + 1, 0.0);
+        *self.single_pixel(x, y) = -background_e;
+    }
+
+    /// The electrons of a single pixel.
+    fn single_pixel(&mut self, x: usize, y: usize) -> &mut f64 {
+        self.is_single[y * self.words_per_row + x / PIECE] |= 1 << (x % PIECE);
+        &mut self.single[y * self.columns + x]
     }
 
     /// Expected electrons of the background in a pixel.
@@ -168,23 +174,50 @@ impl ExpectedImage {
         self.background.at(x, y, self.columns)
     }
 
+    /// Expected electrons of the background about a pixel: without what this pixel has more or less than those around it, its response
+    /// and its dark current.
+    pub(crate) fn background_near(&self, x: usize, y: usize) -> f64 {
+        self.background.near(x, y, self.columns)
+    }
+
     /// Raises the flat level of every pixel, electrons; no response changes them.
     pub fn add_flat(&mut self, electrons: f64) {
         self.background.dark_e += electrons;
     }
 
-    /// Adds the image of an object. Pixels of the stamp that lie off the image are left out.
-    pub fn add(&mut self, stamp: &Stamp) {
-        widest(Add { image: self, stamp });
+    /// Adds the image of an object, made for a detector of the size of the image, as its pixels respond to the light; tells that
+    /// image. What of a stamp lies off the image is left out.
+    pub fn add(&mut self, stamp: &Stamp) -> &Stamp {
+        self.add_painted(|next| next.clone_from(stamp))
     }
 
-    /// Adds electrons to one pixel; outside the image nothing happens.
+    /// Adds the image of an object as [`ExpectedImage::add`] does: `paint` makes it.
+    pub(crate) fn add_painted(&mut self, paint: impl FnOnce(&mut Stamp)) -> &Stamp {
+        let mut stamp = self.objects.take();
+        paint(&mut stamp);
+        widest(Respond { image: self, stamp: &mut stamp });
+        self.objects.push(stamp)
+    }
+
+    /// The images of the objects, in the order in which they were added: as the pixels have responded to their light.
+    pub fn objects(&self) -> &[Stamp] {
+        self.objects.stamps()
+    }
+
+    /// Adds what something has left in pixels, as they have collected it.
+    pub(crate) fn add_collected(&mut self, stamp: &Stamp) {
+        for (x, y, row) in stamp.rows() {
+            for (i, &electrons) in row.iter().enumerate().filter(|(_, electrons)| **electrons > 0.0) {
+                self.add_pixel(x + i, y, electrons);
+            }
+        }
+    }
+
+    /// Adds electrons to one pixel, as it has collected them; outside the image nothing happens.
     pub fn add_pixel(&mut self, x: usize, y: usize, electrons: f64) {
         if x < self.columns && y < self.rows {
-            let pixel = &mut self.signal[y * self.columns + x];
-            *pixel += electrons;
-            let peak_e = *pixel;
-            self.mark(y, x, x + 1, peak_e);
+            *self.single_pixel(x, y) += electrons;
+            self.peaks[y * self.words_per_row + x / PIECE] += electrons.max(0.0);
         }
     }
 
@@ -196,7 +229,24 @@ impl ExpectedImage {
 
     /// Expected electrons of a pixel, background included.
     pub fn at(&self, x: usize, y: usize) -> f64 {
-        self.background_at(x, y) + self.signal[y * self.columns + x]
+        let mut signal_e = [0.0];
+        self.add_signal(x, y, &mut signal_e);
+        self.background_at(x, y) + signal_e[0]
+    }
+
+    /// Adds the electrons above the background to the pixels of row `y` from column `x` on.
+    #[inline(always)]
+    fn add_signal(&self, x: usize, y: usize, out: &mut [f64]) {
+        self.objects.add_to(x, y, out);
+        let words = &self.is_single[y * self.words_per_row..(y + 1) * self.words_per_row];
+        let pieces = x / PIECE..(x + out.len()).div_ceil(PIECE);
+        for p in pieces.filter(|&p| words[p] != 0) {
+            let (from, to) = ((p * PIECE).max(x), ((p + 1) * PIECE).min(x + out.len()));
+            let single = &self.single[y * self.columns + from..y * self.columns + to];
+            for (out, single) in out[from - x..to - x].iter_mut().zip(single) {
+                *out += single;
+            }
+        }
     }
 
     /// Expected electrons of all pixels, row by row, background included.
@@ -211,14 +261,26 @@ impl ExpectedImage {
     /// Expected electrons of the pixels of a row, background included; `out` is as long as a row.
     #[inline(always)]
     pub(crate) fn row(&self, y: usize, out: &mut [f64]) {
-        self.background.span(0, y, self.columns, out);
-        let signal = self.signal.chunks_exact(self.columns.max(1)).nth(y).unwrap_or_default();
-        let words = self.drawn.chunks_exact(self.words_per_row.max(1)).nth(y).unwrap_or_default();
-        for ((out, signal), word) in out.chunks_mut(PIECE).zip(signal.chunks(PIECE)).zip(words) {
-            if *word != 0 {
-                for (out, signal) in out.iter_mut().zip(signal) {
-                    *out += signal;
-                }
+        self.span::<{ 16 * PIECE }>(0, y, out);
+    }
+
+    /// [`ExpectedImage::row`] of piece `p` alone; `out` is as long as the piece.
+    #[inline(always)]
+    pub(crate) fn piece(&self, y: usize, p: usize, out: &mut [f64]) {
+        self.span::<PIECE>(p * PIECE, y, out);
+    }
+
+    /// Expected electrons of the pixels of row `y` from column `x` on, made by `N` pixels at a time.
+    #[inline(always)]
+    fn span<const N: usize>(&self, x: usize, y: usize, out: &mut [f64]) {
+        self.background.span(x, y, self.columns, out);
+        for (i, out) in out.chunks_mut(N).enumerate() {
+            // As a pixel alone is made: the sum of all signal, added to the background.
+            let mut signal_e = [0.0; N];
+            let signal_e = &mut signal_e[..out.len()];
+            self.add_signal(x + i * N, y, signal_e);
+            for (out, signal_e) in out.iter_mut().zip(signal_e) {
+                *out += *signal_e;
             }
         }
     }
@@ -228,26 +290,13 @@ impl ExpectedImage {
         y * self.columns + p * PIECE..y * self.columns + ((p + 1) * PIECE).min(self.columns)
     }
 
-    /// [`ExpectedImage::row`] of piece `p` alone; `out` is as long as the piece.
+    /// The pixels of piece `p` of row `y` where something was drawn, one bit each, and their electrons above the background.
     #[inline(always)]
-    pub(crate) fn piece(&self, y: usize, p: usize, out: &mut [f64]) {
-        self.background.span(p * PIECE, y, self.columns, out);
-        if self.drawn_in(y, p) != 0 {
-            for (out, signal) in out.iter_mut().zip(&self.signal[self.piece_pixels(y, p)]) {
-                *out += signal;
-            }
-        }
-    }
-
-    /// The pixels of piece `p` of row `y` where something was drawn, one bit each.
-    #[inline(always)]
-    pub(crate) fn drawn_in(&self, y: usize, p: usize) -> u64 {
-        self.drawn[y * self.words_per_row + p]
-    }
-
-    /// Electrons of what was drawn in a pixel, above the background.
-    pub(crate) fn signal_at(&self, index: usize) -> f64 {
-        self.signal[index]
+    pub(crate) fn signal_in(&self, y: usize, p: usize) -> (u64, [f64; PIECE]) {
+        let mut signal_e = [0.0; PIECE];
+        self.add_signal(p * PIECE, y, &mut signal_e[..self.piece_pixels(y, p).len()]);
+        let lit = signal_e.iter().enumerate().fold(0, |lit, (i, &e)| lit | u64::from(e > 0.0) << i);
+        (lit | self.is_single[y * self.words_per_row + p], signal_e)
     }
 
     /// No pixel of the background of row `y` has more electrons.
@@ -259,7 +308,12 @@ impl ExpectedImage {
     /// most `bound_e`.
     #[inline(always)]
     pub(crate) fn may_rise_above(&self, y: usize, p: usize, bound_e: f64, limit_e: f64) -> bool {
-        self.drawn_in(y, p) != 0 && bound_e + self.peaks[y * self.words_per_row + p] > limit_e
+        if bound_e + self.peaks[y * self.words_per_row + p] <= limit_e {
+            return false;
+        }
+        // The peaks of objects side by side were added up.
+        let (lit, signal_e) = self.signal_in(y, p);
+        lit != 0 && bound_e + signal_e.into_iter().fold(0.0, f64::max) > limit_e
     }
 
     /// Of each column, the rows from the first to the last pixel with more than `limit_e` expected electrons.
@@ -292,96 +346,63 @@ impl ExpectedImage {
     /// Index (row by row) and electrons above the background of every pixel where something was drawn, in the order
     /// of the image.
     pub fn drawn(&self) -> impl Iterator<Item = (usize, f64)> {
-        drawn_pixels(&self.drawn, self.columns, self.words_per_row).map(|index| (index, self.signal[index]))
-    }
-
-    /// Marks columns `from..to` of a row as drawn, with at most `peak_e` electrons in a pixel.
-    #[inline(always)]
-    fn mark(&mut self, y: usize, from: usize, to: usize, peak_e: f64) {
-        for word in from / 64..to.div_ceil(64) {
-            let start = from.max(word * 64) - word * 64;
-            let length = to.min((word + 1) * 64) - word * 64 - start;
-            let piece = y * self.words_per_row + word;
-            self.drawn[piece] |= (u64::MAX >> (64 - length)) << start;
-            self.peaks[piece] = self.peaks[piece].max(peak_e);
-        }
+        let pieces = (0..self.rows).flat_map(|y| (0..self.words_per_row).map(move |p| (y, p)));
+        pieces
+            .filter(|(y, p)| {
+                self.peaks[y * self.words_per_row + p] != 0.0
+                    || self.is_single[y * self.words_per_row + p] != 0
+            })
+            .flat_map(|(y, p)| {
+                let (lit, signal_e) = self.signal_in(y, p);
+                let first = self.piece_pixels(y, p).start;
+                set_bits(lit).map(move |bit| (first + bit, signal_e[bit]))
+            })
     }
 }
 
-/// What was drawn in an image, multiplied by the response of each pixel.
+/// The image of an object, as the pixels of an image respond to it.
 struct Respond<'a> {
     image: &'a mut ExpectedImage,
-    response: &'a [f32],
+    stamp: &'a mut Stamp,
 }
 
 impl Work for Respond<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
-        let Self { image, response } = self;
-        // Where nothing was drawn there is nothing to multiply.
-        let rows = image.signal.chunks_exact_mut(image.columns.max(1));
-        let words = image.drawn.chunks_exact(image.words_per_row.max(1));
-        for ((signal, response), words) in rows.zip(response.chunks(image.columns.max(1))).zip(words) {
-            let pieces = signal.chunks_mut(PIECE).zip(response.chunks(PIECE));
-            for ((signal, response), _) in pieces.zip(words).filter(|(_, word)| **word != 0) {
-                for (signal, &response) in signal.iter_mut().zip(response) {
-                    *signal *= f64::from(response);
+    fn run<S: Simd>(self, simd: S) {
+        let Self { image, stamp } = self;
+        let width = stamp.size().0;
+        for (x, y, row) in stamp.rows_mut() {
+            let to = (x + width).min(image.columns);
+            if y >= image.rows || x >= to {
+                continue;
+            }
+            let row = row.as_chunks_mut::<LANES>().0;
+            if let Some(factors) = &image.response {
+                let factors = factors.get(y * image.columns + x..).unwrap_or_default().as_chunks::<LANES>();
+                for (electrons, factors) in row.iter_mut().zip(factors.0) {
+                    Eight::of(simd, electrons).times(Eight::of_narrow(simd, factors)).store(electrons);
+                }
+                // Of the last row some factors may be fewer than eight.
+                if let Some(electrons) = row.get_mut(factors.0.len()) {
+                    for (electrons, &factor) in electrons.iter_mut().zip(factors.1) {
+                        *electrons *= f64::from(factor);
+                    }
+                }
+            }
+            let peaks = row.iter().fold(Eight::splat(simd, 0.0), |peaks, electrons| {
+                peaks.or_larger(Eight::of(simd, electrons))
+            });
+            let peak_e = peaks.largest();
+            if peak_e > 0.0 {
+                image.objects.cover(y, x, to);
+                for p in x / PIECE..to.div_ceil(PIECE) {
+                    image.peaks[y * image.words_per_row + p] += peak_e;
                 }
             }
         }
     }
-}
-
-/// The image of an object, added to an image.
-struct Add<'a> {
-    image: &'a mut ExpectedImage,
-    stamp: &'a Stamp,
-}
-
-impl Work for Add<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let Self { image, stamp } = self;
-        for (x, y, row) in stamp.rows() {
-            if y >= image.rows || x >= image.columns {
-                continue;
-            }
-            let row = &row[..row.len().min(image.columns - x)];
-            // Only from the first to the last pixel that has light.
-            let Some(first) = row.iter().position(|&electrons| electrons > 0.0) else { continue };
-            let end = row.iter().rposition(|&electrons| electrons > 0.0).map_or(first, |last| last + 1);
-            let start = y * image.columns + x;
-            let pixels = &mut image.signal[start + first..start + end];
-            by_eights(pixels, &row[first..end], |pixel, electrons| *pixel += electrons);
-            let peak_e = largest(pixels);
-            image.mark(y, x + first, x + end, peak_e);
-        }
-    }
-}
-
-/// The largest of some numbers, and 0: eight at a time, for one after the other each would wait for the one before.
-#[inline(always)]
-fn largest(numbers: &[f64]) -> f64 {
-    let (eights, rest) = numbers.as_chunks::<8>();
-    let mut peaks = [0.0_f64; 8];
-    for eight in eights {
-        for (peak, &number) in peaks.iter_mut().zip(eight) {
-            *peak = if number > *peak { number } else { *peak };
-        }
-    }
-    peaks.iter().chain(rest).copied().fold(0.0, f64::max)
-}
-
-/// Indices, row by row, of the pixels that are marked in `words`.
-fn drawn_pixels(words: &[u64], columns: usize, words_per_row: usize) -> impl Iterator<Item = usize> {
-    words.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(move |(i, &word)| {
-        let first = i / words_per_row * columns + i % words_per_row * 64;
-        set_bits(word).map(move |bit| first + bit)
-    })
 }
 
 /// The places of the ones in a word, lowest first.

@@ -59,7 +59,8 @@ pub struct SimulatedCamera<'a> {
     regions: Option<RoiExtractor>,
     /// Background of an interlaced scene, electrons a second, pixel by pixel: of the first field, and of the second.
     backgrounds: [Vec<f64>; 2],
-    stamps: Vec<Stamp>,
+    /// What the detector makes by itself: its hot pixels, then tracks of particles.
+    own: Vec<Stamp>,
     /// The image of an object as the scene was in the first and in the second field.
     halves: [Stamp; 2],
     /// The image of an object whose wells overflow.
@@ -79,7 +80,7 @@ impl<'a> SimulatedCamera<'a> {
             drawing: Drawing::Seen,
             regions,
             backgrounds: [Vec::new(), Vec::new()],
-            stamps: Vec::new(),
+            own: Vec::new(),
             halves: [Stamp::new(), Stamp::new()],
             bloomed: Stamp::new(),
         })
@@ -113,13 +114,8 @@ impl<'a> SimulatedCamera<'a> {
             let rate = rays.rate_per_cm2_s(time, &view.moment.states.chaser.position_km);
             rays.tracks(&simulator.seed, number, exposure_s, rate)
         });
-        let Seen { mut objects, smear_e_per_px, windows } =
+        let Seen { objects, smear_e_per_px, windows } =
             self.draw(&mut view, &drawn, number, &opening, &tracks)?;
-        if let Some(windows) = &windows {
-            for (object, stamp) in objects.iter_mut().zip(&self.stamps) {
-                object.cut = stamp.cut(windows);
-            }
-        }
 
         let moment = view.moment;
         let truth = FrameTruth {
@@ -211,8 +207,7 @@ impl<'a> SimulatedCamera<'a> {
         stamp.truth(0.0, 0.0).peak_electrons * source.electrons_per_s
     }
 
-    /// Draws the expected image and the digital numbers, keeps a stamp of every object that has light on the detector,
-    /// and tells its truth.
+    /// Draws the expected image and the digital numbers, and tells the truth of every object that has light on the detector.
     fn draw(
         &mut self,
         view: &mut View,
@@ -221,13 +216,11 @@ impl<'a> SimulatedCamera<'a> {
         opening: &Opening,
         tracks: &[Track],
     ) -> Result<Seen, SimError> {
-        let Self { simulator, painter, image, backgrounds, stamps, halves, bloomed, .. } = self;
+        let Self { simulator, painter, image, backgrounds, own, halves, bloomed, .. } = self;
         let sensor = &simulator.sensor;
         let (columns, rows) = image.size();
         let hot_pixels = sensor.hot_pixels();
-        let detected = view.sources.len() + hot_pixels.len() + tracks.len();
-        stamps.resize_with(stamps.len().max(detected), Stamp::new);
-        let (lit, own) = stamps.split_at_mut(view.sources.len());
+        own.resize_with(own.len().max(hot_pixels.len() + tracks.len()), Stamp::new);
         let (hot, struck) = own.split_at_mut(hot_pixels.len());
 
         image.clear(sensor.sky_electrons(opening.exposure_s));
@@ -263,8 +256,8 @@ impl<'a> SimulatedCamera<'a> {
             };
             painter.paint(source, electrons, resolve, (columns, rows), stamp);
         };
-        for (index, stamp) in lit.iter_mut().enumerate() {
-            match drawn {
+        for index in 0..view.sources.len() {
+            let drawn = image.add_painted(|stamp| match drawn {
                 Drawn::Whole => paint(view, index, stamp),
                 Drawn::Fields(interlace, fields) => {
                     let [first, second] = &**fields;
@@ -272,10 +265,8 @@ impl<'a> SimulatedCamera<'a> {
                     paint(second, index, &mut halves[1]);
                     stamp.weave(&halves[0], &halves[1], |row| interlace.is_first(row));
                 }
-            }
-            view.sources[index].position = stamp.centre();
-            image.add(stamp);
-            sensor.respond(stamp);
+            });
+            view.sources[index].position = drawn.centre();
         }
         let sources = &mut view.sources;
         let mut charge = sensor.collect(image, opening);
@@ -292,25 +283,36 @@ impl<'a> SimulatedCamera<'a> {
             }
         }
 
-        let mut objects = Vec::with_capacity(detected);
-        for (i, source) in sources.iter().enumerate() {
-            let stamp = &mut stamps[i];
+        let Self { laws, raw, regions, drawing, .. } = self;
+        let windows = match regions {
+            Some(regions) => {
+                let collected = Collected { charge: &charge, seed: simulator.seed, frame: number };
+                Some(keep_regions(sensor, &collected, regions, *drawing, laws, raw)?)
+            }
+            None => {
+                sensor.read_out(&charge, &simulator.seed, number, laws, raw.whole())?;
+                None
+            }
+        };
+
+        let readout_noise_e = sensor.readout_noise_e();
+        let mut objects = Vec::with_capacity(sources.len());
+        for (source, stamp) in sources.iter().zip(charge.expected().objects().iter().chain(&*own)) {
             let pixel = |at: f64, size: usize| (at.round().max(0.0) as usize).min(size.saturating_sub(1));
             let (x, y) = (pixel(source.position.x, columns), pixel(source.position.y, rows));
-            let background_e = charge.expected().background_at(x, y);
-            let readout_noise_e = sensor.readout_noise_e();
+            let background_e = charge.expected().background_near(x, y);
             let truth = stamp.truth(background_e, readout_noise_e);
             if truth.electrons <= 0.0 {
                 continue;
             }
-            let mut bloom_px = 0.0;
-            if sensor.bloom_stamp(stamp, truth.peak_electrons, background_e, bloomed) {
+            let blooms = sensor.bloom_stamp(stamp, truth.peak_electrons, background_e, bloomed);
+            let stamp = if blooms { &*bloomed } else { stamp };
+            let bloom_px = if blooms {
                 let noise_e = (background_e + readout_noise_e * readout_noise_e).sqrt();
-                bloom_px = (bloomed.height_px(noise_e) - truth.radius_px).max(0.0);
-                std::mem::swap(stamp, bloomed);
-            }
-            // The stamps of the objects stand in the order of the objects.
-            stamps.swap(i, objects.len());
+                (bloomed.height_px(noise_e) - truth.radius_px).max(0.0)
+            } else {
+                0.0
+            };
             objects.push(ObjectTruth {
                 frame: number,
                 kind: source.kind,
@@ -323,22 +325,10 @@ impl<'a> SimulatedCamera<'a> {
                 snr: truth.snr,
                 radius_px: truth.radius_px,
                 bloom_px,
-                cut: 0.0,
+                cut: windows.as_ref().map_or(0.0, |windows| stamp.cut(windows)),
             });
         }
-        let smear_e_per_px = charge.smear_e_per_px();
-        let Self { laws, raw, regions, drawing, .. } = self;
-        let windows = match regions {
-            Some(regions) => {
-                let collected = Collected { charge: &charge, seed: simulator.seed, frame: number };
-                Some(keep_regions(sensor, &collected, regions, *drawing, laws, raw)?)
-            }
-            None => {
-                sensor.read_out(&charge, &simulator.seed, number, laws, raw.whole())?;
-                None
-            }
-        };
-        Ok(Seen { objects, smear_e_per_px, windows })
+        Ok(Seen { objects, smear_e_per_px: charge.smear_e_per_px(), windows })
     }
 }
 

@@ -1,42 +1,126 @@
 //! Loops on the widest registers of the machine.
 
+use pulp::Simd;
+
+/// Numbers that an [`Eight`] holds: those of the widest registers that there are.
+pub(crate) const LANES: usize = 8;
+
 /// Something that is done in loops over many numbers.
 pub(crate) trait Work {
     /// What it gives.
     type Output;
     /// Does it. To be inlined always, with all that it calls: what is not is compiled for any machine.
-    fn run(self) -> Self::Output;
+    fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
 /// Does some work compiled for the widest registers that the machine has: the same steps everywhere, on as many numbers at a time
-/// as fit. The compiler neither reorders floating-point operations nor joins them, so the bits do not depend on it.
+/// as fit. No operation is joined with another or moved before it, so the bits do not depend on it.
 #[inline(always)]
 pub(crate) fn widest<W: Work>(work: W) -> W::Output {
     struct Widest<W>(W);
     impl<W: Work> pulp::WithSimd for Widest<W> {
         type Output = W::Output;
         #[inline(always)]
-        fn with_simd<S: pulp::Simd>(self, _: S) -> W::Output {
-            self.0.run()
+        fn with_simd<S: Simd>(self, simd: S) -> W::Output {
+            self.0.run(simd)
         }
     }
     pulp::Arch::new().dispatch(Widest(work))
 }
 
-/// Does `step` with each of `of` and its partner of `with`, as far as both go: by eights, then one by one. The rows of an image of a
-/// star are short, shorter than the rounds that the compiler makes of a loop by itself.
-#[inline(always)]
-pub(crate) fn by_eights<A, B: Copy>(of: &mut [A], with: &[B], step: impl Fn(&mut A, B)) {
-    let length = of.len().min(with.len());
-    let (of, of_rest) = of[..length].as_chunks_mut::<8>();
-    let (with, with_rest) = with[..length].as_chunks::<8>();
-    for (of, with) in of.iter_mut().zip(with) {
-        for i in 0..8 {
-            step(&mut of[i], with[i]);
+/// Eight numbers side by side, in as few registers as the machine needs for them: what the compiler makes of short loops by itself
+/// is often one number at a time.
+#[derive(Clone, Copy)]
+pub(crate) struct Eight<S: Simd> {
+    simd: S,
+    /// The first so many that hold eight numbers.
+    registers: [S::f64s; LANES],
+}
+
+impl<S: Simd> Eight<S> {
+    const REGISTERS: usize = LANES / S::F64_LANES;
+
+    /// Eight times the same.
+    #[inline(always)]
+    pub(crate) fn splat(simd: S, number: f64) -> Self {
+        Self { simd, registers: [simd.splat_f64s(number); LANES] }
+    }
+
+    #[inline(always)]
+    pub(crate) fn of(simd: S, numbers: &[f64; LANES]) -> Self {
+        let mut registers = [simd.splat_f64s(0.0); LANES];
+        for (register, numbers) in registers.iter_mut().zip(S::as_simd_f64s(numbers).0) {
+            *register = *numbers;
+        }
+        Self { simd, registers }
+    }
+
+    #[inline(always)]
+    pub(crate) fn of_narrow(simd: S, numbers: &[f32; LANES]) -> Self {
+        Self::of(simd, &std::array::from_fn(|lane| f64::from(numbers[lane])))
+    }
+
+    #[inline(always)]
+    pub(crate) fn store(self, numbers: &mut [f64; LANES]) {
+        for (register, numbers) in self.registers.iter().zip(S::as_mut_simd_f64s(numbers).0) {
+            *numbers = *register;
         }
     }
-    for (of, &with) in of_rest.iter_mut().zip(with_rest) {
-        step(of, with);
+
+    #[inline(always)]
+    pub(crate) fn to_array(self) -> [f64; LANES] {
+        let mut numbers = [0.0; LANES];
+        self.store(&mut numbers);
+        numbers
+    }
+
+    #[inline(always)]
+    fn with(mut self, other: Self, step: impl Fn(S, S::f64s, S::f64s) -> S::f64s) -> Self {
+        for i in 0..Self::REGISTERS {
+            self.registers[i] = step(self.simd, self.registers[i], other.registers[i]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        self.with(other, |simd, a, b| simd.add_f64s(a, b))
+    }
+
+    #[inline(always)]
+    pub(crate) fn times(self, other: Self) -> Self {
+        self.with(other, |simd, a, b| simd.mul_f64s(a, b))
+    }
+
+    #[inline(always)]
+    pub(crate) fn over(self, other: Self) -> Self {
+        self.with(other, |simd, a, b| simd.div_f64s(a, b))
+    }
+
+    /// The larger of each two; `other` where one is not a number.
+    #[inline(always)]
+    pub(crate) fn or_larger(self, other: Self) -> Self {
+        self.with(other, |simd, a, b| simd.select_f64s(simd.greater_than_f64s(a, b), a, b))
+    }
+
+    /// Each that is less than `limit` replaced by 0.
+    #[inline(always)]
+    pub(crate) fn or_none_below(self, limit: Self) -> Self {
+        let none = self.simd.splat_f64s(0.0);
+        self.with(limit, |simd, a, limit| simd.select_f64s(simd.less_than_f64s(a, limit), none, a))
+    }
+
+    /// The sum, in one order.
+    #[inline(always)]
+    pub(crate) fn sum(self) -> f64 {
+        let [a, b, c, d, e, f, g, h] = self.to_array();
+        ((a + b) + (c + d)) + ((e + f) + (g + h))
+    }
+
+    /// The largest, and 0.
+    #[inline(always)]
+    pub(crate) fn largest(self) -> f64 {
+        self.to_array().into_iter().fold(0.0, f64::max)
     }
 }
 
@@ -44,13 +128,50 @@ pub(crate) fn by_eights<A, B: Copy>(of: &mut [A], with: &[B], step: impl Fn(&mut
 mod tests {
     use super::*;
 
-    #[test]
-    fn every_pair_is_met_once() {
-        for (of, with) in [(0, 3), (7, 7), (8, 9), (29, 23), (17, 40)] {
-            let mut sums: Vec<usize> = (0..of).collect();
-            by_eights(&mut sums, &(0..with).collect::<Vec<usize>>(), |sum, number| *sum += 100 * number + 1);
-            let expected: Vec<usize> = (0..of).map(|i| if i < with { 101 * i + 1 } else { i }).collect();
-            assert_eq!(sums, expected);
+    /// All operations, on numbers that round differently in another order.
+    struct All<'a>(&'a [[f64; LANES]; 3]);
+
+    impl Work for All<'_> {
+        type Output = Vec<u64>;
+        fn run<S: Simd>(self, simd: S) -> Vec<u64> {
+            let [a, b, c] = self.0.each_ref().map(|numbers| Eight::of(simd, numbers));
+            let narrow = self.0[0].map(|number| number as f32);
+            let eights = [
+                a.plus(b),
+                a.times(b).plus(c),
+                a.over(b),
+                a.or_larger(b),
+                b.or_none_below(c),
+                Eight::of_narrow(simd, &narrow),
+                Eight::splat(simd, 0.1),
+            ];
+            let folded = [a.plus(b).sum(), b.largest()];
+            eights.into_iter().flat_map(Eight::to_array).chain(folded).map(f64::to_bits).collect()
         }
+    }
+
+    #[test]
+    fn eight_numbers_are_what_each_of_them_is_alone_on_any_registers() {
+        let numbers = [0, 1, 2].map(|k| {
+            std::array::from_fn(|i| libm::sin((8 * k + i) as f64) * libm::pow(10.0, (i % 3) as f64))
+        });
+        let [a, b, c] = numbers;
+        let each = |step: &dyn Fn(usize) -> f64| (0..LANES).map(step).collect::<Vec<f64>>();
+        let mut expected: Vec<f64> = [
+            each(&|i| a[i] + b[i]),
+            each(&|i| a[i] * b[i] + c[i]),
+            each(&|i| a[i] / b[i]),
+            each(&|i| a[i].max(b[i])),
+            each(&|i| if b[i] < c[i] { 0.0 } else { b[i] }),
+            each(&|i| f64::from(a[i] as f32)),
+            each(&|_| 0.1),
+        ]
+        .concat();
+        let s: Vec<f64> = each(&|i| a[i] + b[i]);
+        expected.push(((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])));
+        expected.push(b.into_iter().fold(0.0, f64::max));
+        let expected: Vec<u64> = expected.into_iter().map(f64::to_bits).collect();
+        assert_eq!(widest(All(&numbers)), expected);
+        assert_eq!(All(&numbers).run(pulp::Scalar::new()), expected);
     }
 }

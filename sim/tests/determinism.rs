@@ -129,7 +129,7 @@ fn pixels_truth_and_telemetry_of_a_small_scene_are_frozen() {
 /// Frame truth, object truth, telemetry, pixels.
 const FROZEN: [&str; 4] = [
     "9cd92280b856144efa443138b1f3ee8a5e42704f3e469558c0fabd155f920af1",
-    "bc38bbfd079c4b84e247847c0e5f2e49b686e1d09035108d86ff69036e8f95ec",
+    "f1bc29111b4012ed14cdae8ca357732c75bc0f2e0d6cde17be2ee041d3e94dcf",
     "5bdfd6e0ecaa0fa2ac1968724ae3dcd398e1d3b5e199950c98f301dce0191d16",
     "9e3069438b7fe2701cc726c2ac5e95cc1c86f6af21928307146b1e7364e3f313",
 ];

@@ -80,6 +80,14 @@ impl Background {
         }
     }
 
+    /// The background of pixels that all respond alike and have the same dark current, in one pixel of an image of `columns`.
+    pub(super) fn near(&self, x: usize, y: usize, columns: usize) -> f64 {
+        let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.at(x, y));
+        let field_e = self.field.get(y * columns + x).copied().unwrap_or(0.0);
+        let pattern_e = self.pattern.as_ref().map_or(0.0, |(electrons, _)| *electrons);
+        self.light_e + smooth_e + field_e + (self.dark_e + pattern_e)
+    }
+
     /// No pixel has more.
     pub(super) fn bound_e(&self) -> f64 {
         let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.largest());

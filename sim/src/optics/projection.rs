@@ -175,7 +175,7 @@ struct Offset {
 
 impl Offset {
     fn length(self) -> f64 {
-        libm::hypot(self.u, self.v)
+        (self.u * self.u + self.v * self.v).sqrt()
     }
 }
 

@@ -1,8 +1,9 @@
 //! The image of one object: a small patch of expected electrons.
 
 use contract::{PixelPoint, Window};
+use pulp::Simd;
 
-use crate::widest::{Work, by_eights, widest};
+use crate::widest::{Eight, LANES, Work, widest};
 
 /// Expected electrons of one object, in a rectangle of the detector. Reused from object to object.
 ///
@@ -13,6 +14,8 @@ pub struct Stamp {
     pub(super) y: usize,
     pub(super) columns: usize,
     pub(super) rows: usize,
+    /// Columns, and zeros after them up to a whole number of [`LANES`]: rows are short, and loops over them want no remainder.
+    pub(super) stride: usize,
     pub(super) centre: PixelPoint,
     /// Row by row.
     pub(super) electrons: Vec<f64>,
@@ -40,19 +43,18 @@ impl Stamp {
 
     /// Makes this the stamp of a single pixel, a hot one for instance.
     pub fn set_pixel(&mut self, x: usize, y: usize, electrons: f64) {
-        (self.x, self.y, self.columns, self.rows) = (x, y, 1, 1);
-        self.centre = PixelPoint::new(x as f64, y as f64);
-        self.electrons.clear();
-        self.electrons.push(electrons);
+        self.reset(PixelPoint::new(x as f64, y as f64), (x, x + 1), (y, y + 1));
+        self.electrons[0] = electrons;
     }
 
     /// Makes this a stamp of zeros over columns `x.0..x.1` and rows `y.0..y.1`; an empty range makes it empty.
     pub(crate) fn reset(&mut self, centre: PixelPoint, x: (usize, usize), y: (usize, usize)) {
         (self.x, self.y) = (x.0, y.0);
         (self.columns, self.rows) = (x.1.saturating_sub(x.0), y.1.saturating_sub(y.0));
+        self.stride = self.columns.next_multiple_of(LANES);
         self.centre = centre;
         self.electrons.clear();
-        self.electrons.resize(self.columns * self.rows, 0.0);
+        self.electrons.resize(self.stride * self.rows, 0.0);
     }
 
     /// Makes this the image of an object in an interlaced frame: the rows for which `in_first` holds are those of `first`,
@@ -70,7 +72,7 @@ impl Stamp {
         self.reset(centre, (x, right), (y, bottom));
         for (stamp, is_first) in fields {
             for (start, row, electrons) in stamp.rows().filter(|(_, row, _)| in_first(*row) == is_first) {
-                let at = (row - self.y) * self.columns + start - self.x;
+                let at = (row - self.y) * self.stride + start - self.x;
                 self.electrons[at..at + electrons.len()].copy_from_slice(electrons);
             }
         }
@@ -79,24 +81,8 @@ impl Stamp {
     /// Adds electrons to a pixel; outside the stamp nothing happens.
     pub(crate) fn add(&mut self, x: usize, y: usize, electrons: f64) {
         if (self.x..self.x + self.columns).contains(&x) && (self.y..self.y + self.rows).contains(&y) {
-            self.electrons[(y - self.y) * self.columns + x - self.x] += electrons;
+            self.electrons[(y - self.y) * self.stride + x - self.x] += electrons;
         }
-    }
-
-    /// Multiplies every pixel by a factor of its column and row.
-    pub(crate) fn scale(&mut self, factor: impl Fn(usize, usize) -> f64) {
-        let columns = self.columns.max(1);
-        for (j, row) in self.electrons.chunks_exact_mut(columns).enumerate() {
-            for (i, electrons) in row.iter_mut().enumerate() {
-                *electrons *= factor(self.x + i, self.y + j);
-            }
-        }
-    }
-
-    /// Multiplies every pixel by its factor of a detector of `columns`, whose factors stand row by row; beyond them it stays.
-    pub(crate) fn respond(&mut self, factors: &[f32], columns: usize) {
-        let (x, y) = (self.x, self.y);
-        widest(Respond { stamp: self, factors: factors.get(y * columns + x..).unwrap_or_default(), columns });
     }
 
     /// Where the light of the undisturbed image has its mean, off the detector included.
@@ -117,8 +103,34 @@ impl Stamp {
     /// Its rows: first column, row, expected electrons.
     pub fn rows(&self) -> impl Iterator<Item = (usize, usize, &[f64])> {
         // An empty stamp has rows of no columns; a chunk of zero is not allowed.
-        let rows = self.electrons.chunks_exact(self.columns.max(1)).enumerate();
-        rows.map(|(j, row)| (self.x, self.y + j, row))
+        let rows = self.electrons.chunks_exact(self.stride.max(1)).enumerate();
+        rows.map(|(j, row)| (self.x, self.y + j, &row[..self.columns]))
+    }
+
+    /// Expected electrons of its row `y` of the detector, which is one of its rows.
+    #[inline(always)]
+    pub(crate) fn row(&self, y: usize) -> &[f64] {
+        let start = (y - self.y) * self.stride;
+        &self.electrons[start..start + self.columns]
+    }
+
+    /// Takes the light out of a pixel; outside the stamp nothing happens.
+    pub(crate) fn empty(&mut self, x: usize, y: usize) {
+        if (self.x..self.x + self.columns).contains(&x) && (self.y..self.y + self.rows).contains(&y) {
+            self.electrons[(y - self.y) * self.stride + x - self.x] = 0.0;
+        }
+    }
+
+    /// Its rows, with the zeros after them: first column, row, expected electrons.
+    #[inline(always)]
+    pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = (usize, usize, &mut [f64])> {
+        let (x, y) = (self.x, self.y);
+        self.electrons.chunks_exact_mut(self.stride.max(1)).enumerate().map(move |(j, row)| (x, y + j, row))
+    }
+
+    /// Its columns and rows.
+    pub(crate) fn size(&self) -> (usize, usize) {
+        (self.columns, self.rows)
     }
 
     /// What the truth table tells, over a flat background of `background_e` electrons a pixel (sky and dark
@@ -131,13 +143,12 @@ impl Stamp {
     #[inline(always)]
     fn radius_px(&self, electrons: f64) -> f64 {
         let mut radius2 = 0.25_f64;
-        for (x, y, row) in self.rows() {
+        for (j, row) in self.electrons.chunks_exact(self.stride.max(1)).enumerate() {
             // Of the pixels of a row the first or the last is the farthest.
-            let Some(first) = row.iter().position(|&signal| signal > electrons) else { continue };
-            let last = row.iter().rposition(|&signal| signal > electrons).unwrap_or(first);
-            let dy = y as f64 - self.centre.y;
+            let Some((first, last)) = first_and_last_above(row, electrons) else { continue };
+            let dy = (self.y + j) as f64 - self.centre.y;
             for i in [first, last] {
-                let dx = (x + i) as f64 - self.centre.x;
+                let dx = (self.x + i) as f64 - self.centre.x;
                 radius2 = radius2.max(dx * dx + dy * dy);
             }
         }
@@ -156,21 +167,15 @@ impl Stamp {
     /// The electrons of each row, added up from the left: four rows side by side, for one after the other each sum would wait for the
     /// one before.
     fn row_sums(&self) -> impl Iterator<Item = f64> {
-        let columns = self.columns.max(1);
-        self.electrons.chunks(4 * columns).flat_map(move |rows| {
-            let mut sums = [0.0; 4];
-            if rows.len() == 4 * columns {
-                for x in 0..columns {
-                    for (j, sum) in sums.iter_mut().enumerate() {
-                        *sum += rows[j * columns + x];
-                    }
-                }
-            } else {
-                for (sum, row) in sums.iter_mut().zip(rows.chunks_exact(columns)) {
-                    row.iter().for_each(|electrons| *sum += electrons);
+        self.electrons.chunks_exact(self.stride.max(1)).map(|row| {
+            // Sums side by side: one after the other each would wait for the one before.
+            let mut sums = [0.0; LANES];
+            for electrons in row.as_chunks::<LANES>().0 {
+                for (sum, electrons) in sums.iter_mut().zip(electrons) {
+                    *sum += electrons;
                 }
             }
-            sums.into_iter().take(rows.len() / columns)
+            sums.iter().sum()
         })
     }
 
@@ -232,26 +237,6 @@ impl Stamp {
     }
 }
 
-/// [`Stamp::respond`] with the factors from its first pixel on.
-struct Respond<'a> {
-    stamp: &'a mut Stamp,
-    factors: &'a [f32],
-    columns: usize,
-}
-
-impl Work for Respond<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        let rows = self.stamp.electrons.chunks_exact_mut(self.stamp.columns.max(1));
-        for (j, row) in rows.enumerate() {
-            let factors = self.factors.get(j * self.columns..).unwrap_or_default();
-            by_eights(row, factors, |electrons, factor| *electrons *= f64::from(factor));
-        }
-    }
-}
-
 /// [`Stamp::truth`].
 struct Truth<'a> {
     stamp: &'a Stamp,
@@ -263,44 +248,58 @@ impl Work for Truth<'_> {
     type Output = StampTruth;
 
     #[inline(always)]
-    fn run(self) -> StampTruth {
+    fn run<S: Simd>(self, simd: S) -> StampTruth {
         let Self { stamp, background_e, readout_noise_e } = self;
         let variance = background_e + readout_noise_e * readout_noise_e;
         let noise_e = variance.sqrt();
-        // Four sums side by side: one after the other each sum would wait for the one before. Where there is neither light nor
-        // noise the quotient is 0, not no number.
-        let variance = variance.max(f64::MIN_POSITIVE);
-        let (mut electrons, mut snr2, mut peaks) = ([0.0; 4], [0.0; 4], [0.0; 4]);
-        let mut add = |signals: [f64; 4]| {
-            for lane in 0..4 {
-                let lit = if signals[lane] > 0.0 { signals[lane] } else { 0.0 };
-                electrons[lane] += lit;
-                snr2[lane] += lit * (lit / (lit + variance));
-                peaks[lane] = if lit > peaks[lane] { lit } else { peaks[lane] };
-            }
-        };
-        let (fours, rest) = stamp.electrons.as_chunks::<4>();
-        fours.iter().for_each(|four| add(*four));
-        add(std::array::from_fn(|lane| rest.get(lane).copied().unwrap_or(0.0)));
-        let sum = |lanes: [f64; 4]| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
-        let peak_electrons = peaks.into_iter().fold(0.0, f64::max);
+        let none = Eight::splat(simd, 0.0);
+        // Where there is neither light nor noise the quotient is 0, not no number.
+        let noise2 = Eight::splat(simd, variance.max(f64::MIN_POSITIVE));
+        let [mut electrons, mut snr2, mut peaks] = [none; 3];
+        for signals in stamp.electrons.as_chunks::<LANES>().0 {
+            let lit = Eight::of(simd, signals).or_larger(none);
+            electrons = electrons.plus(lit);
+            snr2 = snr2.plus(lit.times(lit.over(lit.plus(noise2))));
+            peaks = peaks.or_larger(lit);
+        }
+        let peak_electrons = peaks.largest();
         StampTruth {
-            electrons: sum(electrons),
+            electrons: electrons.sum(),
             peak_electrons,
-            snr: sum(snr2).sqrt(),
+            snr: snr2.sum().sqrt(),
             radius_px: if peak_electrons > noise_e { stamp.radius_px(noise_e) } else { 0.5 },
         }
     }
+}
+
+/// The first and the last of the numbers of a row of a stamp, its padding included, that are above a limit.
+#[inline(always)]
+fn first_and_last_above(row: &[f64], limit: f64) -> Option<(usize, usize)> {
+    let chunks = row.as_chunks::<LANES>().0;
+    // Without an early exit within a chunk, for all its numbers at once.
+    let any = |chunk: &[f64; LANES]| chunk.iter().fold(false, |any, &number| any | (number > limit));
+    let above = |&number: &f64| number > limit;
+    let (i, j) = (chunks.iter().position(any)?, chunks.iter().rposition(any)?);
+    let first = i * LANES + chunks[i].iter().position(above)?;
+    let last = j * LANES + chunks[j].iter().rposition(above)?;
+    Some((first, last))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn fill(stamp: &mut Stamp, electrons: &[f64]) {
+        let columns = stamp.columns;
+        for ((_, _, row), electrons) in stamp.rows_mut().zip(electrons.chunks_exact(columns)) {
+            row[..columns].copy_from_slice(electrons);
+        }
+    }
+
     fn two_by_two() -> Stamp {
         let mut stamp = Stamp::new();
         stamp.reset(PixelPoint::new(10.0, 20.0), (10, 12), (20, 22));
-        stamp.electrons.copy_from_slice(&[100.0, 30.0, 20.0, 0.0]);
+        fill(&mut stamp, &[100.0, 30.0, 20.0, 0.0]);
         stamp
     }
 
@@ -319,7 +318,7 @@ mod tests {
     fn a_woven_stamp_has_alternate_rows_of_both_images() {
         let (first, mut second, mut woven) = (two_by_two(), Stamp::new(), Stamp::new());
         second.reset(PixelPoint::new(13.0, 21.0), (12, 14), (20, 23));
-        second.electrons.copy_from_slice(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        fill(&mut second, &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         woven.weave(&first, &second, |row| row % 2 == 0);
         let rows: Vec<_> = woven.rows().map(|(x, y, row)| (x, y, row.to_vec())).collect();
         assert_eq!(rows[0], (10, 20, vec![100.0, 30.0, 0.0, 0.0]));

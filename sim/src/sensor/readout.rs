@@ -87,7 +87,7 @@ impl Sensor {
 
     /// An image that [`Sensor::collect`] and [`Sensor::read_out`] take.
     pub fn new_expected(&self) -> ExpectedImage {
-        ExpectedImage::new(self.columns, self.rows)
+        ExpectedImage::new(self.columns, self.rows).responding(&self.pattern.response)
     }
 
     /// A raw image for [`Sensor::read_out`].

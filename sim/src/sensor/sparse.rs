@@ -247,10 +247,10 @@ impl Task<'_> {
                 let row = &mut image.raw.dn[pixels];
                 flat.draw_row(row, &mut stream);
                 let mut means_e = [flat_e; PIECE];
-                for bit in crate::draw::set_bits(self.expected.drawn_in(y, p)) {
-                    let signal_e = self.expected.signal_at(first + bit);
-                    row[bit] = flat.draw_lit(signal_e, self.words, self.place(first + bit));
-                    means_e[bit] = flat_e + signal_e;
+                let (lit, signal_e) = self.expected.signal_in(y, p);
+                for bit in crate::draw::set_bits(lit) {
+                    row[bit] = flat.draw_lit(signal_e[bit], self.words, self.place(first + bit));
+                    means_e[bit] = flat_e + signal_e[bit];
                 }
                 self.keep_dark_pixels_below(floor_dn, image.limits[y], first, &means_e[..row.len()], row);
             }

@@ -1,13 +1,23 @@
 //! Sums of circular Gaussians, each integrated exactly over every pixel.
 //!
 //! A Gaussian over a rectangle is the product of two differences of error functions, one a column and one a row,
-//! so that an image costs as many error functions as it has columns and rows.
+//! so that an image costs as many error functions as it has columns and rows. Most come from a table of the width
+//! ([`ShareTable`]); where the width grows over the field, every image has its own.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use pulp::Simd;
 
 use super::condense::condensed;
 use super::error_function::ErrorFunction;
 use super::pixels_within;
+use super::share_table::ShareTable;
 use crate::optics::{ImagePoint, Stamp};
-use crate::widest::{Work, by_eights, widest};
+use crate::widest::{Eight, LANES, Work, widest};
+
+/// Points whose images are added at a time.
+const TOGETHER: usize = 4;
 
 /// A sum of circular Gaussians about one centre.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,19 +28,21 @@ pub(super) struct Gaussians {
     floor_share: f64,
 }
 
-/// Shares of flux a column and a row, reused from stamp to stamp.
+/// Shares of flux a column and a row of some points, reused from stamp to stamp.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Profiles {
-    x: Vec<f64>,
-    y: Vec<f64>,
+    x: [Vec<f64>; TOGETHER],
+    y: [Vec<f64>; TOGETHER],
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Component {
     weight: f64,
     sigma_px: f64,
     /// Share of its light in the column, or the row, of pixels about its centre, when that is in their middle.
     central_share: f64,
+    /// Shares of other pixels; `None`: by error functions.
+    table: Option<Arc<ShareTable>>,
 }
 
 impl Gaussians {
@@ -71,12 +83,13 @@ impl Gaussians {
         profiles: &mut Profiles,
         stamp: &mut Stamp,
     ) {
-        for component in self.components.iter().map(|component| component.scaled(scale)) {
+        for component in &self.components {
+            let component = component.scaled(scale);
             let own_px = component.reach_px(electrons, floor_e * self.floor_share);
             if own_px > 0.0 {
                 let condensed = condensed(points, component.sigma_px);
                 let points = condensed.as_ref().map_or(points, |(few, count)| &few[..*count]);
-                widest(Images { component, points, electrons, own_px, profiles, stamp });
+                widest(Images { component: &component, points, electrons, own_px, profiles, stamp });
             }
         }
     }
@@ -92,7 +105,7 @@ impl Gaussians {
 
 /// The images of points, added to a stamp: each of its share of the electrons, followed to `own_px`.
 struct Images<'a> {
-    component: Component,
+    component: &'a Component,
     points: &'a [ImagePoint],
     electrons: f64,
     own_px: f64,
@@ -104,39 +117,87 @@ impl Work for Images<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<S: Simd>(self, simd: S) {
         let Self { component, points, electrons, own_px, profiles, stamp } = self;
-        let (right, bottom) = (stamp.x + stamp.columns, stamp.y + stamp.rows);
-        for point in points {
-            let own_x = pixels_within((point.position.x, point.position.x), own_px, right);
-            let own_y = pixels_within((point.position.y, point.position.y), own_px, bottom);
+        for points in points.chunks(TOGETHER) {
+            let span = |of: fn(&ImagePoint) -> f64| {
+                let from_to = points
+                    .iter()
+                    .map(of)
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), at| (from.min(at), to.max(at)));
+                // Not a number is nowhere, as an infinite place is.
+                if points.iter().map(of).all(f64::is_finite) { from_to } else { (f64::NAN, f64::NAN) }
+            };
+            let own_x = pixels_within(span(|point| point.position.x), own_px, stamp.x + stamp.columns);
+            let own_y = pixels_within(span(|point| point.position.y), own_px, stamp.y + stamp.rows);
             let (own_x, own_y) = ((own_x.0.max(stamp.x), own_x.1), (own_y.0.max(stamp.y), own_y.1));
             if own_x.0 >= own_x.1 || own_y.0 >= own_y.1 {
                 continue;
             }
-            component.profile(point.position.x, own_x, &mut profiles.x);
-            component.profile(point.position.y, own_y, &mut profiles.y);
-            let flux = electrons * component.weight * point.share;
-            let (left, width) = (own_x.0 - stamp.x, own_x.1 - own_x.0);
-            let rows = stamp.electrons.chunks_exact_mut(stamp.columns).skip(own_y.0 - stamp.y);
-            for (row, share_y) in rows.zip(&profiles.y) {
-                let row_flux = flux * share_y;
-                by_eights(&mut row[left..left + width], &profiles.x, |pixel, share_x| {
-                    *pixel += row_flux * share_x;
-                });
+            // Columns by whole lanes of the stamp; what lies after its last column stays 0.
+            let first = (own_x.0 - stamp.x) / LANES * LANES;
+            let width = (own_x.1 - stamp.x - first).next_multiple_of(LANES);
+            let padding = (first + width).saturating_sub(stamp.columns);
+            let mut fluxes = [0.0; TOGETHER];
+            for (i, point) in points.iter().enumerate() {
+                component.shares(simd, point.position.x, stamp.x + first, width, &mut profiles.x[i]);
+                profiles.x[i][width - padding..].fill(0.0);
+                component.shares(simd, point.position.y, own_y.0, own_y.1 - own_y.0, &mut profiles.y[i]);
+                fluxes[i] = electrons * component.weight * point.share;
             }
+            let stride = stamp.stride;
+            let rows =
+                stamp.electrons.chunks_exact_mut(stride).skip(own_y.0 - stamp.y).take(own_y.1 - own_y.0);
+            let rows = rows.map(|row| row[first..first + width].as_chunks_mut::<LANES>().0);
+            match points.len() {
+                1 => add_products::<S, 1>(simd, rows, fluxes, profiles),
+                2 => add_products::<S, 2>(simd, rows, fluxes, profiles),
+                3 => add_products::<S, 3>(simd, rows, fluxes, profiles),
+                _ => add_products::<S, 4>(simd, rows, fluxes, profiles),
+            }
+        }
+    }
+}
+
+/// Adds to each pixel the light of `N` points: their flux by the share of its row by that of its column.
+#[inline(always)]
+fn add_products<'a, S: Simd, const N: usize>(
+    simd: S,
+    rows: impl Iterator<Item = &'a mut [[f64; LANES]]>,
+    fluxes: [f64; TOGETHER],
+    profiles: &Profiles,
+) {
+    let columns: [&[[f64; LANES]]; N] = std::array::from_fn(|k| profiles.x[k].as_chunks::<LANES>().0);
+    for (j, row) in rows.enumerate() {
+        let of_row: [Eight<S>; N] = std::array::from_fn(|k| Eight::splat(simd, fluxes[k] * profiles.y[k][j]));
+        for (i, pixels) in row.iter_mut().enumerate() {
+            let mut sum = Eight::of(simd, pixels);
+            for k in 0..N {
+                sum = sum.plus(of_row[k].times(Eight::of(simd, &columns[k][i])));
+            }
+            sum.store(pixels);
         }
     }
 }
 
 impl Component {
     pub(super) fn new(weight: f64, sigma_px: f64) -> Self {
-        let half = 0.5 / (sigma_px * std::f64::consts::SQRT_2);
-        Self { weight, sigma_px, central_share: libm::erf(half) }
+        let table = ShareTable::new(sigma_px).map(Arc::new);
+        Self { table, ..Self::of_width(weight, sigma_px) }
     }
 
-    fn scaled(self, scale: f64) -> Self {
-        if scale == 1.0 { self } else { Self::new(self.weight, self.sigma_px * scale) }
+    /// One without a table.
+    fn of_width(weight: f64, sigma_px: f64) -> Self {
+        let half = 0.5 / (sigma_px * std::f64::consts::SQRT_2);
+        Self { weight, sigma_px, central_share: libm::erf(half), table: None }
+    }
+
+    fn scaled(&self, scale: f64) -> Cow<'_, Self> {
+        if scale == 1.0 {
+            Cow::Borrowed(self)
+        } else {
+            Cow::Owned(Self::of_width(self.weight, self.sigma_px * scale))
+        }
     }
 
     /// Distance from the centre beyond which, along a column or a row, no pixel holds `floor_e`, px; 0 when no
@@ -152,16 +213,20 @@ impl Component {
         }
     }
 
-    /// Shares of the flux in each pixel of a range along one axis.
+    /// Shares of the flux in `count` pixels from `first` on along one axis, of a Gaussian about `centre`.
     #[inline(always)]
-    fn profile(&self, centre: f64, range: (usize, usize), shares: &mut Vec<f64>) {
+    fn shares<S: Simd>(&self, simd: S, centre: f64, first: usize, count: usize, shares: &mut Vec<f64>) {
+        shares.clear();
+        if let Some(table) = &self.table {
+            shares.resize(count.next_multiple_of(LANES), 0.0);
+            return table.fill(simd, centre, first, shares);
+        }
         let scale = 1.0 / (self.sigma_px * std::f64::consts::SQRT_2);
         let erf = ErrorFunction::shared();
         let edge = |i: usize| erf.at((i as f64 - 0.5 - centre) * scale);
         // First the error function at every edge, each by itself, then their differences in place.
-        shares.clear();
-        shares.resize(range.1 - range.0 + 1, 0.0);
-        for (share, i) in shares.iter_mut().zip(range.0..) {
+        shares.resize(count + 1, 0.0);
+        for (share, i) in shares.iter_mut().zip(first..) {
             *share = edge(i);
         }
         for i in 1..shares.len() {

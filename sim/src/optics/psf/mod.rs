@@ -8,6 +8,7 @@ mod error_function;
 mod gaussians;
 mod moffat;
 mod sampled;
+mod share_table;
 mod tabulated;
 #[cfg(test)]
 mod witness;
@@ -15,13 +16,14 @@ mod witness;
 use std::path::Path;
 
 use contract::{Camera, PixelPoint};
+use pulp::Simd;
 
 pub use config::PsfConfig;
 
 use super::field::FieldRadius;
 use super::{ImagePoint, Stamp};
 use crate::SimError;
-use crate::widest::{Work, widest};
+use crate::widest::{Eight, LANES, Work, widest};
 use gaussians::{Gaussians, Profiles};
 use tabulated::{Edges, Tabulated};
 
@@ -226,7 +228,7 @@ impl Extent {
     }
 }
 
-/// Pixels with less light than a floor, made 0.
+/// Pixels with less light than a floor, made 0: those of a stamp.
 struct Emptied<'a> {
     pixels: &'a mut [f64],
     below: f64,
@@ -236,10 +238,10 @@ impl Work for Emptied<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
-        for pixel in self.pixels {
-            // A choice and not a branch, for many pixels at once.
-            *pixel = if *pixel < self.below { 0.0 } else { *pixel };
+    fn run<S: Simd>(self, simd: S) {
+        let below = Eight::splat(simd, self.below);
+        for pixels in self.pixels.as_chunks_mut::<LANES>().0 {
+            Eight::of(simd, pixels).or_none_below(below).store(pixels);
         }
     }
 }
@@ -345,7 +347,7 @@ mod tests {
             for (x, y, row) in fine.rows() {
                 for (i, &value) in row.iter().enumerate() {
                     let got = if window.contains(x + i, y) {
-                        rough.electrons[(y - window.y) * window.columns + x + i - window.x]
+                        rough.electrons[(y - window.y) * rough.stride + x + i - window.x]
                     } else {
                         0.0
                     };

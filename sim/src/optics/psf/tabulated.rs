@@ -212,7 +212,7 @@ impl Tabulated {
             let flux = electrons * point.share;
             for j in y.0..y.1 {
                 self.table.row_of(&edges.columns, &row(j + 1), &mut edges.below);
-                let start = (j - stamp.y) * stamp.columns + x.0 - stamp.x;
+                let start = (j - stamp.y) * stamp.stride + x.0 - stamp.x;
                 let pixels = &mut stamp.electrons[start..start + x.1 - x.0];
                 for ((pixel, above), below) in
                     pixels.iter_mut().zip(edges.above.windows(2)).zip(edges.below.windows(2))

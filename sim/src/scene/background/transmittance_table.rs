@@ -6,8 +6,10 @@ use super::stray::StrayLightConfig;
 const STEPS_LOG2: u32 = 9;
 /// The table begins at sin²(θ/2) = 2^-14, below the nearest angle that the law follows, 1°.
 const OCTAVES: u32 = 14;
-/// Cosine of the angle beyond which the table is not used.
+/// Cosine of the angle beyond which the law is told by another variable.
 const SMOOTH_FROM_COS: f64 = -0.8;
+/// Steps from there to the opposite direction.
+const FAR_STEPS: usize = 512;
 /// Bits of the fraction of an `f64`, and the bias of its exponent.
 const FRACTION_BITS: u32 = 52;
 const BIAS: u64 = 1023;
@@ -16,12 +18,13 @@ const BIAS: u64 = 1023;
 ///
 /// Up to some tens of degrees the law goes as x^(−p/2), of which a chord is off by at most (p/2)(p/2 + 1)/8 · 512⁻²; twice that
 /// holds everywhere but in the steps of a bend: 1.2e-5 of the transmittance for p = 6, 1.1e-4 for p = 20, the largest. In the step
-/// of a bend it is a quarter of a step times the change of the slope. Where θ is no smooth function of x, beyond 143°, the law
-/// itself stands in.
+/// of a bend it is a quarter of a step times the change of the slope. Beyond 143°, where θ is no smooth function of x, the table is
+/// over √(1 + cos θ), of which it is nearly a straight one: off by at most p(p + 1)/8 · (0.0013/2.5)², 1.4e-5 for p = 20.
 #[derive(Debug, Clone)]
 pub(super) struct TransmittanceTable {
-    law: StrayLightConfig,
     values: Vec<f64>,
+    /// Beyond [`SMOOTH_FROM_COS`], from the opposite direction on.
+    far: Vec<f64>,
 }
 
 impl TransmittanceTable {
@@ -35,14 +38,20 @@ impl TransmittanceTable {
         // One node more than there are: after x = 1 nothing follows.
         let mut values: Vec<f64> = (0..=OCTAVES * steps).map(value).collect();
         values.push(law.at_angle(std::f64::consts::PI));
-        Self { law: law.clone(), values }
+        let far = |i: usize| {
+            let root = i as f64 / FAR_STEPS as f64 * (1.0 + SMOOTH_FROM_COS).sqrt();
+            law.at_angle(libm::acos(root * root - 1.0))
+        };
+        // One more: before it ends, rounding may ask for it.
+        Self { values, far: (0..=FAR_STEPS + 1).map(far).collect() }
     }
 
     /// The transmittance at an angle of cosine `cos`.
     #[inline(always)]
     pub(super) fn at_cos(&self, cos: f64) -> f64 {
         if cos < SMOOTH_FROM_COS {
-            return self.law.at_angle(libm::acos(cos.max(-1.0)));
+            let place = ((1.0 + cos.max(-1.0)) / (1.0 + SMOOTH_FROM_COS)).sqrt() * FAR_STEPS as f64;
+            return between(&self.far, place as usize, place - place.floor());
         }
         let least = 1.0 / f64::from(1_u32 << OCTAVES);
         let bits = (0.5 - 0.5 * cos).clamp(least, 1.0).to_bits();
@@ -51,10 +60,16 @@ impl TransmittanceTable {
         let node = ((bits >> (FRACTION_BITS - STEPS_LOG2)) - first) as usize;
         let fraction = (1 << FRACTION_BITS) - 1;
         let part = f64::from_bits(((bits << STEPS_LOG2) & fraction) | (BIAS << FRACTION_BITS)) - 1.0;
-        match self.values.get(node..node + 2) {
-            Some([here, next]) => here + part * (next - here),
-            _ => 0.0,
-        }
+        between(&self.values, node, part)
+    }
+}
+
+/// `part` of the way from a node to the next.
+#[inline(always)]
+fn between(values: &[f64], node: usize, part: f64) -> f64 {
+    match values.get(node..node + 2) {
+        Some([here, next]) => here + part * (next - here),
+        _ => 0.0,
     }
 }
 

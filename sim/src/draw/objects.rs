@@ -1,0 +1,82 @@
+//! The images of the objects of a frame, and where each of them has light.
+
+use crate::optics::Stamp;
+
+/// The images of the objects of a frame, by number, and the parts of rows that they cover. Reused from frame to frame.
+#[derive(Debug, Clone)]
+pub(super) struct Objects {
+    /// Those after the first `count` are left over from frames before.
+    stamps: Vec<Stamp>,
+    count: usize,
+    /// Of each row, the objects that cover some of it, by number.
+    in_row: Vec<Vec<Part>>,
+}
+
+/// The part of a row that an object covers.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    object: usize,
+    from: usize,
+    to: usize,
+}
+
+impl Objects {
+    pub(super) fn new(rows: usize) -> Self {
+        Self { stamps: Vec::new(), count: 0, in_row: vec![Vec::new(); rows] }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.count = 0;
+        self.in_row.iter_mut().for_each(Vec::clear);
+    }
+
+    pub(super) fn stamps(&self) -> &[Stamp] {
+        &self.stamps[..self.count]
+    }
+
+    /// An old stamp, to be made the image of the next object.
+    pub(super) fn take(&mut self) -> Stamp {
+        self.stamps.get_mut(self.count).map(std::mem::take).unwrap_or_default()
+    }
+
+    /// Adds the image of the next object; `cover` is told each part of a row that it covers before.
+    pub(super) fn push(&mut self, stamp: Stamp) -> &Stamp {
+        let object = self.count;
+        match self.stamps.get_mut(object) {
+            Some(place) => *place = stamp,
+            None => self.stamps.push(stamp),
+        }
+        self.count += 1;
+        &self.stamps[object]
+    }
+
+    /// Tells that the next object covers columns `from..to` of a row.
+    #[inline(always)]
+    pub(super) fn cover(&mut self, y: usize, from: usize, to: usize) {
+        self.in_row[y].push(Part { object: self.count, from, to });
+    }
+
+    /// Adds the light of all objects to the pixels of row `y` from column `x` on.
+    #[inline(always)]
+    pub(super) fn add_to(&self, x: usize, y: usize, out: &mut [f64]) {
+        let end = x + out.len();
+        for part in &self.in_row[y] {
+            let (from, to) = (part.from.max(x), part.to.min(end));
+            if from >= to {
+                continue;
+            }
+            let light = &self.stamps[part.object].row(y)[from - part.from..to - part.from];
+            for (out, light) in out[from - x..to - x].iter_mut().zip(light) {
+                *out += light;
+            }
+        }
+    }
+
+    /// Takes the light of all objects out of a pixel.
+    pub(super) fn empty(&mut self, x: usize, y: usize) {
+        let Self { stamps, in_row, .. } = self;
+        for part in in_row[y].iter().filter(|part| (part.from..part.to).contains(&x)) {
+            stamps[part.object].empty(x, y);
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! A Gaussian's shares of light in pixels, from a table over the place of its centre within a pixel.
+//!
+//! Over one axis the share of a pixel is the difference of two error functions. Stars take hundreds of them each, at places that differ
+//! by whole pixels but for one number, the phase of the centre: so a table of a few phases, with the derivatives there, gives the
+//! shares of a whole row of pixels by one polynomial in the phase, pixel beside pixel.
+
+use pulp::Simd;
+
+use crate::widest::{Eight, LANES};
+
+/// Coefficients of a polynomial: degree 5.
+const TERMS: usize = 6;
+/// Phases in a width σ: the next term is at most (1/50)⁶ · 5/6! = 4e-13, with 5 for twice the largest value of |He₅(u) φ(u)|.
+const PHASES_PER_SIGMA: f64 = 25.0;
+/// A narrower Gaussian would need more phases than are worth a table.
+const NARROWEST_PX: f64 = 0.1;
+/// A wider one more pixels.
+const WIDEST_PX: f64 = 100.0;
+/// Half widths σ that the table covers; beyond them a share is below 2e-17.
+const REACH_SIGMAS: f64 = 8.5;
+
+/// Shares of light along an axis, for one width.
+#[derive(Debug, PartialEq)]
+pub(super) struct ShareTable {
+    /// `TERMS` rows of `width` pixels a phase.
+    coefficients: Vec<f64>,
+    /// Intervals between phases in a pixel.
+    intervals: f64,
+    /// Pixels of a row: twice `reach` and one, and room for the padding of a stamp.
+    width: usize,
+    /// Pixels on either side of the one that holds the centre.
+    reach: usize,
+}
+
+impl ShareTable {
+    /// The table of a Gaussian of width `sigma_px`; `None` for one that is too narrow or too wide for a table.
+    pub(super) fn new(sigma_px: f64) -> Option<Self> {
+        if !(NARROWEST_PX..=WIDEST_PX).contains(&sigma_px) {
+            return None;
+        }
+        let reach = (REACH_SIGMAS * sigma_px).ceil() as usize + LANES;
+        let width = 2 * reach + 1 + LANES;
+        let intervals = (PHASES_PER_SIGMA / sigma_px).ceil();
+        let mut coefficients = Vec::with_capacity((intervals as usize + 1) * TERMS * width);
+        for phase in (0..=intervals as usize).map(|k| k as f64 / intervals - 0.5) {
+            let edges: Vec<[f64; TERMS]> =
+                (0..=width).map(|i| cumulative(i as f64 - reach as f64 - 0.5 - phase, sigma_px)).collect();
+            for term in 0..TERMS {
+                coefficients.extend(edges.windows(2).map(|pair| pair[1][term] - pair[0][term]));
+            }
+        }
+        Some(Self { coefficients, intervals, width, reach })
+    }
+
+    /// The shares of pixels from `first` on, a whole number of [`LANES`], along an axis on which the centre is at `centre`. Zeros where
+    /// there are none.
+    #[inline(always)]
+    pub(super) fn fill<S: Simd>(&self, simd: S, centre: f64, first: usize, shares: &mut [f64]) {
+        let nearest = centre.round();
+        let phase = centre - nearest;
+        let node = ((phase + 0.5) * self.intervals).round();
+        let d = phase - (node / self.intervals - 0.5);
+        // A centre far away has no shares here.
+        let from = (first as f64 - nearest + self.reach as f64).clamp(-1e9, 1e9) as isize;
+        let rows = &self.coefficients[node as usize * TERMS * self.width..][..TERMS * self.width];
+        let Some(from) = usize::try_from(from).ok().filter(|from| from + shares.len() <= self.width) else {
+            return self.fill_clipped(rows, d, from, shares);
+        };
+        let row = |term: usize| rows[term * self.width + from..][..shares.len()].as_chunks::<LANES>().0;
+        let rows: [_; TERMS] = std::array::from_fn(row);
+        let d = Eight::splat(simd, d);
+        for (i, shares) in shares.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
+            let mut sum = Eight::of(simd, &rows[TERMS - 1][i]);
+            for row in rows.iter().rev().skip(1) {
+                sum = Eight::of(simd, &row[i]).plus(d.times(sum));
+            }
+            sum.store(shares);
+        }
+    }
+
+    /// [`ShareTable::fill`] of pixels that are not all in the table.
+    #[cold]
+    fn fill_clipped(&self, rows: &[f64], d: f64, from: isize, shares: &mut [f64]) {
+        for (share, at) in shares.iter_mut().zip(from..) {
+            *share = match usize::try_from(at) {
+                Ok(at) if at < self.width => {
+                    (0..TERMS).rev().fold(0.0, |sum, term| sum * d + rows[term * self.width + at])
+                }
+                _ => 0.0,
+            };
+        }
+    }
+}
+
+/// Half the error function of t/(σ√2), and its coefficients in a polynomial in φ where t is less by φ. Its derivatives are those of
+/// the normal density, Hermite polynomials of t/σ times it.
+fn cumulative(t: f64, sigma_px: f64) -> [f64; TERMS] {
+    let u = t / sigma_px;
+    let density = libm::exp(-0.5 * u * u) / (sigma_px * (2.0 * std::f64::consts::PI).sqrt());
+    let u2 = u * u;
+    let s = sigma_px;
+    let hermite = [1.0, u, u2 - 1.0, (u2 - 3.0) * u, (u2 - 6.0) * u2 + 3.0];
+    let over = [1.0, 2.0 * s, 6.0 * s * s, 24.0 * s * s * s, 120.0 * s * s * s * s];
+    let [a, b, c, d, e] = std::array::from_fn(|n| -density * hermite[n] / over[n]);
+    [0.5 * libm::erf(u / std::f64::consts::SQRT_2), a, b, c, d, e]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_those_of_the_error_function() {
+        for sigma_px in [0.1, 0.35, 0.8, 4.0, 30.0] {
+            let table = ShareTable::new(sigma_px).unwrap();
+            let scale = 1.0 / (sigma_px * std::f64::consts::SQRT_2);
+            for step in 0..2000 {
+                let centre = 100.0 + step as f64 * 0.000_737;
+                let reach = (7.0 * sigma_px).ceil() as usize + 1;
+                let first = 100_usize.saturating_sub(reach);
+                let mut shares = vec![9.0; (2 * reach + 2).next_multiple_of(LANES)];
+                table.fill(pulp::Scalar::new(), centre, first, &mut shares);
+                for (share, i) in shares.iter().zip(first..) {
+                    let edge = |side: f64| libm::erf((i as f64 + side - centre) * scale);
+                    let exact = 0.5 * (edge(0.5) - edge(-0.5));
+                    assert!((share - exact).abs() < 1e-12, "σ {sigma_px}, {i} − {centre}: {share}, {exact}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_far_away_has_no_share() {
+        let table = ShareTable::new(0.8).unwrap();
+        for (centre, first) in [(1e300, 0), (-1e300, 0), (5.0, 4000), (4000.0, 5), (5.0, usize::MAX)] {
+            let mut shares = [9.0; LANES];
+            table.fill(pulp::Scalar::new(), centre, first, &mut shares);
+            assert!(shares.iter().all(|share| share.abs() < 1e-15), "{centre}, {first}: {shares:?}");
+        }
+    }
+
+    #[test]
+    fn very_narrow_and_very_wide_ones_have_no_table() {
+        assert_eq!(ShareTable::new(0.05), None);
+        assert_eq!(ShareTable::new(1e3), None);
+        assert_eq!(ShareTable::new(f64::NAN), None);
+    }
+}
