@@ -131,7 +131,7 @@ const FROZEN: [&str; 4] = [
     "9cd92280b856144efa443138b1f3ee8a5e42704f3e469558c0fabd155f920af1",
     "f1bc29111b4012ed14cdae8ca357732c75bc0f2e0d6cde17be2ee041d3e94dcf",
     "5bdfd6e0ecaa0fa2ac1968724ae3dcd398e1d3b5e199950c98f301dce0191d16",
-    "9e3069438b7fe2701cc726c2ac5e95cc1c86f6af21928307146b1e7364e3f313",
+    "625e735eb946aff89eb0b6f251504375503b7084b66c6ec5fce948133b911be4",
 ];
 
 /// A frozen hash of an empty scene would freeze nothing.

@@ -101,9 +101,11 @@ impl OwnMeans {
         for i in 0..PIECE {
             places[i] = self.place(Choice::of(means[i], words[i]), words[i]);
         }
+        // Looked up once: where the tables are, is told to no pixel.
+        let all = self.cells.as_slice();
         let mut cells = [0; PIECE];
         for i in 0..PIECE {
-            cells[i] = self.cells.get(places[i] as usize).copied().unwrap_or(0);
+            cells[i] = all.get(places[i] as usize).copied().unwrap_or(0);
         }
         let mut numbers = [0; PIECE];
         for i in 0..PIECE {

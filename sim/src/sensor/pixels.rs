@@ -26,7 +26,7 @@ impl LineOffsets {
 }
 
 impl Sensor {
-    /// The frame of a flat background: one table for nearly all pixels.
+    /// The frame of a flat background of more electrons than there are tables for: one of its own for nearly all pixels.
     pub(super) fn draw_flat(
         &self,
         expected: &ExpectedImage,
@@ -43,6 +43,11 @@ impl Sensor {
         }
     }
 
+    /// Whether there are tables for the means of nearly all pixels.
+    pub(super) fn has_tables_for(&self, expected: &ExpectedImage) -> bool {
+        self.law.shot == Switch::On && expected.flat_e() < OwnMeans::end_e(&self.law)
+    }
+
     /// The frame in which every pixel has a mean of its own.
     pub(super) fn draw_own_means(
         &self,
@@ -51,10 +56,6 @@ impl Sensor {
         laws: &mut FlatLaws,
         raw: &mut RawImage,
     ) {
-        let end_e = OwnMeans::end_e(&self.law);
-        if expected.flat_e() >= end_e {
-            return self.draw_in_parts(expected, None, streams, laws, raw);
-        }
         let tables = laws.own_means(&self.law);
         // The same steps on every machine, on the widest registers that it has.
         pulp::Arch::new().dispatch(OwnMeansFrame { expected, streams, tables, raw });

@@ -24,13 +24,11 @@
 //! drawn from tables: there all pixels are drawn outright.
 
 use contract::Window;
-use rand::Rng;
 
 use super::blooming::Overflow;
 use super::charge::Charge;
-use super::config::Switch;
 use super::exceedance::{DarkLimit, Exceedance};
-use super::flat_laws::{FlatLaw, FlatLaws};
+use super::flat_laws::FlatLaws;
 use super::own_means::OwnMeans;
 use super::pixel_law::PixelLaw;
 use super::readout::Sensor;
@@ -77,7 +75,7 @@ impl Sensor {
         let expected = charge.expected();
         image.clear();
         image.floor_dn = floor_dn;
-        if !self.is_drawn_from_tables(expected) {
+        if !self.has_tables_for(expected) || self.has_line_offsets() {
             return self.read_out(charge, &seed, frame, laws, image.whole());
         }
         self.check_size(expected)?;
@@ -127,21 +125,9 @@ impl Sensor {
             (seed.streams(frame, Effect::PixelNoise), seed.streams(frame, Effect::Exceedance));
         let (law, columns, rows) = (&self.law, self.columns, self.rows);
         let task = Task { law, expected, words: &words, again: &again, columns, rows };
-        if expected.has_field() {
-            let tables = laws.own_means(law);
-            // The same steps on every machine, on the widest registers that it has.
-            pulp::Arch::new().dispatch(OwnMeansPieces { task, tables, image });
-        } else {
-            task.draw_flat_pieces(laws.of(law, expected.flat_e()), image);
-        }
-    }
-
-    /// Whether tables hold the laws of nearly all pixels.
-    fn is_drawn_from_tables(&self, expected: &ExpectedImage) -> bool {
-        let is_even = !expected.has_field();
-        self.law.shot == Switch::On
-            && !self.has_line_offsets()
-            && (is_even || expected.flat_e() < OwnMeans::end_e(&self.law))
+        let tables = laws.own_means(law);
+        // The same steps on every machine, on the widest registers that it has.
+        pulp::Arch::new().dispatch(OwnMeansPieces { task, tables, image });
     }
 }
 
@@ -223,36 +209,6 @@ impl Task<'_> {
                 while *dn > floor_dn {
                     *dn = self.law.sample(mean_e.max(0.0), 0.0, &mut stream);
                 }
-            }
-        }
-    }
-
-    /// The wanted pieces of an even detector.
-    fn draw_flat_pieces(&self, flat: &mut FlatLaw, image: &mut SparseImage) {
-        let (flat_e, floor_dn) = (self.expected.flat_e(), image.floor_dn);
-        for y in 0..self.rows {
-            let pieces = &mut image.pieces[y * image.pieces_per_row..(y + 1) * image.pieces_per_row];
-            if !pieces.contains(&Piece::Wanted) {
-                continue;
-            }
-            let mut stream = self.words.at(y as u64);
-            let mut next = 0;
-            for (p, piece) in pieces.iter_mut().enumerate().filter(|(_, piece)| **piece == Piece::Wanted) {
-                // Two pixels take a word.
-                (next * PIECE / 2..p * PIECE / 2).for_each(|_| _ = stream.next_u64());
-                next = p + 1;
-                *piece = Piece::Drawn;
-                let pixels = self.expected.piece_pixels(y, p);
-                let first = pixels.start;
-                let row = &mut image.raw.dn[pixels];
-                flat.draw_row(row, &mut stream);
-                let mut means_e = [flat_e; PIECE];
-                let (lit, signal_e) = self.expected.signal_in(y, p);
-                for bit in crate::draw::set_bits(lit) {
-                    row[bit] = flat.draw_lit(signal_e[bit], self.words, self.place(first + bit));
-                    means_e[bit] = flat_e + signal_e[bit];
-                }
-                self.keep_dark_pixels_below(floor_dn, image.limits[y], first, &means_e[..row.len()], row);
             }
         }
     }
