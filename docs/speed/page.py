@@ -1,0 +1,33 @@
+"""Writes generated parts of docs/speed.md: what stands between `<!-- NAME: ... -->` and `<!-- end of NAME -->`."""
+
+import pathlib
+import re
+
+FOLDER = pathlib.Path(__file__).resolve().parent
+PAGE = FOLDER.parent / "speed.md"
+
+
+def replace(name, text):
+    """Puts a text in the place of a generated part."""
+    part = re.compile(rf"(<!-- {name}: [^\n]*-->\n).*?(\n<!-- end of {name} -->)", re.DOTALL)
+    page, count = part.subn(lambda found: f"{found[1]}\n{text.strip()}\n{found[2]}", PAGE.read_text())
+    if count != 1:
+        raise SystemExit(f"{PAGE} has {count} parts called {name}, expected one")
+    PAGE.write_text(page)
+
+
+def table(head, rows, names):
+    """A table in Markdown, a name before each row; columns after the first are aligned to the right."""
+    lines = [head, ["---"] + ["---:"] * (len(head) - 1)] + [[name, *row] for name, row in zip(names, rows)]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines)
+
+
+def machine():
+    """The processor, in words."""
+    cpuinfo = pathlib.Path("/proc/cpuinfo").read_text()
+    model = re.search(r"model name\s*: (.*)", cpuinfo)
+    flags = re.search(r"flags\s*: (.*)", cpuinfo)
+    widest = [name for name in ("avx512f", "avx2") if flags and name in flags[1].split()]
+    registers = {"avx512f": "AVX-512", "avx2": "AVX2"}
+    widest = registers[widest[0]] if widest else "no AVX2"
+    return f"{model[1] if model else 'an unknown processor'}, {widest}, {cpuinfo.count('processor	:')} cores"

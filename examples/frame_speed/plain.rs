@@ -1,0 +1,125 @@
+//! The plain frame that every simulator of the comparison can make: 160 stars on a flat background, shot, dark and read noise, 12 bit.
+
+use std::error::Error;
+
+use contract::PixelPoint;
+use serde_json::{Value, json};
+use sim::draw::ExpectedImage;
+use sim::optics::{Psf, PsfConfig, Stamp};
+use sim::randomness::{Effect, Seed, uniform};
+use sim::sensor::{FixedPatternConfig, FlatLaws, Opening, RawImage, Sensor, SensorConfig};
+
+pub(crate) const COLUMNS: usize = 752;
+pub(crate) const ROWS: usize = 580;
+const STARS: usize = 160;
+const SIGMA_PX: f64 = 0.8;
+const EXPOSURE_S: f64 = 0.25;
+const SEED: Seed = Seed { seed: 5, case: 0 };
+
+/// A star of the plain frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Star {
+    pub(crate) centre: PixelPoint,
+    pub(crate) electrons: f64,
+}
+
+/// The plain frame in numbers.
+#[derive(Debug, Clone)]
+pub(crate) struct PlainScene {
+    pub(crate) stars: Vec<Star>,
+    pub(crate) sensor: SensorConfig,
+}
+
+impl PlainScene {
+    /// The detector of the scenario `argon` without its defects, dark current and sky 10 e⁻ each, and stars as the sky has them:
+    /// ten times as many for two magnitudes, from 600 e⁻ (V = 7 in the scenario `argon`) to what fits the converter.
+    pub(crate) fn new() -> Self {
+        let mut stream = SEED.stream(0, Effect::HotPixels, 0);
+        let stars = (0..STARS)
+            .map(|_| {
+                let x = uniform(&mut stream) * COLUMNS as f64 - 0.5;
+                let y = uniform(&mut stream) * ROWS as f64 - 0.5;
+                // The number of stars brighter than f falls as f^−1.25.
+                let electrons = 600.0 * libm::pow(uniform(&mut stream), -0.8);
+                Star { centre: PixelPoint::new(x, y), electrons: electrons.min(100_000.0) }
+            })
+            .collect();
+        let sensor = SensorConfig {
+            bit_depth: 12,
+            gain_e_per_dn: 10.0,
+            bias_dn: 40.0,
+            full_well_e: 60_000.0,
+            read_noise_e: 15.0,
+            dark_current_e_per_s: 40.0,
+            background_e_per_s: 40.0,
+            ..SensorConfig::default()
+        };
+        Self { stars, sensor }
+    }
+
+    /// The same on a detector whose every pixel has a response and a dark current of its own.
+    pub(crate) fn uneven(&self) -> Self {
+        let fixed_pattern = FixedPatternConfig {
+            seed: 7,
+            prnu_fraction: 0.01,
+            dsnu_fraction: 0.1,
+            ..FixedPatternConfig::default()
+        };
+        Self { sensor: SensorConfig { fixed_pattern, ..self.sensor.clone() }, ..self.clone() }
+    }
+
+    /// What other simulators need to know of it.
+    pub(crate) fn to_json(&self) -> Value {
+        let stars: Vec<[f64; 3]> =
+            self.stars.iter().map(|star| [star.centre.x, star.centre.y, star.electrons]).collect();
+        json!({
+            "columns": COLUMNS,
+            "rows": ROWS,
+            "sigma_px": SIGMA_PX,
+            "exposure_s": EXPOSURE_S,
+            "sensor": self.sensor,
+            "stars_x_px_y_px_electrons": stars,
+        })
+    }
+
+    /// What makes frames of it.
+    pub(crate) fn painter(&self) -> Result<PlainPainter, Box<dyn Error>> {
+        let sensor = Sensor::new(&self.sensor, COLUMNS, ROWS)?;
+        Ok(PlainPainter {
+            stars: self.stars.clone(),
+            psf: Psf::new(&PsfConfig::Gaussian { sigma_px: SIGMA_PX })?,
+            image: sensor.new_expected(),
+            stamp: Stamp::new(),
+            laws: FlatLaws::new(),
+            raw: sensor.new_raw(),
+            sensor,
+        })
+    }
+}
+
+/// Makes plain frames; its buffers are used again by the next.
+pub(crate) struct PlainPainter {
+    stars: Vec<Star>,
+    sensor: Sensor,
+    psf: Psf,
+    image: ExpectedImage,
+    stamp: Stamp,
+    laws: FlatLaws,
+    raw: RawImage,
+}
+
+impl PlainPainter {
+    /// The digital numbers of a frame. Its stars are drawn anew: nothing is kept from the frame before but buffers and tables of
+    /// the noise.
+    pub(crate) fn frame(&mut self, number: u64) -> Result<&[u16], Box<dyn Error>> {
+        self.image.clear(self.sensor.sky_electrons(EXPOSURE_S));
+        for star in &self.stars {
+            self.psf.stamp(star.centre, star.electrons, Psf::FLOOR_E, (COLUMNS, ROWS), &mut self.stamp);
+            self.image.add(&self.stamp);
+        }
+        let opening = Opening { seed: SEED, middle_s: 0.0, exposure_s: EXPOSURE_S };
+        let charge = self.sensor.collect(&mut self.image, &opening);
+        self.sensor.read_out(&charge, &SEED, number, &mut self.laws, &mut self.raw)?;
+        Ok(self.raw.dn())
+    }
+}

@@ -1,0 +1,172 @@
+//! What can be timed.
+
+use std::error::Error;
+use std::hint::black_box;
+
+use boresight::run::Prepared;
+use boresight::scenario::{FarRangeScenario, ScenarioSource};
+use contract::{Frame, Outcome, Pipeline, Rotation, Setup, Telemetry};
+use hifitime::{Epoch, Unit};
+use pipeline::far_range::{FarRange, FarRangeConfig};
+use sim::Simulator;
+use sim::onboard::ShutterConfig;
+use sim::scene::BackgroundConfig;
+use sim::sensor::{FixedPatternConfig, SensorConfig, Switch};
+
+use crate::plain::{COLUMNS, PlainScene, ROWS};
+
+/// A frame of each day of ARGON, with what follows it.
+const DAYS: [(u64, &str); 5] = [(300, "day 1"), (1800, "day 2"), (5000, "day 3"), (9000, "day 4"), (14_000, "day 5")];
+/// Frames of a day that are made in turn.
+const FRAMES_OF_A_DAY: u64 = 200;
+/// Frames that are kept for detection.
+const KEPT: u64 = 8;
+
+type Step = Box<dyn FnMut() -> Result<Option<Outcome>, Box<dyn Error>>>;
+
+/// Something to be done again and again.
+pub(crate) struct Work {
+    name: String,
+    step: Step,
+}
+
+impl Work {
+    /// Its name: one word.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Does it once, on the next frame.
+    pub(crate) fn next(&mut self) -> Result<(), Box<dyn Error>> {
+        black_box((self.step)()?);
+        Ok(())
+    }
+
+    /// Does it once; tells where the pipeline found clusters, px.
+    pub(crate) fn clusters(&mut self) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
+        let outcome = (self.step)()?.ok_or_else(|| format!("{} detects nothing", self.name))?;
+        Ok(outcome.clusters.iter().map(|cluster| [cluster.position.x, cluster.position.y]).collect())
+    }
+}
+
+/// All that can be timed.
+pub(crate) fn works(scene: &PlainScene) -> Result<Vec<Work>, Box<dyn Error>> {
+    let mut works = vec![plain("plain", scene)?, plain("plain-uneven", &scene.uneven())?];
+    let source = ScenarioSource::read("argon")?;
+    let scenario = source.far_range("frame_speed")?;
+    let whole = FarRangeScenario { roi: None, ..scenario.clone() };
+    let field = star_field(scenario);
+    for (name, scenario) in [
+        ("field", &FarRangeScenario { roi: None, ..field.clone() }),
+        ("field-regions", &field),
+    ] {
+        works.push(frames(name.to_owned(), simulator(&source, scenario)?, 300)?);
+    }
+    let (regions, whole) = (simulator(&source, scenario)?, simulator(&source, &whole)?);
+    for (first, day) in DAYS {
+        let day = day.replace(' ', "-");
+        works.push(frames(format!("argon-{day}"), regions, first)?);
+        works.push(frames(format!("argon-{day}-whole"), whole, first)?);
+    }
+    let setup = Prepared::new(&source)?.setup();
+    works.push(detection_plain(scene, &setup)?);
+    works.push(detection("process-argon-regions", regions, &scenario.far_range, &setup)?);
+    works.push(detection("process-argon-whole", whole, &scenario.far_range, &setup)?);
+    Ok(works)
+}
+
+/// A simulator that lives as long as the program: its cameras borrow it.
+fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<&'static Simulator, Box<dyn Error>> {
+    Ok(Box::leak(Box::new(source.simulator(scenario)?)))
+}
+
+/// Stars to V = 7 and the target with the camera of `argon`, on a detector that is uneven and nothing more.
+fn star_field(argon: &FarRangeScenario) -> FarRangeScenario {
+    let mut field = argon.clone();
+    field.catalog.magnitude_limit = Some(7.0);
+    field.solar_system = Switch::Off;
+    field.shutter = ShutterConfig::Fixed { exposure_s: 0.25 };
+    field.background = BackgroundConfig::default();
+    field.sensor = SensorConfig {
+        background_e_per_s: 40.0,
+        hot_pixels: Default::default(),
+        blooming: None,
+        cosmic_rays: None,
+        fixed_pattern: FixedPatternConfig { ..argon.sensor.fixed_pattern.clone() },
+        ..argon.sensor.clone()
+    };
+    field
+}
+
+/// Plain frames from a list of stars.
+fn plain(name: &str, scene: &PlainScene) -> Result<Work, Box<dyn Error>> {
+    let mut painter = scene.painter()?;
+    let mut number = 0;
+    let step = move || {
+        number += 1;
+        black_box(painter.frame(number)?);
+        Ok(None)
+    };
+    Ok(Work { name: name.to_owned(), step: Box::new(step) })
+}
+
+/// Frames of a scenario with their truth and telemetry.
+fn frames(name: String, simulator: &'static Simulator, first: u64) -> Result<Work, Box<dyn Error>> {
+    let mut camera = simulator.camera()?;
+    let mut number = 0;
+    let step = move || {
+        number += 1;
+        black_box(camera.expose(first + number % FRAMES_OF_A_DAY)?);
+        Ok(None)
+    };
+    Ok(Work { name, step: Box::new(step) })
+}
+
+/// The pipeline on kept frames, one after the other.
+fn detecting(name: &str, mut pipeline: FarRange, kept: Vec<(Frame, Telemetry)>) -> Work {
+    let mut next = 0;
+    let step = move || {
+        let (frame, telemetry) = &kept[next % kept.len()];
+        next += 1;
+        Ok(Some(pipeline.process(frame, telemetry)))
+    };
+    Work { name: name.to_owned(), step: Box::new(step) }
+}
+
+/// The pipeline on whole plain frames: with no list of stars it finds clusters and their centres, and links them to those of the
+/// frame before.
+fn detection_plain(scene: &PlainScene, setup: &Setup) -> Result<Work, Box<dyn Error>> {
+    let mut painter = scene.painter()?;
+    let start = Epoch::from_gregorian_utc_at_midnight(2012, 4, 23);
+    let kept = (0..KEPT)
+        .map(|number| {
+            let dn = painter.frame(number)?.to_vec();
+            let telemetry = Telemetry {
+                time: start + 15.0 * number as f64 * Unit::Second,
+                exposure_s: 0.25,
+                body_from_icrs: Rotation::identity(),
+                velocity_km_s: None,
+            };
+            Ok((Frame::new(number, COLUMNS, ROWS, 12, dn, None)?, telemetry))
+        })
+        .collect::<Result<_, Box<dyn Error>>>()?;
+    let setup = Setup { stars: Vec::new(), ..setup.clone() };
+    Ok(detecting("process-plain", FarRange::new(FarRangeConfig::default(), &setup)?, kept))
+}
+
+/// The pipeline on frames of ARGON, with its list of stars.
+fn detection(
+    name: &str,
+    simulator: &'static Simulator,
+    config: &FarRangeConfig,
+    setup: &Setup,
+) -> Result<Work, Box<dyn Error>> {
+    let mut camera = simulator.camera()?;
+    let kept = (0..KEPT)
+        .map(|number| {
+            let exposure = camera.expose(5000 + number)?;
+            Ok((exposure.frame, exposure.telemetry))
+        })
+        .collect::<Result<_, Box<dyn Error>>>()?;
+    Ok(detecting(name, FarRange::new(config.clone(), setup)?, kept))
+}
