@@ -63,7 +63,10 @@ fn answer(request: &str, scene: &PlainScene, works: &mut [Work]) -> Result<Value
             out.flush()?;
             Ok(json!({ "file": file }))
         }
-        _ => Err(format!("{request:?} is no request: time WORK COUNT, write COUNT FILE or clusters WORK").into()),
+        _ => {
+            Err(format!("{request:?} is no request: time WORK COUNT, write COUNT FILE or clusters WORK")
+                .into())
+        }
     }
 }
 

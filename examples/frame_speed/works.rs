@@ -16,7 +16,8 @@ use sim::sensor::{FixedPatternConfig, SensorConfig, Switch};
 use crate::plain::{COLUMNS, PlainScene, ROWS};
 
 /// A frame of each day of ARGON, with what follows it.
-const DAYS: [(u64, &str); 5] = [(300, "day 1"), (1800, "day 2"), (5000, "day 3"), (9000, "day 4"), (14_000, "day 5")];
+const DAYS: [(u64, &str); 5] =
+    [(300, "day 1"), (1800, "day 2"), (5000, "day 3"), (9000, "day 4"), (14_000, "day 5")];
 /// Frames of a day that are made in turn.
 const FRAMES_OF_A_DAY: u64 = 200;
 /// Frames that are kept for detection.
@@ -56,10 +57,9 @@ pub(crate) fn works(scene: &PlainScene) -> Result<Vec<Work>, Box<dyn Error>> {
     let scenario = source.far_range("frame_speed")?;
     let whole = FarRangeScenario { roi: None, ..scenario.clone() };
     let field = star_field(scenario);
-    for (name, scenario) in [
-        ("field", &FarRangeScenario { roi: None, ..field.clone() }),
-        ("field-regions", &field),
-    ] {
+    for (name, scenario) in
+        [("field", &FarRangeScenario { roi: None, ..field.clone() }), ("field-regions", &field)]
+    {
         works.push(frames(name.to_owned(), simulator(&source, scenario)?, 300)?);
     }
     let (regions, whole) = (simulator(&source, scenario)?, simulator(&source, &whole)?);
@@ -76,7 +76,10 @@ pub(crate) fn works(scene: &PlainScene) -> Result<Vec<Work>, Box<dyn Error>> {
 }
 
 /// A simulator that lives as long as the program: its cameras borrow it.
-fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<&'static Simulator, Box<dyn Error>> {
+fn simulator(
+    source: &ScenarioSource,
+    scenario: &FarRangeScenario,
+) -> Result<&'static Simulator, Box<dyn Error>> {
     Ok(Box::leak(Box::new(source.simulator(scenario)?)))
 }
 
