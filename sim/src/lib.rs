@@ -3,6 +3,9 @@
 //! [`SimulatedCamera::expose`] makes one frame with its telemetry and its truth. Every random draw has an address
 //! (seed, case, frame, effect, place), so frame 7000 alone is the frame 7000 of the whole run.
 
+#[cfg(test)]
+extern crate self as boresight_sim;
+
 pub mod catalog;
 mod constants;
 pub mod docking;

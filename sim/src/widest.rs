@@ -25,7 +25,17 @@ pub(crate) fn widest<W: Work>(work: W) -> W::Output {
             self.0.run(simd)
         }
     }
-    pulp::Arch::new().dispatch(Widest(work))
+    arch().dispatch(Widest(work))
+}
+
+/// The widest registers that the machine has; in a test those that it asks for.
+#[inline(always)]
+pub(crate) fn arch() -> pulp::Arch {
+    #[cfg(test)]
+    if let Some(asked) = tests::asked() {
+        return asked;
+    }
+    pulp::Arch::new()
 }
 
 /// Eight numbers side by side, in as few registers as the machine needs for them: what the compiler makes of short loops by itself
@@ -125,53 +135,4 @@ impl<S: Simd> Eight<S> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// All operations, on numbers that round differently in another order.
-    struct All<'a>(&'a [[f64; LANES]; 3]);
-
-    impl Work for All<'_> {
-        type Output = Vec<u64>;
-        fn run<S: Simd>(self, simd: S) -> Vec<u64> {
-            let [a, b, c] = self.0.each_ref().map(|numbers| Eight::of(simd, numbers));
-            let narrow = self.0[0].map(|number| number as f32);
-            let eights = [
-                a.plus(b),
-                a.times(b).plus(c),
-                a.over(b),
-                a.or_larger(b),
-                b.or_none_below(c),
-                Eight::of_narrow(simd, &narrow),
-                Eight::splat(simd, 0.1),
-            ];
-            let folded = [a.plus(b).sum(), b.largest()];
-            eights.into_iter().flat_map(Eight::to_array).chain(folded).map(f64::to_bits).collect()
-        }
-    }
-
-    #[test]
-    fn eight_numbers_are_what_each_of_them_is_alone_on_any_registers() {
-        let numbers = [0, 1, 2].map(|k| {
-            std::array::from_fn(|i| libm::sin((8 * k + i) as f64) * libm::pow(10.0, (i % 3) as f64))
-        });
-        let [a, b, c] = numbers;
-        let each = |step: &dyn Fn(usize) -> f64| (0..LANES).map(step).collect::<Vec<f64>>();
-        let mut expected: Vec<f64> = [
-            each(&|i| a[i] + b[i]),
-            each(&|i| a[i] * b[i] + c[i]),
-            each(&|i| a[i] / b[i]),
-            each(&|i| a[i].max(b[i])),
-            each(&|i| if b[i] < c[i] { 0.0 } else { b[i] }),
-            each(&|i| f64::from(a[i] as f32)),
-            each(&|_| 0.1),
-        ]
-        .concat();
-        let s: Vec<f64> = each(&|i| a[i] + b[i]);
-        expected.push(((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])));
-        expected.push(b.into_iter().fold(0.0, f64::max));
-        let expected: Vec<u64> = expected.into_iter().map(f64::to_bits).collect();
-        assert_eq!(widest(All(&numbers)), expected);
-        assert_eq!(All(&numbers).run(pulp::Scalar::new()), expected);
-    }
-}
+pub(crate) mod tests;

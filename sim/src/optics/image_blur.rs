@@ -2,6 +2,8 @@
 
 use contract::docking::Lines;
 
+use crate::widest::arch;
+
 /// How far a kernel reaches, in its standard deviations: 6e-5 of a Gaussian's light lies beyond on one axis.
 const REACH_SIGMAS: f64 = 4.0;
 
@@ -11,7 +13,7 @@ const LANES: usize = 32;
 /// Puts the sum of `kernel[j] × padded[x + j]` over all j, in their order, into `out[x]`. `padded` is `kernel.len()` − 1 longer
 /// than `out`.
 pub(crate) fn correlate(padded: &[f32], kernel: &[f32], out: &mut [f32]) {
-    pulp::Arch::new().dispatch(WeightedSum { kernel, row: |j: usize| &padded[j..], out });
+    arch().dispatch(WeightedSum { kernel, row: |j: usize| &padded[j..], out });
 }
 
 /// Puts the sum of `kernel[j] × row(j)[x]` over all j, in their order, into `out[x]`. Rows may be longer than `out`.
@@ -104,7 +106,7 @@ impl ImageBlur {
             let y = lines.camera_row(k);
             let row = |j: usize| &image[(y + j).saturating_sub(reach).min(camera_rows - 1) * columns..];
             let (kernel, sums) = (&self.kernel, &mut self.column);
-            pulp::Arch::new().dispatch(WeightedSum { kernel, row, out: sums });
+            arch().dispatch(WeightedSum { kernel, row, out: sums });
             pad(&self.column, reach, reach, &mut self.padded);
             correlate(&self.padded, &self.kernel, out);
         }
@@ -114,6 +116,7 @@ impl ImageBlur {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::widest::tests::same_on_all_registers;
 
     fn blurred(sigma_px: f64, image: &[f32], columns: usize, lines: Lines) -> Vec<f32> {
         let mut kept = Vec::new();
@@ -125,11 +128,11 @@ mod tests {
     fn a_sum_is_the_same_bits_on_all_registers() {
         let values: Vec<f32> = (0..177_u32).map(|x| libm::sinf((x * x) as f32)).collect();
         let kernel = gaussian_kernel(2.3);
-        let (mut widest, mut single) = (vec![0.0; 150], vec![0.0; 150]);
-        correlate(&values, &kernel, &mut widest);
-        let sum = WeightedSum { kernel: &kernel, row: |j: usize| &values[j..], out: &mut single };
-        pulp::WithSimd::with_simd(sum, pulp::Scalar::new());
-        assert_eq!(widest, single);
+        same_on_all_registers(|| {
+            let mut out = vec![0.0; 150];
+            correlate(&values, &kernel, &mut out);
+            out.iter().map(|sum: &f32| sum.to_bits()).collect::<Vec<_>>()
+        });
     }
 
     #[test]

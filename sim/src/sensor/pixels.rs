@@ -241,19 +241,16 @@ mod tests {
         (0..40).for_each(|y| image.add_pixel(7 * y, y, libm::exp(0.3 * y as f64)));
         let charge = sensor.collect(&mut image, &opening(1.0));
         let streams = SEED.streams(3, crate::randomness::Effect::PixelNoise);
-        let draw = |widest: bool| {
+        let draw = |registers: pulp::Arch| {
             let (mut raw, mut laws) = (sensor.new_raw(), FlatLaws::new());
             let tables = laws.own_means(&sensor.law);
             let expected = charge.expected();
-            let frame = OwnMeansFrame { expected, streams: &streams, tables, raw: &mut raw };
-            if widest {
-                pulp::Arch::new().dispatch(frame);
-            } else {
-                pulp::WithSimd::with_simd(frame, pulp::Scalar::new());
-            }
+            registers.dispatch(OwnMeansFrame { expected, streams: &streams, tables, raw: &mut raw });
             raw.dn
         };
-        assert_eq!(draw(true), draw(false));
+        for registers in crate::widest::tests::registers() {
+            assert!(draw(registers) == draw(pulp::Arch::Scalar), "{registers:?}");
+        }
     }
 
     /// The pixels themselves are frozen: this must hold on every machine, and a change here changes every result of such

@@ -402,7 +402,7 @@ mod tests {
         let charge = sensor.collect(&mut image, &opening(1.0));
         let expected = charge.expected();
         let (words, again) = (SEED.streams(3, Effect::PixelNoise), SEED.streams(3, Effect::Exceedance));
-        let draw = |widest: bool| {
+        let draw = |registers: pulp::Arch| {
             let (mut image, mut laws) = (sensor.new_sparse(), FlatLaws::new());
             image.floor_dn = 65;
             let limit = laws.exceedance(&sensor.law, 65).dark_limit(22.0);
@@ -410,14 +410,12 @@ mod tests {
             (0..40).for_each(|y| image.want(y, |p| (y + p) % 2 == 0));
             let task =
                 Task { law: &sensor.law, expected, words: &words, again: &again, columns: 301, rows: 40 };
-            let pieces = OwnMeansPieces { task, tables: laws.own_means(&sensor.law), image: &mut image };
-            if widest {
-                pulp::Arch::new().dispatch(pieces);
-            } else {
-                pulp::WithSimd::with_simd(pieces, pulp::Scalar::new());
-            }
+            let tables = laws.own_means(&sensor.law);
+            registers.dispatch(OwnMeansPieces { task, tables, image: &mut image });
             image.raw.dn
         };
-        assert_eq!(draw(true), draw(false));
+        for registers in crate::widest::tests::registers() {
+            assert!(draw(registers) == draw(pulp::Arch::Scalar), "{registers:?}");
+        }
     }
 }

@@ -8,6 +8,7 @@ use crate::SimError;
 use crate::error::require;
 use crate::optics::pad;
 use crate::randomness::{Effect, Seed, normal};
+use crate::widest::arch;
 
 /// Pixels of margin on each side of a line, and the largest shift: eight times the largest standard deviation.
 const MARGIN: usize = 10;
@@ -70,7 +71,7 @@ fn shifted(padded: &[f32], shift_px: f64, out: &mut [f32]) {
     let n = out.len();
     let taps = [&padded[first..], &padded[first + 1..], &padded[first + 2..], &padded[first + 3..]]
         .map(|tap| &tap[..n]);
-    pulp::Arch::new().dispatch(Cubic { weights, taps, out });
+    arch().dispatch(Cubic { weights, taps, out });
 }
 
 /// Sums of four taps along a line.
@@ -100,6 +101,7 @@ impl pulp::WithSimd for Cubic<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::widest::tests::same_on_all_registers;
 
     #[test]
     fn a_line_is_shifted_to_the_right_by_its_shift() {
@@ -113,6 +115,16 @@ mod tests {
                 assert!((f64::from(*value) - 0.01 * (x as f64 - shift)).abs() < 1e-6, "{shift} {x}");
             }
         }
+    }
+
+    #[test]
+    fn a_shifted_line_is_the_same_bits_on_all_registers() {
+        let padded: Vec<f32> = (0..177_u32).map(|x| libm::sinf((x * x) as f32)).collect();
+        same_on_all_registers(|| {
+            let mut out = vec![0.0; 150];
+            shifted(&padded, -3.3, &mut out);
+            out.iter().map(|value: &f32| value.to_bits()).collect::<Vec<_>>()
+        });
     }
 
     #[test]

@@ -3,6 +3,8 @@
 use contract::Frame;
 use contract::docking::{Digitiser, Field, Lines};
 
+use crate::widest::arch;
+
 /// Bits of the frame grabber.
 pub const BIT_DEPTH: u8 = 8;
 
@@ -61,7 +63,7 @@ impl VideoField {
         let slope = full_scale * digitiser.contrast as f32;
         let offset = full_scale * digitiser.brightness as f32;
         let mut dn = vec![0; self.signal.len()];
-        pulp::Arch::new().dispatch(Digits { signal: &self.signal, slope, offset, full_scale, dn: &mut dn });
+        arch().dispatch(Digits { signal: &self.signal, slope, offset, full_scale, dn: &mut dn });
         Frame::new(self.number, self.columns, self.lines.rows(self.camera_rows), BIT_DEPTH, dn, None)
             .and_then(|image| Field::new(image, self.lines, self.camera_rows))
             .expect("the number of values was checked when the field was made")
@@ -105,10 +107,17 @@ fn whole_part(value: f32) -> u16 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::widest::tests::same_on_all_registers;
 
     fn digits(signal: &[f32], contrast: f64, brightness: f64) -> Vec<u16> {
         let video = VideoField::new(3, signal.len(), 1, Lines::All, signal.to_vec()).unwrap();
         video.digitise(&Digitiser { contrast, brightness }).image().dn().to_vec()
+    }
+
+    #[test]
+    fn digits_are_the_same_on_all_registers() {
+        let signal: Vec<f32> = (0..177_u32).map(|x| libm::sinf((x * x) as f32)).collect();
+        same_on_all_registers(|| digits(&signal, 0.9, 0.3));
     }
 
     #[test]

@@ -1,0 +1,121 @@
+use std::cell::Cell;
+use std::path::Path;
+
+use super::*;
+use crate::{Drawing, Simulation, Simulator};
+
+// The simulation of the integration tests, which names this crate as its users do.
+#[path = "../../tests/argon/mod.rs"]
+mod argon;
+
+thread_local! {
+    static ASKED: Cell<Option<pulp::Arch>> = const { Cell::new(None) };
+}
+
+/// The registers that the test on this thread asks for.
+pub(super) fn asked() -> Option<pulp::Arch> {
+    ASKED.get()
+}
+
+/// All registers that the machine has, the narrowest first.
+pub(crate) fn registers() -> Vec<pulp::Arch> {
+    let mut all = vec![pulp::Arch::Scalar];
+    #[cfg(target_arch = "x86_64")]
+    {
+        all.extend(pulp::x86::V3::try_new().map(pulp::Arch::V3));
+        all.extend(pulp::x86::V4::try_new().map(pulp::Arch::V4));
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    all.push(pulp::Arch::new());
+    all
+}
+
+/// Every bit of a frame, of its expected image, and of its truth and telemetry.
+type Bits = (Vec<u16>, Vec<u64>, String);
+
+/// Frames of the first, third and fifth day, as the camera looks at them and drawn all over.
+fn bits_of_frames(simulation: &Simulation) -> Vec<Bits> {
+    let simulator = Simulator::new(simulation, Path::new("")).unwrap();
+    let mut bits = Vec::new();
+    for drawing in [Drawing::Seen, Drawing::All] {
+        let mut camera = simulator.camera().unwrap().drawing(drawing);
+        for number in [300, 5000, 14_000] {
+            let exposure = camera.expose(number).unwrap();
+            let expected = camera.expected().iter().map(f64::to_bits).collect();
+            // Debug prints as many digits as tell a number from its neighbours, and the sign of 0.
+            let told = format!("{:?} {:?} {:?}", exposure.truth, exposure.telemetry, exposure.objects);
+            bits.push((exposure.frame.dn().to_vec(), expected, told));
+        }
+    }
+    bits
+}
+
+/// Asserts that work which asks for [`arch`] gives the same on all registers.
+pub(crate) fn same_on_all_registers<T: PartialEq>(work: impl Fn() -> T) {
+    let on = |registers: pulp::Arch| {
+        ASKED.set(Some(registers));
+        let result = work();
+        ASKED.set(None);
+        result
+    };
+    let narrowest = on(pulp::Arch::Scalar);
+    for registers in registers() {
+        assert!(on(registers) == narrowest, "{registers:?}");
+    }
+}
+
+/// The fast path is the slow path on wider registers. The sensor's own loops, which choose their registers themselves, have tests
+/// beside them.
+#[test]
+fn frames_are_the_same_bits_on_all_registers() {
+    let argon = argon::simulation();
+    for simulation in [Simulation { roi: None, ..argon.clone() }, argon] {
+        same_on_all_registers(|| bits_of_frames(&simulation));
+    }
+}
+
+/// All operations, on numbers that round differently in another order.
+struct All<'a>(&'a [[f64; LANES]; 3]);
+
+impl Work for All<'_> {
+    type Output = Vec<u64>;
+    fn run<S: Simd>(self, simd: S) -> Vec<u64> {
+        let [a, b, c] = self.0.each_ref().map(|numbers| Eight::of(simd, numbers));
+        let narrow = self.0[0].map(|number| number as f32);
+        let eights = [
+            a.plus(b),
+            a.times(b).plus(c),
+            a.over(b),
+            a.or_larger(b),
+            b.or_none_below(c),
+            Eight::of_narrow(simd, &narrow),
+            Eight::splat(simd, 0.1),
+        ];
+        let folded = [a.plus(b).sum(), b.largest()];
+        eights.into_iter().flat_map(Eight::to_array).chain(folded).map(f64::to_bits).collect()
+    }
+}
+
+#[test]
+fn eight_numbers_are_what_each_of_them_is_alone_on_any_registers() {
+    let numbers = [0, 1, 2]
+        .map(|k| std::array::from_fn(|i| libm::sin((8 * k + i) as f64) * libm::pow(10.0, (i % 3) as f64)));
+    let [a, b, c] = numbers;
+    let each = |step: &dyn Fn(usize) -> f64| (0..LANES).map(step).collect::<Vec<f64>>();
+    let mut expected: Vec<f64> = [
+        each(&|i| a[i] + b[i]),
+        each(&|i| a[i] * b[i] + c[i]),
+        each(&|i| a[i] / b[i]),
+        each(&|i| a[i].max(b[i])),
+        each(&|i| if b[i] < c[i] { 0.0 } else { b[i] }),
+        each(&|i| f64::from(a[i] as f32)),
+        each(&|_| 0.1),
+    ]
+    .concat();
+    let s: Vec<f64> = each(&|i| a[i] + b[i]);
+    expected.push(((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7])));
+    expected.push(b.into_iter().fold(0.0, f64::max));
+    let expected: Vec<u64> = expected.into_iter().map(f64::to_bits).collect();
+    assert_eq!(widest(All(&numbers)), expected);
+    assert_eq!(All(&numbers).run(pulp::Scalar::new()), expected);
+}
