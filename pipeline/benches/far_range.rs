@@ -1,29 +1,37 @@
-//! What the far-range pipeline costs on a whole frame of 752 × 580 pixels of noise with stars in it, and beside it the floor: one look
-//! at every pixel.
+//! What the far-range pipeline costs on whole frames of noise with stars in them, of several sizes and with few and many stars, and beside it
+//! the floor: one look at every pixel.
 //!
-//! `cargo bench -p boresight-pipeline --bench far_range`
+//! `cargo bench -p boresight-pipeline --bench far_range`; `docs/speed/benchmarks.py` makes tables and a chart of what it finds.
 #![allow(clippy::unwrap_used, reason = "a benchmark ends by panicking")]
 
+#[path = "../../benches/support/processor_time.rs"]
+mod processor_time;
+
+use std::cell::LazyCell;
 use std::hint::black_box;
+use std::time::Duration;
 
 use boresight_pipeline::far_range::{FarRange, FarRangeConfig};
 use contract::{Camera, Frame, Pipeline, Rotation, Setup, Telemetry};
-use criterion::Criterion;
+use criterion::{BenchmarkId, Criterion, Throughput};
 use hifitime::{Epoch, Unit};
+use processor_time::ProcessorTime;
 
-const COLUMNS: usize = 752;
-const ROWS: usize = 580;
+/// Sizes of frames in thousands of pixels, and their columns and rows; 436 is that of the scenario `argon`.
+const SIZES: [(usize, usize, usize); 5] =
+    [(250, 577, 433), ARGON, (1000, 1154, 866), (4000, 2309, 1732), (25_000, 5773, 4330)];
+const ARGON: (usize, usize, usize) = (436, 752, 580);
 
-fn setup() -> Setup {
+fn setup(columns: usize, rows: usize) -> Setup {
     Setup {
         camera: Camera {
-            columns: COLUMNS,
-            rows: ROWS,
+            columns,
+            rows,
             focal_length_mm: 20.187,
             pixel_width_um: 8.6,
             pixel_height_um: 8.3,
-            principal_x_px: 395.0,
-            principal_y_px: 288.0,
+            principal_x_px: columns as f64 / 2.0,
+            principal_y_px: rows as f64 / 2.0,
             radial: [0.0; 3],
             tangential: [0.0; 2],
         },
@@ -35,7 +43,7 @@ fn setup() -> Setup {
 }
 
 /// A level of 50 DN with the sum of four even numbers as noise, 2.6 DN, and stars of 3 × 3 pixels.
-fn frame(number: u64, stars: usize) -> Frame {
+fn frame(number: u64, columns: usize, rows: usize, stars: usize) -> Frame {
     // A step of a linear congruential generator (Knuth's MMIX); its high bits are good enough for a benchmark.
     let mut state = number;
     let mut next = || {
@@ -43,39 +51,67 @@ fn frame(number: u64, stars: usize) -> Frame {
         state >> 33
     };
     let mut dn: Vec<u16> =
-        (0..COLUMNS * ROWS).map(|_| 45 + (0..4).map(|_| (next() % 4) as u16).sum::<u16>()).collect();
+        (0..columns * rows).map(|_| 45 + (0..4).map(|_| (next() % 4) as u16).sum::<u16>()).collect();
     for star in 0..stars {
-        let (x, y) = (next() as usize % (COLUMNS - 2), next() as usize % (ROWS - 2));
+        let (x, y) = (next() as usize % (columns - 2), next() as usize % (rows - 2));
         for (i, share) in [1, 2, 1, 2, 4, 2, 1, 2, 1].into_iter().enumerate() {
-            dn[(y + i / 3) * COLUMNS + x + i % 3] += share * (20 + star as u16 % 200);
+            dn[(y + i / 3) * columns + x + i % 3] += share * (20 + star as u16 % 200);
         }
     }
-    Frame::new(number, COLUMNS, ROWS, 12, dn, None).unwrap()
+    Frame::new(number, columns, rows, 12, dn, None).unwrap()
+}
+
+/// The pipeline on a few frames in turn.
+fn process(
+    c: &mut Criterion<ProcessorTime>,
+    name: BenchmarkId,
+    (kilopixels, columns, rows): (usize, usize, usize),
+    stars: usize,
+) {
+    let start = Epoch::from_gregorian_utc_at_midnight(2012, 4, 23);
+    let frames =
+        LazyCell::new(|| (0..4).map(|number| frame(number, columns, rows, stars)).collect::<Vec<Frame>>());
+    let mut pipeline = FarRange::new(FarRangeConfig::default(), &setup(columns, rows)).unwrap();
+    let mut number = 0_u64;
+    let mut group = c.benchmark_group("pipeline");
+    group.throughput(Throughput::Elements(1000 * kilopixels as u64));
+    group.bench_function(name, |b| {
+        b.iter(|| {
+            number += 1;
+            let telemetry = Telemetry {
+                time: start + 15.0 * number as f64 * Unit::Second,
+                exposure_s: 0.25,
+                body_from_icrs: Rotation::identity(),
+                velocity_km_s: None,
+            };
+            pipeline.process(&frames[number as usize % frames.len()], &telemetry)
+        });
+    });
+    group.finish();
 }
 
 fn main() {
-    let mut criterion = Criterion::default().configure_from_args();
-    let start = Epoch::from_gregorian_utc_at_midnight(2012, 4, 23);
-    for stars in [0, 10, 40, 160] {
-        let frames: Vec<Frame> = (0..8).map(|number| frame(number, stars)).collect();
-        let mut pipeline = FarRange::new(FarRangeConfig::default(), &setup()).unwrap();
-        let mut number = 0_u64;
-        criterion.bench_function(&format!("process, {stars} stars"), |b| {
-            b.iter(|| {
-                number += 1;
-                let telemetry = Telemetry {
-                    time: start + 15.0 * number as f64 * Unit::Second,
-                    exposure_s: 0.25,
-                    body_from_icrs: Rotation::identity(),
-                    velocity_km_s: None,
-                };
-                pipeline.process(&frames[number as usize % frames.len()], &telemetry)
-            });
+    // A frame is always the same work: a second of it is enough.
+    let mut criterion = Criterion::default()
+        .with_measurement(ProcessorTime)
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1))
+        .configure_from_args();
+    for size in SIZES {
+        process(&mut criterion, BenchmarkId::new("size", size.0), size, 160);
+        let frame = LazyCell::new(|| frame(0, size.1, size.2, 0));
+        let mut group = criterion.benchmark_group("pipeline floor");
+        group.throughput(Throughput::Elements(1000 * size.0 as u64));
+        group.bench_function(BenchmarkId::new("largest pixel", size.0), |b| {
+            let frame = &*frame;
+            b.iter(|| black_box(frame).dn().iter().copied().fold(0, u16::max));
         });
+        group.finish();
     }
-    let frame = frame(0, 0);
-    criterion.bench_function("floor: the largest of all pixels", |b| {
-        b.iter(|| black_box(&frame).dn().iter().copied().fold(0, u16::max));
-    });
+    // More clusters than 500 are sorted, and the faintest left out.
+    for stars in [0, 10, 100, 1000, 10_000] {
+        process(&mut criterion, BenchmarkId::new("stars", stars), ARGON, stars);
+    }
     criterion.final_summary();
 }

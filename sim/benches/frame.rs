@@ -1,89 +1,190 @@
-//! What a frame costs: whole frames of the scenario `argon`, its stages, frames of other sizes and star counts, and beside them
-//! the floors, which no simulator gets under: filling the memory of an image, and its random numbers.
+//! What a frame costs: whole frames of the scenario `argon`, frames of other sizes and star counts, their stages, and beside them the floors,
+//! which no simulator gets under: filling the memory of an image, and its random numbers.
 //!
-//! `cargo bench -p boresight-sim --bench frame`
+//! `cargo bench -p boresight-sim --bench frame`; `docs/speed/benchmarks.py` makes tables and a chart of what it finds.
 #![allow(clippy::unwrap_used, reason = "a benchmark ends by panicking")]
 
 #[path = "../tests/argon/mod.rs"]
 mod argon;
+#[path = "../../benches/support/processor_time.rs"]
+mod processor_time;
 
 use std::cell::{LazyCell, RefCell};
 use std::hint::black_box;
 use std::path::Path;
+use std::time::Duration;
 
-use boresight_sim::Simulator;
+use boresight_sim::draw::ExpectedImage;
 use boresight_sim::optics::{Psf, PsfConfig, Stamp};
 use boresight_sim::randomness::{Effect, Seed};
-use boresight_sim::sensor::{FixedPatternConfig, FlatLaws, Opening, Sensor, SensorConfig};
+use boresight_sim::sensor::{
+    FixedPatternConfig, FlatLaws, LineNoiseConfig, Opening, RawImage, Sensor, SensorConfig,
+};
+use boresight_sim::{Drawing, Simulator};
 use contract::PixelPoint;
 use criterion::{BenchmarkId, Criterion, Throughput};
+use processor_time::ProcessorTime;
 use rand::Rng;
 
 const SEED: Seed = Seed { seed: 1, case: 0 };
+/// Sizes of frames in thousands of pixels; 436 is that of the scenario `argon`.
+const KILOPIXELS: [usize; 5] = [250, 436, 1000, 4000, 25_000];
+const OPENING: Opening = Opening { seed: SEED, middle_s: 0.0, exposure_s: 0.25 };
+/// Stars of the frames of all sizes.
+const STARS: u64 = 160;
 
-fn simulator() -> Simulator {
-    Simulator::new(&argon::simulation(), Path::new("")).unwrap()
+/// Detectors that are drawn in different ways.
+#[derive(Debug, Clone, Copy)]
+enum Detector {
+    /// Every pixel has the same mean.
+    Even,
+    /// Every pixel has a response and a dark current of its own.
+    Uneven,
+    /// Rows have offsets as well.
+    Rows,
 }
 
-/// A detector of so many pixels, 4 columns to 3 rows, whose every pixel has a mean of its own.
-fn uneven(pixels: usize) -> Sensor {
-    let rows = (pixels as f64 * 0.75).sqrt() as usize;
-    let table = argon::table();
-    let config: SensorConfig = argon::section(&table, "sensor");
-    let pattern =
-        FixedPatternConfig { prnu_fraction: 0.01, dsnu_fraction: 0.1, ..config.fixed_pattern.clone() };
-    Sensor::new(&SensorConfig { fixed_pattern: pattern, ..config }, pixels / rows, rows).unwrap()
+impl Detector {
+    const ALL: [(Self, &str); 3] =
+        [(Self::Even, "even"), (Self::Uneven, "uneven"), (Self::Rows, "row offsets")];
+
+    /// So many pixels, 4 columns to 3 rows.
+    fn sensor(self, kilopixels: usize) -> Sensor {
+        let pixels = kilopixels * 1000;
+        let rows = (pixels as f64 * 0.75).sqrt() as usize;
+        let argon: SensorConfig = argon::section(&argon::table(), "sensor");
+        let uneven =
+            FixedPatternConfig { prnu_fraction: 0.01, dsnu_fraction: 0.1, ..FixedPatternConfig::default() };
+        let config = SensorConfig {
+            fixed_pattern: match self {
+                Self::Even => FixedPatternConfig::default(),
+                Self::Uneven | Self::Rows => uneven,
+            },
+            line_noise: LineNoiseConfig {
+                row_e: if matches!(self, Self::Rows) { 3.0 } else { 0.0 },
+                column_e: 0.0,
+            },
+            background_e_per_s: 40.0,
+            hot_pixels: Default::default(),
+            blooming: None,
+            cosmic_rays: None,
+            ..argon
+        };
+        Sensor::new(&config, pixels / rows, rows).unwrap()
+    }
 }
 
-fn floors(c: &mut Criterion) {
+/// A camera without a sky: stars of 600 electrons, most stars' lot, anywhere.
+struct Camera {
+    sensor: Sensor,
+    psf: Psf,
+    stamp: Stamp,
+    image: ExpectedImage,
+    raw: RawImage,
+    laws: FlatLaws,
+    frame: u64,
+}
+
+impl Camera {
+    fn new(detector: Detector, kilopixels: usize) -> RefCell<Self> {
+        let sensor = detector.sensor(kilopixels);
+        let psf = PsfConfig::GaussianHalo { sigma_px: 0.8, halo_sigma_px: 4.0, halo_fraction: 0.0434 };
+        RefCell::new(Self {
+            psf: Psf::new(&psf).unwrap(),
+            stamp: Stamp::new(),
+            image: sensor.new_expected(),
+            raw: sensor.new_raw(),
+            laws: FlatLaws::new(),
+            frame: 0,
+            sensor,
+        })
+    }
+
+    fn draw(&mut self, stars: u64) {
+        self.image.clear(self.sensor.sky_electrons(OPENING.exposure_s));
+        let (columns, rows) = self.image.size();
+        let mut stream = SEED.stream(0, Effect::HotPixels, 0);
+        for _ in 0..stars {
+            let word = stream.next_u64();
+            let at = |word: u32, n: usize| f64::from(word) / 4_294_967_296.0 * n as f64;
+            let centre = PixelPoint::new(at(word as u32, columns), at((word >> 32) as u32, rows));
+            self.psf.stamp(centre, 600.0, Psf::FLOOR_E, (columns, rows), &mut self.stamp);
+            self.image.add(&self.stamp);
+        }
+    }
+
+    fn collect_and_read_out(&mut self) {
+        self.frame += 1;
+        let charge = self.sensor.collect(&mut self.image, &OPENING);
+        self.sensor.read_out(&charge, &SEED, self.frame, &mut self.laws, &mut self.raw).unwrap();
+    }
+}
+
+fn floors(c: &mut Criterion<ProcessorTime>) {
     let mut group = c.benchmark_group("floor");
-    let pixels = 752 * 580;
-    group.throughput(Throughput::Elements(pixels as u64));
-    let mut image = vec![0_u16; pixels];
-    group.bench_function("fill 752x580", |b| b.iter(|| black_box(&mut image).fill(black_box(7))));
-    group.bench_function("random words 752x580", |b| {
-        let mut stream = SEED.stream(0, Effect::PixelNoise, 0);
-        b.iter(|| (0..pixels).fold(0, |all, _| all ^ stream.next_u64()));
-    });
-    group.finish();
-}
-
-fn whole_frames(c: &mut Criterion) {
-    let simulator = simulator();
-    let mut camera = simulator.camera().unwrap();
-    let mut group = c.benchmark_group("argon");
-    for day_start in [0_u64, 1700, 5000, 9000, 14_000] {
-        group.bench_function(BenchmarkId::new("frames from", day_start), |b| {
-            let mut number = 0;
-            b.iter(|| {
-                number += 1;
-                camera.expose(day_start + number % 400).unwrap()
-            });
+    for kilopixels in KILOPIXELS {
+        let pixels = kilopixels * 1000;
+        group.throughput(Throughput::Elements(pixels as u64));
+        let image = LazyCell::new(|| RefCell::new(vec![0_u16; pixels]));
+        group.bench_function(BenchmarkId::new("memory filled", kilopixels), |b| {
+            let mut image = image.borrow_mut();
+            b.iter(|| black_box(&mut *image).fill(black_box(7)));
+        });
+        group.bench_function(BenchmarkId::new("random words one by one", kilopixels), |b| {
+            let mut stream = SEED.stream(0, Effect::PixelNoise, 0);
+            b.iter(|| (0..pixels).fold(0, |all, _| all ^ stream.next_u64()));
         });
     }
     group.finish();
 }
 
-/// Collecting and reading out without any star: mean image, noise, converter, blooming.
-fn readout(c: &mut Criterion) {
-    let mut group = c.benchmark_group("collect and read out");
-    for kilopixels in [250, 436, 1000, 4000, 25_000] {
-        // Made when it is asked for: only what is measured is prepared.
-        let detector = LazyCell::new(|| {
-            let sensor = uneven(kilopixels * 1000);
-            let buffers = RefCell::new((sensor.new_expected(), sensor.new_raw(), FlatLaws::new()));
-            (sensor, buffers)
+fn argon_frames(c: &mut Criterion<ProcessorTime>) {
+    let simulator = LazyCell::new(|| Simulator::new(&argon::simulation(), Path::new("")).unwrap());
+    let mut group = c.benchmark_group("argon");
+    for (drawing, name) in [(Drawing::Seen, "40 regions"), (Drawing::All, "all pixels drawn")] {
+        for day_start in [0_u64, 1700, 5000, 9000, 14_000] {
+            group.bench_function(BenchmarkId::new(name, day_start), |b| {
+                let mut camera = simulator.camera().unwrap().drawing(drawing);
+                let mut number = 0;
+                b.iter(|| {
+                    number += 1;
+                    camera.expose(day_start + number % 400).unwrap()
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+/// One frame's stages, each alone. The charge is collected anew for each image that is read out, but counts for nothing there.
+fn stages(c: &mut Criterion<ProcessorTime>) {
+    let mut group = c.benchmark_group("stage");
+    group.throughput(Throughput::Elements(436_000));
+    for (detector, name) in Detector::ALL {
+        let camera = LazyCell::new(|| Camera::new(detector, 436));
+        group.bench_function(BenchmarkId::new("images of 160 stars", name), |b| {
+            let mut camera = camera.borrow_mut();
+            b.iter(|| camera.draw(STARS));
         });
-        let opening = Opening { seed: SEED, middle_s: 0.0, exposure_s: 0.25 };
-        group.throughput(Throughput::Elements(kilopixels as u64 * 1000));
-        group.bench_function(BenchmarkId::from_parameter(format!("{kilopixels} kpx")), |b| {
-            let (sensor, buffers) = &*detector;
-            let (image, raw, laws) = &mut *buffers.borrow_mut();
+        group.bench_function(BenchmarkId::new("collecting", name), |b| {
+            let camera = &mut *camera.borrow_mut();
+            b.iter_custom(|times| {
+                let mut spent = Duration::ZERO;
+                for _ in 0..times {
+                    camera.draw(STARS);
+                    let start = std::time::Instant::now();
+                    black_box(camera.sensor.collect(&mut camera.image, &OPENING));
+                    spent += start.elapsed();
+                }
+                spent
+            });
+        });
+        group.bench_function(BenchmarkId::new("reading out", name), |b| {
+            let Camera { sensor, image, raw, laws, .. } = &mut *camera.borrow_mut();
+            let charge = sensor.collect(image, &OPENING);
             let mut number = 0;
             b.iter(|| {
                 number += 1;
-                image.clear(12.0);
-                let charge = sensor.collect(image, &opening);
                 sensor.read_out(&charge, &SEED, number, laws, raw).unwrap();
             });
         });
@@ -91,38 +192,53 @@ fn readout(c: &mut Criterion) {
     group.finish();
 }
 
-/// Images of stars of 200 electrons, most stars' lot, on a trail of no length.
-fn stars(c: &mut Criterion) {
-    let mut psf =
-        Psf::new(&PsfConfig::GaussianHalo { sigma_px: 0.8, halo_sigma_px: 4.0, halo_fraction: 0.0434 })
-            .unwrap();
-    let sensor = uneven(436_000);
-    let (mut image, mut stamp) = (sensor.new_expected(), Stamp::new());
-    let (columns, rows) = image.size();
-    let mut group = c.benchmark_group("stars");
-    for count in [10_u64, 160, 1000, 10_000, 100_000] {
-        group.throughput(Throughput::Elements(count));
-        group.bench_function(BenchmarkId::from_parameter(count), |b| {
-            b.iter(|| {
-                image.clear(0.0);
-                let mut stream = SEED.stream(0, Effect::HotPixels, 0);
-                for _ in 0..count {
-                    let word = stream.next_u64();
-                    let (u, v) = (word as u32, (word >> 32) as u32);
-                    let at = |u: u32, n: usize| f64::from(u) / 4_294_967_296.0 * n as f64;
-                    let centre = PixelPoint::new(at(u, columns), at(v, rows));
-                    psf.stamp(centre, 200.0, Psf::FLOOR_E, (columns, rows), &mut stamp);
-                    image.add(&stamp);
-                }
+/// Whole frames of all sizes: 160 stars, collecting, noise, converter.
+fn sizes(c: &mut Criterion<ProcessorTime>) {
+    let mut group = c.benchmark_group("size");
+    for (detector, name) in Detector::ALL {
+        for kilopixels in KILOPIXELS {
+            let camera = LazyCell::new(|| Camera::new(detector, kilopixels));
+            group.throughput(Throughput::Elements(kilopixels as u64 * 1000));
+            group.bench_function(BenchmarkId::new(name, kilopixels), |b| {
+                let mut camera = camera.borrow_mut();
+                b.iter(|| {
+                    camera.draw(STARS);
+                    camera.collect_and_read_out();
+                });
             });
-        });
+        }
+    }
+    group.finish();
+}
+
+/// Frames of a million pixels with few and with many stars.
+fn stars(c: &mut Criterion<ProcessorTime>) {
+    let mut group = c.benchmark_group("stars");
+    for (detector, name) in Detector::ALL {
+        let camera = LazyCell::new(|| Camera::new(detector, 1000));
+        for count in [10_u64, 100, 1000, 10_000, 100_000] {
+            group.throughput(Throughput::Elements(count));
+            group.bench_function(BenchmarkId::new(name, count), |b| {
+                let mut camera = camera.borrow_mut();
+                b.iter(|| {
+                    camera.draw(count);
+                    camera.collect_and_read_out();
+                });
+            });
+        }
     }
     group.finish();
 }
 
 fn main() {
-    let mut criterion = Criterion::default().configure_from_args();
-    for group in [floors, whole_frames, readout, stars] {
+    // A frame is always the same work: a second of it is enough.
+    let mut criterion = Criterion::default()
+        .with_measurement(ProcessorTime)
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1))
+        .configure_from_args();
+    for group in [floors, argon_frames, stages, sizes, stars] {
         group(&mut criterion);
     }
     criterion.final_summary();
