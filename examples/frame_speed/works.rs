@@ -11,7 +11,7 @@ use pipeline::far_range::{FarRange, FarRangeConfig};
 use sim::Simulator;
 use sim::onboard::ShutterConfig;
 use sim::scene::BackgroundConfig;
-use sim::sensor::{FixedPatternConfig, SensorConfig, Switch};
+use sim::sensor::{SensorConfig, Switch};
 
 use crate::plain::{COLUMNS, PlainScene, ROWS};
 
@@ -95,7 +95,6 @@ fn star_field(argon: &FarRangeScenario) -> FarRangeScenario {
         hot_pixels: Default::default(),
         blooming: None,
         cosmic_rays: None,
-        fixed_pattern: FixedPatternConfig { ..argon.sensor.fixed_pattern.clone() },
         ..argon.sensor.clone()
     };
     field
