@@ -39,7 +39,10 @@ impl PixelPoint {
 
     /// Euclidean distance, px.
     pub fn distance(self, other: Self) -> f64 {
-        libm::hypot(self.x - other.x, self.y - other.y)
+        {
+            let (dx, dy) = (self.x - other.x, self.y - other.y);
+            (dx * dx + dy * dy).sqrt()
+        }
     }
 
     /// Whether the point lies on a detector of `columns` × `rows` pixels, borders of the outer pixels included.

@@ -15,12 +15,15 @@ pub(super) struct Background {
 /// Estimates [`Background`]; owns the histogram, so that a frame allocates nothing.
 #[derive(Debug, Default)]
 pub(super) struct BackgroundEstimator {
-    counts: Vec<u32>,
+    counts: Vec<[u32; TABLES]>,
 }
 
-/// Rows are left out until about this many pixels remain: the median of 65536 pixels is known to 0.5 % of the
+/// Pixels side by side are counted in tables of their own: one after the other in the same bin each would wait for the one before.
+const TABLES: usize = 4;
+
+/// Rows are left out until about this many pixels remain: the median of 32768 pixels is known to 0.7 % of the
 /// noise, and the histogram of a whole frame would cost more than its detection.
-const SAMPLE_PIXELS: usize = 65_536;
+const SAMPLE_PIXELS: usize = 32_768;
 
 /// Fraction of a normal distribution below its mean minus one standard deviation.
 const BELOW_ONE_SIGMA: f64 = 0.158_655_253_931_457;
@@ -34,7 +37,7 @@ impl BackgroundEstimator {
     pub(super) fn estimate(&mut self, frame: &Frame) -> Option<Background> {
         let full_scale = frame.full_scale_dn();
         self.counts.clear();
-        self.counts.resize(usize::from(full_scale) + 1, 0);
+        self.counts.resize(usize::from(full_scale) + 1, [0; TABLES]);
         let whole = [Window { x: 0, y: 0, columns: frame.columns(), rows: frame.rows() }];
         let windows = frame.windows().unwrap_or(&whole);
         let transmitted: usize = windows.iter().map(|window| window.columns * window.rows).sum();
@@ -43,8 +46,11 @@ impl BackgroundEstimator {
             (window.y..window.y + window.rows).map(|y| &frame.row(y)[window.x..window.x + window.columns])
         });
         for row in rows.step_by(step) {
-            for &dn in row {
-                self.counts[usize::from(dn.min(full_scale))] += 1;
+            let (fours, rest) = row.as_chunks::<TABLES>();
+            for pixels in fours.iter().map(<[u16; TABLES]>::as_slice).chain([rest]) {
+                for (table, &dn) in pixels.iter().enumerate() {
+                    self.counts[usize::from(dn.min(full_scale))][table] += 1;
+                }
             }
         }
         let (_, median_dn) = self.quantile(0.5)?;
@@ -60,11 +66,12 @@ impl BackgroundEstimator {
 
     /// The bin that holds a quantile, and the quantile interpolated inside it (bin n covers n ± 0.5).
     fn quantile(&self, fraction: f64) -> Option<(usize, f64)> {
-        let total: u64 = self.counts.iter().map(|&count| u64::from(count)).sum();
-        let rank = fraction * total as f64;
+        let counts =
+            || self.counts.iter().map(|tables| tables.iter().map(|&count| u64::from(count)).sum::<u64>());
+        let rank = fraction * counts().sum::<u64>() as f64;
         let mut below = 0.0;
-        for (bin, &count) in self.counts.iter().enumerate().filter(|&(_, &count)| count > 0) {
-            let count = f64::from(count);
+        for (bin, count) in counts().enumerate().filter(|&(_, count)| count > 0) {
+            let count = count as f64;
             if below + count >= rank {
                 return Some((bin, bin as f64 - 0.5 + (rank - below) / count));
             }

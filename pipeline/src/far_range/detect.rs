@@ -56,37 +56,75 @@ pub(super) struct Detector {
     blobs: Vec<Blob>,
     /// Where the pixels of each cluster begin among the members.
     first_members: Vec<usize>,
-    transmitted: Transmitted,
+    peaks: Peaks,
 }
 
-/// The chunks of a frame that hold transmitted pixels.
+/// The largest digital number of each chunk of pixels of a frame; 0 where it holds none that was transmitted.
 #[derive(Debug, Default)]
-struct Transmitted {
-    /// Of each chunk, whether it does.
-    chunks: Vec<bool>,
+struct Peaks {
+    of_chunks: Vec<u16>,
+    /// Of each chunk, whether it holds transmitted pixels.
+    holds: Vec<bool>,
 }
 
-impl Transmitted {
-    /// Index of the first pixel of each chunk, and its pixels, in the order of the frame.
-    fn chunks<'a>(&'a mut self, frame: &'a Frame) -> impl Iterator<Item = (usize, &'a [u16])> {
-        self.chunks.clear();
-        self.chunks.resize(frame.dn().len().div_ceil(CHUNK), frame.windows().is_none());
+impl Peaks {
+    fn find(&mut self, frame: &Frame) {
+        let count = frame.dn().len().div_ceil(CHUNK);
+        self.of_chunks.clear();
+        self.of_chunks.resize(count, 0);
+        self.holds.clear();
+        self.holds.resize(count, frame.windows().is_none());
         for window in frame.windows().into_iter().flatten() {
             for y in window.y..window.y + window.rows {
                 let first = y * frame.columns() + window.x;
-                self.chunks[first / CHUNK..=(first + window.columns - 1) / CHUNK].fill(true);
+                self.holds[first / CHUNK..=(first + window.columns - 1) / CHUNK].fill(true);
             }
         }
-        let chunks = frame.dn().chunks(CHUNK).enumerate().zip(&self.chunks);
-        chunks.filter(|(_, holds)| **holds).map(|((i, chunk), _)| (i * CHUNK, chunk))
+        pulp::Arch::new().dispatch(FindPeaks { peaks: self, dn: frame.dn() });
+    }
+
+    /// Index of the first pixel of each chunk that has one of `dn` or more, and the chunk, in the order of the frame.
+    fn chunks_from<'a>(&'a self, dn: u16, frame: &'a Frame) -> impl Iterator<Item = (usize, &'a [u16])> {
+        let chunks = frame.dn().chunks(CHUNK).enumerate().zip(&self.of_chunks);
+        chunks.filter(move |(_, peak)| **peak >= dn).map(|((i, chunk), _)| (i * CHUNK, chunk))
     }
 }
 
-/// Pixels compared at once while looking for one above I2; a multiple of any vector's length.
-const CHUNK: usize = 64;
+/// The peaks of the chunks of an image, on the widest registers of the machine.
+struct FindPeaks<'a> {
+    peaks: &'a mut Peaks,
+    dn: &'a [u16],
+}
+
+impl pulp::WithSimd for FindPeaks<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Self { peaks: Peaks { of_chunks, holds }, dn } = self;
+        let (chunks, rest) = dn.as_chunks::<CHUNK>();
+        for ((peak, holds), chunk) in of_chunks.iter_mut().zip(&*holds).zip(chunks) {
+            if *holds {
+                *peak = chunk.iter().fold(0, |most, &dn| most.max(dn));
+            }
+        }
+        if let Some(last) = of_chunks.get_mut(chunks.len()) {
+            *last = rest.iter().copied().fold(0, u16::max);
+        }
+    }
+}
+
+/// Pixels compared at once while looking for one above I2; a multiple of any vector's length. Pixels of a chunk that has one are looked
+/// at one by one.
+const CHUNK: usize = 32;
 
 impl Detector {
-    /// The clusters of a frame, in the order of their first bright pixel row by row, and no more than
+    /// Looks over a frame, the next one of [`Detector::detect`].
+    pub(super) fn look(&mut self, frame: &Frame) {
+        self.peaks.find(frame);
+    }
+
+    /// The clusters of the frame that was looked over, in the order of their first bright pixel row by row, and no more than
     /// `max_clusters` of them: those of the largest weighted size are kept.
     ///
     /// Pixels outside the frame's windows are 0 and so never above a threshold.
@@ -106,12 +144,8 @@ impl Detector {
         }
         self.members.clear();
         self.marked.resize(frame.dn().len().div_ceil(64), 0);
-        let mut transmitted = std::mem::take(&mut self.transmitted);
-        for (first, chunk) in transmitted.chunks(frame) {
-            // A maximum over the whole chunk, without an early exit, compiles to vector instructions.
-            if chunk.iter().fold(0, |most, &dn| most.max(dn)) <= thresholds.high_dn {
-                continue;
-            }
+        let peaks = std::mem::take(&mut self.peaks);
+        for (first, chunk) in peaks.chunks_from(thresholds.high_dn.saturating_add(1), frame) {
             for (offset, &dn) in chunk.iter().enumerate() {
                 let index = first + offset;
                 if dn > thresholds.high_dn && !self.is_marked(index) {
@@ -124,7 +158,7 @@ impl Detector {
                 }
             }
         }
-        self.transmitted = transmitted;
+        self.peaks = peaks;
         if self.blobs.len() > max_clusters {
             let kept = largest(&self.blobs, max_clusters);
             self.first_members = kept.iter().map(|&i| self.first_members[i]).collect();
@@ -133,14 +167,11 @@ impl Detector {
         &self.blobs
     }
 
-    /// Number of pixels at full scale.
-    pub(super) fn saturated_pixels(&mut self, frame: &Frame) -> usize {
+    /// Number of pixels at full scale of the frame that was looked over.
+    pub(super) fn saturated_pixels(&self, frame: &Frame) -> usize {
         let full_scale = frame.full_scale_dn();
-        let chunks = self.transmitted.chunks(frame);
-        // Small counts of a chunk each, so that the loop stays in vectors of u16.
-        chunks
-            .map(|(_, chunk)| usize::from(chunk.iter().map(|&dn| u16::from(dn >= full_scale)).sum::<u16>()))
-            .sum()
+        let of_chunk = |chunk: &[u16]| chunk.iter().filter(|&&dn| dn >= full_scale).count();
+        self.peaks.chunks_from(full_scale, frame).map(|(_, chunk)| of_chunk(chunk)).sum()
     }
 
     /// The pixels of cluster `i` of the last frame, as indices into its image.
@@ -164,10 +195,11 @@ impl Detector {
         while let Some(&index) = self.members.get(next) {
             next += 1;
             let (x, y) = (index as usize % columns, index as usize / columns);
-            for ny in y.saturating_sub(1)..(y + 2).min(rows) {
-                for nx in x.saturating_sub(1)..(x + 2).min(columns) {
-                    let neighbour = ny * columns + nx;
-                    if dn[neighbour] > low_dn && !self.is_marked(neighbour) {
+            let (left, right) = (x.saturating_sub(1), (x + 2).min(columns));
+            for row in y.saturating_sub(1)..(y + 2).min(rows) {
+                let first = row * columns + left;
+                for (neighbour, &dn) in (first..).zip(&dn[first..row * columns + right]) {
+                    if dn > low_dn && !self.is_marked(neighbour) {
                         self.mark(neighbour);
                     }
                 }
@@ -247,7 +279,12 @@ mod tests {
     const THRESHOLDS: Thresholds = Thresholds { low_dn: 100, high_dn: 400 };
 
     fn detect(frame: &Frame) -> Vec<Blob> {
-        Detector::default().detect(frame, THRESHOLDS, 0.0, 100).to_vec()
+        detect_with(&mut Detector::default(), frame, 0.0, 100)
+    }
+
+    fn detect_with(detector: &mut Detector, frame: &Frame, base_dn: f64, max_clusters: usize) -> Vec<Blob> {
+        detector.look(frame);
+        detector.detect(frame, THRESHOLDS, base_dn, max_clusters).to_vec()
     }
 
     #[test]
@@ -296,24 +333,24 @@ mod tests {
     fn the_background_pulls_an_asymmetric_cluster_and_can_be_taken_off() {
         let frame = drawn(&["22222", "29222", "22222"]);
         let mut detector = Detector::default();
-        let printed = detector.detect(&frame, THRESHOLDS, 0.0, 100)[0];
-        let above = detector.detect(&frame, THRESHOLDS, 200.0, 100)[0];
+        let printed = detect_with(&mut detector, &frame, 0.0, 100)[0];
+        let above = detect_with(&mut detector, &frame, 200.0, 100)[0];
         assert!(printed.centre.x > 1.5);
         assert_eq!(above.centre, PixelPoint::new(1.0, 1.0));
     }
 
     #[test]
     fn a_cluster_below_its_background_is_dropped() {
-        assert_eq!(Detector::default().detect(&drawn(&["5"]), THRESHOLDS, 600.0, 100), []);
+        assert_eq!(detect_with(&mut Detector::default(), &drawn(&["5"]), 600.0, 100), []);
     }
 
     #[test]
     fn a_detector_forgets_the_last_frame() {
         let mut detector = Detector::default();
         let frame = drawn(&["5..", "...", "..#"]);
-        let first = detector.detect(&frame, THRESHOLDS, 0.0, 100).to_vec();
-        assert_eq!(detector.detect(&frame, THRESHOLDS, 0.0, 100), first);
-        assert_eq!(detector.detect(&drawn(&["5"]), THRESHOLDS, 0.0, 100).len(), 1);
+        let first = detect_with(&mut detector, &frame, 0.0, 100);
+        assert_eq!(detect_with(&mut detector, &frame, 0.0, 100), first);
+        assert_eq!(detect_with(&mut detector, &drawn(&["5"]), 0.0, 100).len(), 1);
     }
 
     #[test]
@@ -321,7 +358,7 @@ mod tests {
         let frame = drawn(&["5.9.7.8"]);
         let mut detector = Detector::default();
         let kept: Vec<f64> =
-            detector.detect(&frame, THRESHOLDS, 0.0, 2).iter().map(|blob| blob.centre.x).collect();
+            detect_with(&mut detector, &frame, 0.0, 2).iter().map(|blob| blob.centre.x).collect();
         assert_eq!(kept, [2.0, 6.0]);
     }
 
@@ -335,7 +372,9 @@ mod tests {
 
     #[test]
     fn saturated_pixels_are_counted() {
-        assert_eq!(Detector::default().saturated_pixels(&drawn(&["##.", "9.#"])), 3);
+        let (mut detector, frame) = (Detector::default(), drawn(&["##.", "9.#"]));
+        detector.look(&frame);
+        assert_eq!(detector.saturated_pixels(&frame), 3);
     }
 
     /// A frame with windows is looked at in their chunks alone: that is all that is not 0.
@@ -354,10 +393,11 @@ mod tests {
         let whole = Frame::new(0, 150, 40, 12, dn.clone(), None).unwrap();
         let windowed = Frame::new(0, 150, 40, 12, dn, Some(windows)).unwrap();
         let mut detector = Detector::default();
-        let blobs = detector.detect(&whole, THRESHOLDS, 0.0, 1000).to_vec();
-        assert!(blobs.len() > 10);
-        assert_eq!(detector.detect(&windowed, THRESHOLDS, 0.0, 1000), blobs);
-        assert_eq!(detector.saturated_pixels(&windowed), detector.saturated_pixels(&whole));
+        let blobs = detect_with(&mut detector, &whole, 0.0, 1000);
+        let saturated = detector.saturated_pixels(&whole);
+        assert!(blobs.len() > 10 && saturated > 0);
+        assert_eq!(detect_with(&mut detector, &windowed, 0.0, 1000), blobs);
+        assert_eq!(detector.saturated_pixels(&windowed), saturated);
     }
 
     proptest! {

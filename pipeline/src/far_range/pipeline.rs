@@ -86,6 +86,7 @@ impl FarRange {
 
     /// The clusters of a frame (section 2.1), or why there are none.
     fn detect(&mut self, frame: &Frame) -> Result<Vec<Blob>, NoSolution> {
+        self.detector.look(frame);
         if 2 * self.detector.saturated_pixels(frame) > transmitted_pixels(frame) {
             return Err(NoSolution::SaturatedFrame);
         }

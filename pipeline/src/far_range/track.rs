@@ -156,18 +156,22 @@ pub(super) fn link(
     expected: &[Option<PixelPoint>],
     config: &TrackingConfig,
 ) -> Vec<Option<usize>> {
+    // By columns of the image: most pairs are far apart, and are never met.
+    let mut places: Vec<(usize, PixelPoint)> =
+        expected.iter().enumerate().filter_map(|(column, place)| Some((column, (*place)?))).collect();
+    places.sort_unstable_by(|(_, a), (_, b)| a.x.total_cmp(&b.x));
     let mut pairs = Vec::new();
     for (row, blob) in blobs.iter().enumerate() {
-        for (column, (track, place)) in tracks.iter().zip(expected).enumerate() {
-            // A difference before the distance: most pairs are far apart.
-            let near = |place: &&PixelPoint| (place.x - blob.centre.x).abs() <= config.max_displacement_px;
-            if let Some(place) = place.as_ref().filter(near)
-                && let Some(cost) = similarity(*place, track.size, blob, config)
-            {
-                pairs.push(AllowedPair { row, column, cost });
-            }
-        }
+        let (left, right) =
+            (blob.centre.x - config.max_displacement_px, blob.centre.x + config.max_displacement_px);
+        let first = places.partition_point(|(_, place)| place.x < left);
+        let near = places[first..].iter().take_while(|(_, place)| place.x <= right);
+        pairs.extend(near.filter_map(|&(column, place)| {
+            let cost = similarity(place, tracks.get(column)?.size, blob, config)?;
+            Some(AllowedPair { row, column, cost })
+        }));
     }
+    pairs.sort_unstable_by_key(|pair| (pair.row, pair.column));
     assign(blobs.len(), tracks.len(), &pairs)
 }
 
