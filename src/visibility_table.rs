@@ -16,7 +16,11 @@ struct Sheet {
 /// The report as text; letters are set bold with terminal codes when `styled`. Ends with a line feed.
 pub fn visibility_table(report: &VisibilityReport, styled: bool) -> String {
     let mut text = format!("{}: {}\n{}\n", report.name, report.title, in_figures(report));
-    for sheet in sheets(report) {
+    for verdict in &report.requirements {
+        let [id, says, status, margin, evidence] = requirement(verdict);
+        text.push_str(&format!("\n{id}  {status}  (margin {margin})\n    {says}\n    {evidence}\n"));
+    }
+    for sheet in curves(report) {
         text.push_str(&format!("\n{}\n", sheet.title));
         let mut table = plain_table(styled);
         table.set_header(sheet.head);
@@ -34,7 +38,13 @@ pub fn visibility_table(report: &VisibilityReport, styled: bool) -> String {
 /// The report in Markdown.
 pub fn visibility_markdown(report: &VisibilityReport) -> String {
     let mut text = format!("# {}\n\n{}\n", report.title, in_figures(report));
-    for sheet in sheets(report) {
+    let requirements = Sheet {
+        title: "Requirements".to_owned(),
+        head: vec!["ID", "requirement", "", "margin", "evidence"],
+        rows: report.requirements.iter().map(|verdict| requirement(verdict).to_vec()).collect(),
+    };
+    let first = (!report.requirements.is_empty()).then_some(requirements);
+    for sheet in first.into_iter().chain(curves(report)) {
         text.push_str(&format!("\n## {}\n\n| {} |\n|", sheet.title, sheet.head.join(" | ")));
         text.push_str(&" --- |".repeat(sheet.head.len()));
         text.push('\n');
@@ -64,15 +74,8 @@ fn in_figures(report: &VisibilityReport) -> String {
     )
 }
 
-fn sheets(report: &VisibilityReport) -> Vec<Sheet> {
+fn curves(report: &VisibilityReport) -> Vec<Sheet> {
     let mut sheets = Vec::new();
-    if !report.requirements.is_empty() {
-        sheets.push(Sheet {
-            title: "Requirements".to_owned(),
-            head: vec!["ID", "requirement", "", "margin", "evidence"],
-            rows: report.requirements.iter().map(requirement).collect(),
-        });
-    }
     let asked = format!("{:.0} %", 100.0 * report.camera.probability);
     if !report.detection_simulated.is_empty() {
         let rows = report.detection_simulated.iter().map(|point| {
@@ -80,12 +83,17 @@ fn sheets(report: &VisibilityReport) -> Vec<Sheet> {
                 format!("{:.1}", point.magnitude),
                 percent(point.analytic),
                 format!("{} of {}", point.count, point.of),
-                format!("{} ({} to {})", percent(point.count as f64 / point.of as f64), percent(point.low), percent(point.high)),
+                format!(
+                    "{} ({} to {})",
+                    percent(point.count as f64 / point.of as f64),
+                    percent(point.low),
+                    percent(point.high)
+                ),
             ]
         });
         sheets.push(Sheet {
             title: "Detection of stars at the nominal exposure".to_owned(),
-            head: vec!["V ± 0.1", "analytic, %", "simulated", "% (95 %)"],
+            head: vec!["V ± 0.05", "analytic, %", "simulated", "% (95 %)"],
             rows: rows.collect(),
         });
     }
@@ -152,7 +160,8 @@ fn sheets(report: &VisibilityReport) -> Vec<Sheet> {
     sheets
 }
 
-fn requirement(verdict: &Verdict) -> Vec<String> {
+/// ID, text, status, margin, evidence.
+fn requirement(verdict: &Verdict) -> [String; 5] {
     let margin = verdict.margin.map_or("–".to_owned(), |margin| {
         let sign = if margin >= 0.0 { "+" } else { "" };
         format!("{sign}{} {}", digits(margin), verdict.margin_unit)
@@ -161,7 +170,7 @@ fn requirement(verdict: &Verdict) -> Vec<String> {
     if let Some(binds) = &verdict.binds {
         evidence.push_str(&format!("; {binds}"));
     }
-    vec![verdict.id.clone(), verdict.text.clone(), verdict.status.words().to_owned(), margin, evidence]
+    [verdict.id.clone(), verdict.text.clone(), verdict.status.words().to_owned(), margin, evidence]
 }
 
 fn remarks(report: &VisibilityReport) -> Vec<String> {
@@ -183,7 +192,10 @@ fn remarks(report: &VisibilityReport) -> Vec<String> {
     )];
     if let Some(lost) = &report.stars_lost {
         let nearer = |range: Option<f64>, what: &str| {
-            range.map_or_else(|| format!("at no range of the curve or at all {what}"), |km| format!("nearer than {} km {what}", digits(km)))
+            range.map_or_else(
+                || format!("at no range of the curve or at all {what}"),
+                |km| format!("nearer than {} km {what}", digits(km)),
+            )
         };
         lines.push(format!(
             "Fewer than {} stars remain: {}; {}.",

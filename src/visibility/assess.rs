@@ -1,7 +1,9 @@
 //! The verification of requirements: each by the analytic law, and by simulated frames.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+
 use super::binding::binding_of;
-use super::camera::CameraConfig;
 use super::confirm::{Bench, StarFrame};
 use super::curves;
 use super::definition::Requirements;
@@ -20,10 +22,14 @@ use crate::statistics::clopper_pearson;
 pub fn assess(requirements: &Requirements, progress: impl Fn(&str)) -> Result<VisibilityReport, Failure> {
     let file = &requirements.file;
     let pointings = file.sky.pointings as usize;
-    let design = Design::new(requirements, &requirements.camera, pointings, 0.0)?;
+    // One sky for all exposures that are looked at.
+    let finds = file.requirements.iter().filter_map(|requirement| requirement.find.as_ref());
+    let exposures = finds.filter(|find| find.parameter == Parameter::ExposureS).map(|find| find.to);
+    let longest_s = exposures.fold(file.exposure.max_s, f64::max);
+    let design = Design::new(requirements, &requirements.camera, pointings, longest_s)?;
     progress("the sky");
     let sky = curves::sky(requirements, &design)?;
-    let assessment = Assessment { requirements, design: &design };
+    let assessment = Assessment::new(requirements, &design);
     let mut verdicts = Vec::new();
     for requirement in &file.requirements {
         progress(&requirement.id);
@@ -34,7 +40,7 @@ pub fn assess(requirements: &Requirements, progress: impl Fn(&str)) -> Result<Vi
     }
     progress("curves");
     let detection = curves::detection(requirements, &design)?;
-    let frames = assessment.star_frames(&requirements.camera, file.exposure.nominal_s, file.n_min, Over::Sky)?;
+    let frames = assessment.star_frames(file.exposure.nominal_s)?;
     let (exposure_window, stars_lost) = curves::exposure_window(requirements, &design)?;
     Ok(VisibilityReport {
         name: requirements.name.clone(),
@@ -55,6 +61,8 @@ pub fn assess(requirements: &Requirements, progress: impl Fn(&str)) -> Result<Vi
 struct Assessment<'a> {
     requirements: &'a Requirements,
     design: &'a Design<'a>,
+    /// Frames over the sky that were made already, with their exposures.
+    frames: RefCell<Vec<(f64, Rc<Vec<StarFrame>>)>>,
 }
 
 /// How a simulated rate stands to the probability that is asked for, in words.
@@ -73,14 +81,18 @@ fn told(simulated: Option<&Simulated>) -> String {
     )
 }
 
-impl Assessment<'_> {
+impl<'a> Assessment<'a> {
+    fn new(requirements: &'a Requirements, design: &'a Design<'a>) -> Self {
+        Self { requirements, design, frames: RefCell::default() }
+    }
+
     /// Whether the camera as it is meets a requirement.
     fn as_it_is(&self, requirement: &Requirement) -> Result<Verdict, Failure> {
         let file = &self.requirements.file;
         let demand = &requirement.demand;
         let asked = demand.probability(file.probability);
         let reached = self.design.reached(demand, None)?;
-        let simulated = self.simulate(&self.requirements.camera, demand, &reached, None)?;
+        let simulated = self.simulate(demand, &reached, None)?;
         // Simulation may refute, within its confidence; where it agrees, the law decides.
         let refuted = simulated.is_some_and(|s| s.high < asked);
         let is_met = reached.probability >= asked && !refuted;
@@ -100,7 +112,11 @@ impl Assessment<'_> {
             reached: reached.probability,
             margin,
             margin_unit,
-            evidence: format!("{}; {}", self.reached_in_words(demand, &reached, asked), told(simulated.as_ref())),
+            evidence: format!(
+                "{}; {}",
+                self.reached_in_words(demand, &reached, asked),
+                told(simulated.as_ref())
+            ),
             simulated,
             found: None,
             binds,
@@ -127,7 +143,7 @@ impl Assessment<'_> {
             binds: None,
         };
         let FoundValue { value, threshold_value, failing_value, is_monotone } =
-            match search(self.requirements, demand, find)? {
+            match search(self.requirements, self.design, demand, find)? {
                 Search::Impossible { best_value, best_probability, binds } => {
                     return Ok(Verdict {
                         reached: best_probability,
@@ -182,7 +198,8 @@ impl Assessment<'_> {
             margin: own.map(|own| own - value),
             evidence,
             simulated,
-            binds: (!is_met).then(|| "simulation: fewer frames meet it than the analytic law says".to_owned()),
+            binds: (!is_met)
+                .then(|| "simulation: fewer frames meet it than the analytic law says".to_owned()),
             found: Some(Found {
                 parameter,
                 unit,
@@ -206,12 +223,16 @@ impl Assessment<'_> {
         parameter: Parameter,
         value: f64,
     ) -> Result<(Reached, Option<Simulated>), Failure> {
+        if parameter == Parameter::ExposureS && self.design.covers(value) {
+            let reached = self.design.reached(demand, Some(value))?;
+            let simulated = self.simulate(demand, &reached, Some(value))?;
+            return Ok((reached, simulated));
+        }
         let pointings = self.requirements.file.sky.pointings as usize;
         let (design, exposure_s) = design_with(self.requirements, parameter, value, pointings)?;
         let reached = design.reached(demand, exposure_s)?;
-        let camera = self.requirements.camera.with(parameter, value);
-        let at = Assessment { requirements: self.requirements, design: &design };
-        let simulated = at.simulate(&camera, demand, &reached, exposure_s)?;
+        let at = Assessment::new(self.requirements, &design);
+        let simulated = at.simulate(demand, &reached, exposure_s)?;
         Ok((reached, simulated))
     }
 
@@ -219,7 +240,6 @@ impl Assessment<'_> {
     /// of the sky's frames stand beside the detection curve.
     fn simulate(
         &self,
-        camera: &CameraConfig,
         demand: &Demand,
         reached: &Reached,
         exposure_s: Option<f64>,
@@ -233,10 +253,10 @@ impl Assessment<'_> {
         let count = match demand {
             Demand::LimitingMagnitude { .. } => return Ok(None),
             Demand::Stars { n_min, over, .. } => {
-                self.enough_stars(camera, exposure_s, n_min.unwrap_or(file.n_min), *over)?
+                self.enough_stars(exposure_s, n_min.unwrap_or(file.n_min), *over)?
             }
             Demand::ExposureWindow { n_min, .. } if reached.exposure_s >= file.exposure.min_s => {
-                self.enough_stars(camera, reached.exposure_s, n_min.unwrap_or(file.n_min), Over::Sky)?
+                self.enough_stars(reached.exposure_s, n_min.unwrap_or(file.n_min), Over::Sky)?
             }
             Demand::ExposureWindow { .. } => return Ok(None),
             Demand::TargetDetected { phase_max_deg, .. } => {
@@ -247,7 +267,7 @@ impl Assessment<'_> {
                 let (_, worst) = self.design.target_chance(&groups, range_km, exposure_s)?;
                 let Some(group) = groups.get(worst) else { return Ok(None) };
                 let scenario = self.requirements.scenario.as_ref();
-                Some(self.bench(camera).target(body, scenario, &group.aspects, range_km, exposure_s, frames)?)
+                Some(self.bench().target(body, scenario, &group.aspects, range_km, exposure_s, frames)?)
             }
         };
         let confidence = file.confirm.confidence;
@@ -259,51 +279,57 @@ impl Assessment<'_> {
     }
 
     /// How many frames have enough stars; `None` when no pointing counts.
-    fn enough_stars(
-        &self,
-        camera: &CameraConfig,
-        exposure_s: f64,
-        n_min: u32,
-        over: Over,
-    ) -> Result<Option<u64>, Failure> {
-        let frames = self.star_frames(camera, exposure_s, n_min, over)?;
-        if frames.is_empty() {
-            return Ok(None);
-        }
-        Ok(Some(frames.iter().filter(|frame| frame.detected >= n_min).count() as u64))
+    fn enough_stars(&self, exposure_s: f64, n_min: u32, over: Over) -> Result<Option<u64>, Failure> {
+        let frames = match over {
+            Over::Sky => self.star_frames(exposure_s)?,
+            Over::EveryPointing => Rc::new(self.frames_of_the_worst(exposure_s, n_min)?),
+        };
+        let enough = frames.iter().filter(|frame| frame.detected >= n_min).count() as u64;
+        Ok((!frames.is_empty()).then_some(enough))
     }
 
-    /// Frames of stars at pointings that count: spread over the sky, or all at the worst one.
-    fn star_frames(
-        &self,
-        camera: &CameraConfig,
-        exposure_s: f64,
-        n_min: u32,
-        over: Over,
-    ) -> Result<Vec<StarFrame>, Failure> {
+    /// Frames of stars at pointings that count, spread over the sky.
+    fn star_frames(&self, exposure_s: f64) -> Result<Rc<Vec<StarFrame>>, Failure> {
+        if let Some((_, known)) = self.frames.borrow().iter().find(|(known, _)| *known == exposure_s) {
+            return Ok(Rc::clone(known));
+        }
         let count = self.requirements.file.confirm.frames as usize;
         let counted: Vec<&Pointing> = self.design.sky()?.counted().map(|field| &field.pointing).collect();
-        if count == 0 || counted.is_empty() {
-            return Ok(Vec::new());
-        }
-        let pointings: Vec<Pointing> = match over {
-            Over::Sky => (0..count).map(|k| counted[(2 * k + 1) * counted.len() / (2 * count)].clone()).collect(),
-            Over::EveryPointing => {
-                let seen = self.design.stars(exposure_s, n_min)?;
-                let least = seen.iter().enumerate().min_by(|a, b| a.1.chance.total_cmp(&b.1.chance));
-                vec![counted[least.map_or(0, |(index, _)| index)].clone(); count]
-            }
-        };
-        self.bench(camera).stars(&pointings, exposure_s, n_min as usize)
+        let places = if counted.is_empty() { 0..0 } else { 0..count };
+        let pointings: Vec<Pointing> =
+            places.map(|k| counted[(2 * k + 1) * counted.len() / (2 * count)].clone()).collect();
+        let frames = Rc::new(self.bench().stars(&pointings, exposure_s)?);
+        self.frames.borrow_mut().push((exposure_s, Rc::clone(&frames)));
+        Ok(frames)
     }
 
-    fn bench<'b>(&'b self, camera: &'b CameraConfig) -> Bench<'b> {
+    /// Frames of stars, all at the pointing with the least chance of enough of them.
+    fn frames_of_the_worst(&self, exposure_s: f64, n_min: u32) -> Result<Vec<StarFrame>, Failure> {
+        let seen = self.design.stars(exposure_s, n_min)?;
+        let counted = self.design.sky()?.counted().zip(&seen);
+        let worst = counted.min_by(|(_, a), (_, b)| a.chance.total_cmp(&b.chance));
+        let Some((field, _)) = worst else { return Ok(Vec::new()) };
+        let pointings = vec![field.pointing.clone(); self.requirements.file.confirm.frames as usize];
+        self.bench().stars(&pointings, exposure_s)
+    }
+
+    fn bench(&self) -> Bench<'_> {
         let file = &self.requirements.file;
-        Bench { camera, rule: &file.detection, motion: &file.motion, seed: file.seed }
+        Bench {
+            camera: &self.design.camera.config,
+            rule: &file.detection,
+            motion: &file.motion,
+            seed: file.seed,
+        }
     }
 
     /// The room of a camera as it is: in magnitudes, in kilometres, in exposures, or as a probability.
-    fn margin(&self, demand: &Demand, reached: &Reached, asked: f64) -> Result<(Option<f64>, &'static str), Failure> {
+    fn margin(
+        &self,
+        demand: &Demand,
+        reached: &Reached,
+        asked: f64,
+    ) -> Result<(Option<f64>, &'static str), Failure> {
         Ok(match demand {
             Demand::Stars { .. } => (Some(100.0 * (reached.probability - asked)), "%"),
             Demand::LimitingMagnitude { magnitude, .. } => {

@@ -40,14 +40,19 @@ pub fn binding_of(
     if let Demand::ExposureWindow { n_min, .. } = demand {
         let n_min = n_min.unwrap_or(file.n_min);
         if design.stars_chance(file.exposure.max_s, n_min, Over::Sky)? >= asked {
-            return Ok("saturation: the exposure that leaves the target not over-exposed is too short for the stars".to_owned());
+            return Ok(
+                "saturation: the exposure that leaves the target not over-exposed is too short for the stars"
+                    .to_owned(),
+            );
         }
     }
     let threshold_dn = design.rule.thresholds(&design.camera, 0.0).high_dn;
     let sensor = &design.camera.config.sensor;
     let full_dn = sensor.bias_dn + sensor.full_well_e / sensor.gain_e_per_dn;
     if threshold_dn >= full_dn.min(f64::from(sensor.full_scale_dn())) {
-        return Ok(format!("saturation: a full pixel, {full_dn:.0} DN, is not above the threshold, {threshold_dn:.0} DN"));
+        return Ok(format!(
+            "saturation: a full pixel, {full_dn:.0} DN, is not above the threshold, {threshold_dn:.0} DN"
+        ));
     }
     if again()?.without_smear().reached(demand, exposure_s)?.probability >= asked {
         return Ok("smear: the motion during the exposure spreads the light over too many pixels".to_owned());

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use contract::{Camera, PixelPoint};
+use sim::SimError;
 use sim::catalog::CatalogConfig;
 use sim::optics::{
     ImagePoint, OpticsConfig, Projection, Psf, PsfConfig, Radiometry, RadiometryConfig, Vignetting, trail,
@@ -11,7 +12,6 @@ use sim::optics::{
 use sim::scene::{Background, BackgroundConfig};
 use sim::sensor::{Sensor, SensorConfig};
 use sim::truth::EARTH_GM_KM3_S2;
-use sim::SimError;
 
 use super::pixel::PixelThreshold;
 use super::requirement::{MotionTable, Parameter};

@@ -17,7 +17,6 @@ use sim::truth::{
 use sim::{Simulation, Simulator};
 
 use super::camera::{CameraConfig, CameraModel, mean_motion_rad_s};
-use super::poisson_binomial::at_least;
 use super::requirement::{DetectionRule, MotionGuidance, MotionTable};
 use super::sky::Pointing;
 use super::star_count::{Curves, star_trail_px};
@@ -61,9 +60,7 @@ pub struct StarTrial {
 pub struct StarFrame {
     /// Stars that the detector found.
     pub detected: u32,
-    /// P(N ≥ n_min) by the analytic law of the very stars in the frame.
-    pub chance: f64,
-    /// Those stars.
+    /// All stars on the detector.
     pub stars: Vec<StarTrial>,
 }
 
@@ -72,12 +69,7 @@ impl Bench<'_> {
     ///
     /// # Errors
     /// A [`Failure`] when the simulation cannot be made.
-    pub fn stars(
-        &self,
-        pointings: &[Pointing],
-        exposure_s: f64,
-        n_min: usize,
-    ) -> Result<Vec<StarFrame>, Failure> {
+    pub fn stars(&self, pointings: &[Pointing], exposure_s: f64) -> Result<Vec<StarFrame>, Failure> {
         let model = CameraModel::new(self.camera)?;
         let mut background = [f64::INFINITY, 0.0_f64];
         for pointing in pointings {
@@ -86,7 +78,8 @@ impl Bench<'_> {
         }
         let curves = Curves::new(&model, self.rule, self.motion, exposure_s, background);
         let match_px = MATCH_PX + 0.5 * star_trail_px(&model, self.motion, exposure_s);
-        let flights = pointings.iter().enumerate().map(|(k, pointing)| self.towards(pointing, exposure_s, k as u64));
+        let flights =
+            pointings.iter().enumerate().map(|(k, pointing)| self.towards(pointing, exposure_s, k as u64));
         let flights = flights.collect::<Result<Vec<_>, Failure>>()?;
         self.expose(&flights, |seen| {
             let mut stars: Vec<&ObjectTruth> =
@@ -103,11 +96,7 @@ impl Bench<'_> {
                     is_detected,
                 })
                 .collect();
-            StarFrame {
-                detected: stars.iter().filter(|star| star.is_detected).count() as u32,
-                chance: at_least(n_min, stars.iter().map(|star| star.chance), &mut Vec::new()),
-                stars,
-            }
+            StarFrame { detected: stars.iter().filter(|star| star.is_detected).count() as u32, stars }
         })
     }
 
@@ -149,7 +138,8 @@ impl Bench<'_> {
         flights: &[Simulation],
         look: impl Fn(&Seen<'_>) -> T + Sync,
     ) -> Result<Vec<T>, Failure> {
-        let factory = FarRangeFactory::new(self.pipeline()).map_err(|error| Failure::Usage(error.to_string()))?;
+        let factory =
+            FarRangeFactory::new(self.pipeline()).map_err(|error| Failure::Usage(error.to_string()))?;
         let setup = Setup {
             camera: self.camera.camera.clone(),
             camera_from_body: Rotation::<CameraFrame, Body>::identity(),
@@ -338,8 +328,9 @@ fn circular(
     let a_km = motion.semi_major_axis_km;
     let velocity_km_s = transverse * (mean_motion_rad_s(a_km) * a_km);
     let elements = Elements::from_state(&State { position_km: radial * a_km, velocity_km_s });
-    let elements = elements
-        .ok_or_else(|| Failure::Usage("a simulated orbit lies in the equator, expected another seed".to_owned()))?;
+    let elements = elements.ok_or_else(|| {
+        Failure::Usage("a simulated orbit lies in the equator, expected another seed".to_owned())
+    })?;
     Ok(ElementsConfig {
         semi_major_axis_km: elements.semi_major_axis_km,
         eccentricity: elements.eccentricity.max(0.0),

@@ -19,7 +19,7 @@ const POINTS: usize = 25;
 /// Worst pointings that are named.
 const WORST: usize = 10;
 /// Half the width of the magnitudes of a simulated point.
-const HALF_WIDTH_MAG: f64 = 0.1;
+const HALF_WIDTH_MAG: f64 = 0.05;
 /// Ranges between which the greatest range is looked for, km.
 const RANGES_KM: [f64; 2] = [0.01, 1e6];
 /// Width of the bins of phase angle along an orbit, degrees.
@@ -29,7 +29,10 @@ const PHASE_BIN_DEG: f64 = 15.0;
 ///
 /// # Errors
 /// As [`Design::sky`].
-pub(super) fn camera_figures(requirements: &Requirements, design: &Design<'_>) -> Result<CameraFigures, SimError> {
+pub(super) fn camera_figures(
+    requirements: &Requirements,
+    design: &Design<'_>,
+) -> Result<CameraFigures, SimError> {
     let file = &requirements.file;
     let (camera, nominal_s) = (&design.camera, file.exposure.nominal_s);
     let light_e_per_s = design.background_e_per_s()?;
@@ -51,7 +54,10 @@ pub(super) fn camera_figures(requirements: &Requirements, design: &Design<'_>) -
 ///
 /// # Errors
 /// As [`Design::sky`].
-pub(super) fn detection(requirements: &Requirements, design: &Design<'_>) -> Result<Vec<DetectionPoint>, SimError> {
+pub(super) fn detection(
+    requirements: &Requirements,
+    design: &Design<'_>,
+) -> Result<Vec<DetectionPoint>, SimError> {
     let exposure_s = requirements.file.exposure.nominal_s;
     let curve = design.curve(exposure_s)?;
     let Some(half) = design.limiting_magnitude(exposure_s, 0.5)? else { return Ok(Vec::new()) };
@@ -66,7 +72,7 @@ pub(super) fn detection(requirements: &Requirements, design: &Design<'_>) -> Res
 
 /// What simulated frames say about the curve: stars by magnitude, where between 3 and 97 % of them should be detected.
 pub(super) fn detection_simulated(frames: &[StarFrame], curve: &[DetectionPoint]) -> Vec<SimulatedPoint> {
-    let marked = curve.iter().filter(|point| (0.03..=0.97).contains(&point.probability)).step_by(2);
+    let marked = curve.iter().filter(|point| (0.03..=0.97).contains(&point.probability));
     let points = marked.filter_map(|point| {
         let near = |magnitude: f64| (magnitude - point.magnitude).abs() < HALF_WIDTH_MAG;
         let (mut count, mut of, mut chances) = (0_u64, 0_u64, 0.0);
@@ -95,10 +101,11 @@ pub(super) fn limiting_magnitude(
     for exposure_s in between(file.exposure.min_s, file.exposure.max_s, POINTS) {
         let seen = design.stars(exposure_s, file.n_min)?;
         let n = seen.len().max(1) as f64;
+        let curve = design.curve(exposure_s)?;
         points.push(LimitPoint {
             exposure_s,
-            half: design.limiting_magnitude(exposure_s, 0.5)?,
-            asked: design.limiting_magnitude(exposure_s, file.probability)?,
+            half: design.limit_of(&curve, exposure_s, 0.5),
+            asked: design.limit_of(&curve, exposure_s, file.probability),
             stars: seen.iter().map(|seen| seen.expected).sum::<f64>() / n,
             probability: seen.iter().map(|seen| seen.chance).sum::<f64>() / n,
         });
@@ -295,7 +302,8 @@ pub(super) fn greatest_range_km(
     exposure_s: f64,
     probability: f64,
 ) -> Result<Option<f64>, SimError> {
-    let shows = |range_km| Ok::<bool, SimError>(design.target_chance(groups, range_km, exposure_s)?.0 >= probability);
+    let shows =
+        |range_km| Ok::<bool, SimError>(design.target_chance(groups, range_km, exposure_s)?.0 >= probability);
     // From far to near, so that a resolved body, whose light is spread, does not end the search.
     let ranges: Vec<f64> = between(RANGES_KM[1], RANGES_KM[0], 17).collect();
     let mut beyond = None;

@@ -85,7 +85,8 @@ impl Requirements {
         let file: RequirementFile = toml_file::parse(path, text)?;
         file.check().map_err(|(at, message)| source.refuse(&at, message))?;
         if let SkyTime::Epoch { utc } = &file.sky.when {
-            sim::truth::clock::parse_utc(utc).map_err(|error| source.refuse("sky.when.utc", error.to_string()))?;
+            sim::truth::clock::parse_utc(utc)
+                .map_err(|error| source.refuse("sky.when.utc", error.to_string()))?;
         }
         let scenario = file.camera.scenario.as_ref().map(|word| source.scenario(word, folder)).transpose()?;
         let camera = source.camera(&file.camera, scenario.as_ref(), folder)?;
@@ -97,14 +98,20 @@ impl Requirements {
                 return Err(source.refuse("detection.high_dn", message));
             }
             if low_dn > high_dn {
-                return Err(source.refuse("detection.low_dn", format!("is {low_dn}, expected detection.high_dn or less")));
+                return Err(source
+                    .refuse("detection.low_dn", format!("is {low_dn}, expected detection.high_dn or less")));
             }
         }
         let target = match &file.target {
             None => None,
-            Some(table) => Some(table.body.clone().or(scenario.as_ref().map(|s| s.target.clone())).ok_or_else(|| {
-                source.refuse("target", "has no `body`, expected one, as there is no scenario to take it from".to_owned())
-            })?),
+            Some(table) => {
+                Some(table.body.clone().or(scenario.as_ref().map(|s| s.target.clone())).ok_or_else(|| {
+                    source.refuse(
+                        "target",
+                        "has no `body`, expected one, as there is no scenario to take it from".to_owned(),
+                    )
+                })?)
+            }
         };
         if let Some(body) = &target {
             body.check().map_err(|error| source.explain(error))?;
@@ -179,7 +186,11 @@ impl Source<'_> {
             psf,
             optics: table.optics.clone().or(scenario.map(|s| s.optics.clone())).unwrap_or_default(),
             radiometry: radiometry.ok_or_else(|| needed("radiometry"))?,
-            background: table.background.clone().or(scenario.map(|s| s.background.clone())).unwrap_or_default(),
+            background: table
+                .background
+                .clone()
+                .or(scenario.map(|s| s.background.clone()))
+                .unwrap_or_default(),
             catalog: scenario.map(|s| s.catalog.clone()).unwrap_or_default(),
         };
         if let (PsfConfig::Sampled { path, .. }, true) = (&mut config.psf, table.psf.is_some()) {
@@ -190,7 +201,9 @@ impl Source<'_> {
         }
         if let Some(diameter_mm) = table.aperture_diameter_mm {
             match &mut config.radiometry {
-                RadiometryConfig::Spectral { aperture_diameter_mm, .. } => *aperture_diameter_mm = diameter_mm,
+                RadiometryConfig::Spectral { aperture_diameter_mm, .. } => {
+                    *aperture_diameter_mm = diameter_mm
+                }
                 RadiometryConfig::ZeroPoint { .. } => {
                     let message = "is given, expected with a spectral radiometry alone".to_owned();
                     return Err(self.refuse("camera.aperture_diameter_mm", message));

@@ -33,6 +33,7 @@ pub struct Design<'a> {
     pointings: usize,
     longest_s: f64,
     sky: OnceCell<Sky>,
+    background_e_per_s: OnceCell<f64>,
 }
 
 /// What a design reaches of a demand.
@@ -82,7 +83,26 @@ impl<'a> Design<'a> {
             pointings,
             longest_s: longest_s.max(file.exposure.max_s),
             sky: OnceCell::new(),
+            background_e_per_s: OnceCell::new(),
         })
+    }
+
+    /// The same, seen from about `count` of its boresights, evenly spread: every so many of a Fibonacci lattice are one themselves.
+    ///
+    /// # Errors
+    /// As [`Design::new`].
+    pub fn thinned(&self, count: usize) -> Result<Self, Failure> {
+        let thin = Self::new(self.requirements, &self.camera.config, self.pointings, self.longest_s)?;
+        let step = self.pointings.div_ceil(count.max(1));
+        let fields = self.sky()?.fields.iter().step_by(step).cloned().collect();
+        // Nobody has looked at the new design's sky yet.
+        let _ = thin.sky.set(Sky { fields });
+        Ok(thin)
+    }
+
+    /// Whether an exposure is among those that its sky was made for.
+    pub fn covers(&self, exposure_s: f64) -> bool {
+        exposure_s <= self.longest_s
     }
 
     /// The same with nothing smeared: neither stars nor target move in the image of a camera on an endlessly wide orbit.
@@ -123,9 +143,12 @@ impl<'a> Design<'a> {
     /// # Errors
     /// As [`Design::sky`].
     pub fn background_e_per_s(&self) -> Result<f64, SimError> {
+        if let Some(known) = self.background_e_per_s.get() {
+            return Ok(*known);
+        }
         let mut all: Vec<f64> = self.sky()?.counted().map(|field| field.background_e_per_s).collect();
         all.sort_by(f64::total_cmp);
-        Ok(all.get(all.len() / 2).copied().unwrap_or(0.0))
+        Ok(*self.background_e_per_s.get_or_init(|| all.get(all.len() / 2).copied().unwrap_or(0.0)))
     }
 
     /// What is detected of the stars at every boresight that counts.
@@ -161,9 +184,14 @@ impl<'a> Design<'a> {
     /// # Errors
     /// As [`Design::sky`].
     pub fn limiting_magnitude(&self, exposure_s: f64, probability: f64) -> Result<Option<f64>, SimError> {
-        let electrons = self.curve(exposure_s)?.electrons_for(probability);
+        Ok(self.limit_of(&self.curve(exposure_s)?, exposure_s, probability))
+    }
+
+    /// [`Design::limiting_magnitude`] of a curve that is there already.
+    pub fn limit_of(&self, curve: &DetectionCurve, exposure_s: f64, probability: f64) -> Option<f64> {
         let of_zero_e = self.camera.radiometry.star(0.0, None, None) * exposure_s;
-        Ok(electrons.map(|electrons| -2.5 * libm::log10(electrons / of_zero_e)))
+        let electrons = curve.electrons_for(probability);
+        electrons.map(|electrons| -2.5 * libm::log10(electrons / of_zero_e))
     }
 
     /// The target, where there is one.
@@ -259,14 +287,16 @@ impl<'a> Design<'a> {
             Demand::ExposureWindow { from_km, to_km, phase_max_deg, n_min, probability } => {
                 let groups = self.groups(*phase_max_deg);
                 let asked = probability.unwrap_or(file.probability);
-                let ranges = between(*from_km, *to_km, RANGES).map(|r| (self.longest_s(&groups, r, asked), r));
+                let ranges =
+                    between(*from_km, *to_km, RANGES).map(|r| (self.longest_s(&groups, r, asked), r));
                 let (longest_s, range_km) =
                     ranges.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, *from_km));
                 if longest_s < file.exposure.min_s {
                     return Ok(Reached { probability: 0.0, exposure_s: longest_s, range_km: Some(range_km) });
                 }
                 // Longer is better for stars, unless smear takes what it gives: half and a quarter of it may do as well.
-                let mut best = Reached { probability: 0.0, exposure_s: file.exposure.min_s, range_km: Some(range_km) };
+                let mut best =
+                    Reached { probability: 0.0, exposure_s: file.exposure.min_s, range_km: Some(range_km) };
                 for part in [1.0, 0.5, 0.25] {
                     let exposure_s = (part * longest_s.min(file.exposure.max_s)).max(file.exposure.min_s);
                     let chance = self.stars_chance(exposure_s, n_min.unwrap_or(file.n_min), Over::Sky)?;

@@ -13,8 +13,11 @@ use super::requirement::DetectionRule;
 
 /// Places within a pixel along each axis.
 const PLACES: usize = 4;
-/// Pixels with a smaller share of the light are left out: at the threshold they hold less than a hundredth of an electron.
-const LEAST_SHARE: f64 = 1e-5;
+/// Pixels with a smaller part of the light of the brightest are left out: where that is at the threshold, they do not rise above the background's
+/// own chance.
+const LEAST_PART: f64 = 4e-3;
+/// Pixels with a smaller share of all light are not drawn at all.
+const LEAST_SHARE: f64 = 1e-6;
 /// Nodes of the table of a curve for each factor of e in electrons.
 const NODES_PER_E: f64 = 24.0;
 
@@ -86,7 +89,9 @@ impl ImageShares {
                 moved.position = PixelPoint::new(point.position.x + dx, point.position.y + dy);
             }
             psf.stamp_extended(&moved, 1.0, LEAST_SHARE, detector, &mut stamp);
-            places.push(stamp.rows().flat_map(|(_, _, row)| row.iter().copied()).filter(|f| *f > 0.0).collect());
+            let shares = || stamp.rows().flat_map(|(_, _, row)| row.iter().copied());
+            let least = LEAST_PART * shares().fold(0.0, f64::max);
+            places.push(shares().filter(|share| *share > least).collect());
         }
         Self { places }
     }
@@ -109,7 +114,7 @@ impl ImageShares {
 /// The chance that a star is detected as a function of its electrons, at one exposure and background.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DetectionCurve {
-    ln_first: f64,
+    /// At equal steps of the logarithm of electrons, from one electron on.
     chances: Vec<f64>,
 }
 
@@ -135,7 +140,7 @@ impl DetectionCurve {
             let chance = shares.chance(threshold, electrons, background_e);
             chances.push(chance);
             if chance >= 1.0 - 1e-12 || electrons > 1e9 {
-                return Self { ln_first: 0.0, chances };
+                return Self { chances };
             }
         }
     }
@@ -143,7 +148,7 @@ impl DetectionCurve {
     /// The chance that a star of exp(`ln_electrons`) electrons is detected.
     #[inline]
     pub fn at_ln(&self, ln_electrons: f64) -> f64 {
-        let at = (ln_electrons - self.ln_first) * NODES_PER_E;
+        let at = ln_electrons * NODES_PER_E;
         if at.is_nan() || at <= 0.0 {
             return self.chances.first().copied().unwrap_or(0.0);
         }

@@ -5,7 +5,7 @@
 
 use super::binding::binding;
 use super::definition::Requirements;
-use super::design::{between, design_with};
+use super::design::{Design, between, design_with};
 use super::requirement::{Demand, Find, Parameter, Want};
 use crate::failure::Failure;
 use crate::statistics::{binomial_at_least, clopper_pearson};
@@ -71,17 +71,27 @@ pub fn resolvable(asked: f64, frames: u32, confidence: f64) -> (Option<f64>, Opt
     )
 }
 
-/// Looks for the value.
+/// Looks for the value. `own` is the camera as it is: exposures that its sky covers are looked for there.
 ///
 /// # Errors
 /// A [`Failure`] when a camera of the bracket cannot be made.
-pub fn search(requirements: &Requirements, demand: &Demand, find: &Find) -> Result<Search, Failure> {
+pub fn search(
+    requirements: &Requirements,
+    own: &Design<'_>,
+    demand: &Demand,
+    find: &Find,
+) -> Result<Search, Failure> {
     let file = &requirements.file;
     let asked = demand.probability(file.probability);
     let (above, below) = resolvable(asked, file.confirm.frames, file.confirm.confidence);
     let goal = above.unwrap_or(asked);
     let pointings = SEARCH_POINTINGS.min(file.sky.pointings as usize);
-    let curve = Curve::new(requirements, demand, find.parameter, pointings, find.to)?;
+    let fixed = match find.parameter {
+        Parameter::ExposureS if own.covers(find.to) => Some(own.thinned(pointings)?),
+        Parameter::ExposureS => Some(design_with(requirements, find.parameter, find.to, pointings)?.0),
+        Parameter::ApertureDiameterMm | Parameter::FocalLengthMm => None,
+    };
+    let curve = Curve { requirements, demand, parameter: find.parameter, pointings, fixed };
     let mut grid: Vec<(f64, f64)> = Vec::new();
     for value in between(find.from, find.to, GRID) {
         grid.push((value, curve.at(value)?));
@@ -112,7 +122,9 @@ pub fn search(requirements: &Requirements, demand: &Demand, find: &Find) -> Resu
     let threshold_value = at_level(asked)?.unwrap_or(value);
     let failing_value = match below {
         // The first value that is surely below: the crossing ends on the side that still reaches the level.
-        Some(level) => outward(level).map(|outer| Ok::<f64, Failure>(step_out(&grid, outer, crossing(level, outer + 1)?))).transpose()?,
+        Some(level) => outward(level)
+            .map(|outer| Ok::<f64, Failure>(step_out(&grid, outer, crossing(level, outer + 1)?)))
+            .transpose()?,
         None => None,
     };
     let is_monotone = grid[met..].iter().all(|(_, probability)| *probability >= asked);
@@ -132,24 +144,10 @@ struct Curve<'a> {
     parameter: Parameter,
     pointings: usize,
     /// The one design of all exposures.
-    fixed: Option<super::design::Design<'a>>,
+    fixed: Option<Design<'a>>,
 }
 
-impl<'a> Curve<'a> {
-    fn new(
-        requirements: &'a Requirements,
-        demand: &'a Demand,
-        parameter: Parameter,
-        pointings: usize,
-        largest: f64,
-    ) -> Result<Self, Failure> {
-        let fixed = match parameter {
-            Parameter::ExposureS => Some(design_with(requirements, parameter, largest, pointings)?.0),
-            Parameter::ApertureDiameterMm | Parameter::FocalLengthMm => None,
-        };
-        Ok(Self { requirements, demand, parameter, pointings, fixed })
-    }
-
+impl Curve<'_> {
     fn at(&self, value: f64) -> Result<f64, Failure> {
         if let Some(design) = &self.fixed {
             return Ok(design.reached(self.demand, Some(value))?.probability);

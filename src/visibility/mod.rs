@@ -43,7 +43,7 @@ pub use inverse::{FoundValue, Search, resolvable, search};
 pub use pixel::{PixelThreshold, readout_e};
 pub use poisson_binomial::at_least;
 pub use report::{
-    CameraFigures, DetectionPoint, Found, LimitPoint, PointingStars, RangeByPhase, SimulatedPoint, Simulated,
+    CameraFigures, DetectionPoint, Found, LimitPoint, PointingStars, RangeByPhase, Simulated, SimulatedPoint,
     SkySummary, StarsLost, Status, Verdict, VisibilityReport, WindowPoint,
 };
 pub use requirement::{

@@ -30,7 +30,9 @@ mod tests {
     /// All alike: the binomial law. 1 − Σ_{k<n} C(20, k) 0.3^k 0.7^(20 − k), added up in rational numbers (Python's `fractions`).
     #[test]
     fn equal_probabilities_give_the_binomial_law() {
-        for (n_min, expected) in [(1, 0.999_202_077_337_023_9), (5, 0.762_492_221_122_398_3), (10, 0.047_961_897_331_343_48)] {
+        for (n_min, expected) in
+            [(1, 0.999_202_077_337_023_9), (5, 0.762_492_221_122_398_3), (10, 0.047_961_897_331_343_48)]
+        {
             assert!((chance(n_min, &[0.3; 20]) - expected).abs() < 1e-14, "{n_min}");
         }
     }

@@ -410,11 +410,15 @@ impl RequirementFile {
         let Some(target) = &self.target else { return Ok(()) };
         let [near, far] = target.ranges_km;
         require("target.ranges_km", near, "a first number of 0.01 to 1e5", |v| (0.01..=1e5).contains(&v))?;
-        require("target.ranges_km", far, "a second number beyond the first, to 1e5", |v| v > near && v <= 1e5)?;
+        require("target.ranges_km", far, "a second number beyond the first, to 1e5", |v| {
+            v > near && v <= 1e5
+        })?;
         match &target.light {
             TargetLight::Phases { phases_deg, attitudes } => {
                 let path = "target.light.phases_deg";
-                require(path, phases_deg.len() as f64, "1 to 50 phase angles", |n| (1.0..=50.0).contains(&n))?;
+                require(path, phases_deg.len() as f64, "1 to 50 phase angles", |n| {
+                    (1.0..=50.0).contains(&n)
+                })?;
                 for phase in phases_deg {
                     require(path, *phase, "angles of 0 to 170", |v| (0.0..=170.0).contains(&v))?;
                 }
@@ -426,7 +430,9 @@ impl RequirementFile {
                 })
             }
             TargetLight::Orbit { moments } => {
-                require("target.light.moments", f64::from(*moments), "1 to 1000", |v| (1.0..=1000.0).contains(&v))
+                require("target.light.moments", f64::from(*moments), "1 to 1000", |v| {
+                    (1.0..=1000.0).contains(&v)
+                })
             }
         }
     }
@@ -463,10 +469,13 @@ impl RequirementFile {
             Parameter::FocalLengthMm => ([0.01, 1e6], "0.01 to 1e6 mm"),
         };
         require(&path("from"), from, expected, |v| (limit[0]..=limit[1]).contains(&v))?;
-        require(&path("to"), to, "more than `from`, within the parameter's range", |v| v > from && v <= limit[1])?;
+        require(&path("to"), to, "more than `from`, within the parameter's range", |v| {
+            v > from && v <= limit[1]
+        })?;
         let by_exposure = parameter == Parameter::ExposureS;
         if by_exposure && matches!(requirement.demand, Demand::ExposureWindow { .. }) {
-            let message = "is \"exposure_s\", expected another one: the window is one of exposures".to_owned();
+            let message =
+                "is \"exposure_s\", expected another one: the window is one of exposures".to_owned();
             return Err((path("parameter"), message));
         }
         Ok(())
@@ -497,12 +506,7 @@ fn check_probability(path: &str, probability: Option<f64>) -> Result<(), Problem
     probability.map_or(Ok(()), |p| require(path, p, "more than 0, less than 1", |v| v > 0.0 && v < 1.0))
 }
 
-fn require(
-    path: &str,
-    value: f64,
-    expected: &str,
-    holds: impl Fn(f64) -> bool,
-) -> Result<(), Problem> {
+fn require(path: &str, value: f64, expected: &str, holds: impl Fn(f64) -> bool) -> Result<(), Problem> {
     if value.is_finite() && holds(value) {
         Ok(())
     } else {

@@ -228,9 +228,10 @@ impl Sky {
 fn catalog_to(camera: &CameraModel, least_e_per_s: f64) -> Result<Catalog, SimError> {
     let config = &camera.config.catalog;
     // The reddest stars are the brightest of a magnitude.
-    let zero_e_per_s = camera.radiometry.zero_point_e_per_s(Some(2.0), Some(9.0)).max(
-        camera.radiometry.zero_point_e_per_s(Some(-0.4), None),
-    );
+    let zero_e_per_s = camera
+        .radiometry
+        .zero_point_e_per_s(Some(2.0), Some(9.0))
+        .max(camera.radiometry.zero_point_e_per_s(Some(-0.4), None));
     let faintest = (-2.5 * libm::log10(least_e_per_s.max(1e-30) / zero_e_per_s)).clamp(-2.0, 30.0);
     let limited = CatalogConfig {
         magnitude_limit: Some(config.magnitude_limit.map_or(faintest, |limit| limit.min(faintest))),
@@ -256,11 +257,11 @@ mod tests {
     #[test]
     fn the_lattice_has_equal_areas() {
         let pointings = lattice(10_000, &SkyTable::default());
-        for (ra, dec, radius) in [(0.0, 0.0, 20.0), (77.0, 90.0, 15.0), (200.0, -60.0, 30.0), (10.0, 45.0, 8.0)] {
-            let centre: Direction<Icrs> = Direction::from_ra_dec(
-                contract::Angle::from_degrees(ra),
-                contract::Angle::from_degrees(dec),
-            );
+        for (ra, dec, radius) in
+            [(0.0, 0.0, 20.0), (77.0, 90.0, 15.0), (200.0, -60.0, 30.0), (10.0, 45.0, 8.0)]
+        {
+            let centre: Direction<Icrs> =
+                Direction::from_ra_dec(contract::Angle::from_degrees(ra), contract::Angle::from_degrees(dec));
             let inside =
                 pointings.iter().filter(|p| p.boresight.separation(&centre).degrees() < radius).count();
             let expected = 5_000.0 * (1.0 - libm::cos(f64::to_radians(radius)));

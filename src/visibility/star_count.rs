@@ -44,7 +44,8 @@ impl Curves {
     ) -> Self {
         let trail_px = star_trail_px(camera, motion, exposure_s);
         let read_e = readout_e(&camera.config.sensor);
-        let variance = |light_e_per_s| background_e(camera, exposure_s, light_e_per_s) + read_e * read_e + 1.0;
+        let variance =
+            |light_e_per_s| background_e(camera, exposure_s, light_e_per_s) + read_e * read_e + 1.0;
         let ratio = variance(high_e_per_s) / variance(low_e_per_s);
         let steps = ((libm::log(ratio.max(1.0)) / LEVEL_STEP).ceil() as usize).min(MOST_LEVELS - 1);
         let levels_e_per_s: Vec<f64> = (0..=steps)
@@ -83,7 +84,8 @@ impl Curves {
     pub fn seen(&self, field: &Field, n_min: usize, law: &mut Vec<f64>) -> Seen {
         let (below, part) = self.place(field.background_e_per_s);
         let mut expected = 0.0;
-        let chances = field.stars.iter().map(|star| self.between(below, part, star.ln_e_per_s + self.ln_exposure));
+        let chances =
+            field.stars.iter().map(|star| self.between(below, part, star.ln_e_per_s + self.ln_exposure));
         let chances = chances.take_while(|p| *p > LEAST_CHANCE).inspect(|p| expected += p);
         let chance = at_least(n_min, chances, law);
         Seen { expected, chance }

@@ -101,9 +101,9 @@ impl TargetModel {
         let lighting = Lighting { chaser_km, sun_km, sunlit_fraction: aspect.sunlit_fraction };
         let appearance = self.body.appearance(&lighting, aspect.target_from_icrs);
         let centre = camera.projection.project(&Direction::z()).unwrap_or_default();
-        let e_per_s = appearance.magnitude().map_or(0.0, |m| {
-            camera.radiometry.sunlit(m) * camera.vignetting.transmission(centre)
-        });
+        let e_per_s = appearance
+            .magnitude()
+            .map_or(0.0, |m| camera.radiometry.sunlit(m) * camera.vignetting.transmission(centre));
         let place = aspect.place(camera, range_km);
         let peak_e_per_s = e_per_s * appearance.peak_share(&place, camera.psf.peak_share());
         Sight { e_per_s, peak_e_per_s, centre, magnitude: appearance.magnitude(), appearance }
@@ -238,7 +238,8 @@ fn at_phase(phase_deg: f64, i: u32, count: u32) -> Aspect {
     let (sin_a, cos_a) = libm::sincos(std::f64::consts::TAU * s / std::f64::consts::SQRT_2);
     let (sin_b, cos_b) = libm::sincos(std::f64::consts::TAU * s / 1.533_751_168_755_204_3);
     let quaternion = Quaternion::new(far * cos_b, near * sin_a, near * cos_a, far * sin_b);
-    let turn: Rotation<Target, Icrs> = Rotation::from_unit_quaternion(UnitQuaternion::from_quaternion(quaternion));
+    let turn: Rotation<Target, Icrs> =
+        Rotation::from_unit_quaternion(UnitQuaternion::from_quaternion(quaternion));
     let (phi, theta, psi) = turn.euler_123();
     Aspect {
         line_of_sight: Vector3::y(),

@@ -25,7 +25,11 @@ const NAMES: [&str; 7] = [
 ///
 /// # Errors
 /// A [`Failure`] when the directory is in use or a file cannot be written.
-pub fn write_report(report: &VisibilityReport, markdown: &str, folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+pub fn write_report(
+    report: &VisibilityReport,
+    markdown: &str,
+    folder: &Path,
+) -> Result<Vec<PathBuf>, Failure> {
     prepare(folder)?;
     let json = serde_json::to_string_pretty(report)
         .map_err(|error| Failure::Usage(format!("the report cannot be written as JSON: {error}")))?;
@@ -102,7 +106,8 @@ fn detection(report: &VisibilityReport) -> String {
 
 fn limiting_magnitude(report: &VisibilityReport) -> String {
     let lines = report.limiting_magnitude.iter();
-    let lines = lines.map(|p| cells(&[Some(p.exposure_s), p.half, p.asked, Some(p.stars), Some(p.probability)]));
+    let lines =
+        lines.map(|p| cells(&[Some(p.exposure_s), p.half, p.asked, Some(p.stars), Some(p.probability)]));
     table("exposure_s,magnitude_half,magnitude_asked,stars,probability", lines)
 }
 
