@@ -2,6 +2,7 @@
 
 use super::definition::Requirements;
 use super::design::{Design, design_with};
+use super::detection::{background_e, is_flooded};
 use super::requirement::{Demand, DetectionRule, Over, Parameter};
 use crate::failure::Failure;
 
@@ -9,7 +10,7 @@ use crate::failure::Failure;
 const POINTINGS: usize = 1000;
 
 /// What binds at a value of a parameter, in words. Constraints are taken away one by one, and the first without which the demand is
-/// met is named: over-exposure of the target, smear, the field, noise; what remains is the signal.
+/// met is named: over-exposure of the target, the background, smear, the field, noise; what remains is the signal.
 ///
 /// # Errors
 /// A [`Failure`] when the camera cannot be made.
@@ -53,6 +54,11 @@ pub fn binding_of(
         return Ok(format!(
             "saturation: a full pixel, {full_dn:.0} DN, is not above the threshold, {threshold_dn:.0} DN"
         ));
+    }
+    let exposed_s = exposure_s.unwrap_or(design.reached(demand, None)?.exposure_s);
+    let dark_e = background_e(&design.camera, exposed_s, design.background_e_per_s()?);
+    if is_flooded(&design.camera, &design.rule, dark_e) {
+        return Ok(format!("background: {dark_e:.0} electrons in a pixel lift the empty frame above I1"));
     }
     if again()?.without_smear().reached(demand, exposure_s)?.probability >= asked {
         return Ok("smear: the motion during the exposure spreads the light over too many pixels".to_owned());

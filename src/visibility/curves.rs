@@ -205,20 +205,30 @@ pub(super) fn exposure_window(
     let (min_s, max_s) = (file.exposure.min_s, file.exposure.max_s);
     let shortest_s = shortest_for_stars(requirements, design, file.probability)?;
     let half_s = shortest_for_stars(requirements, design, 0.5)?;
-    let mut points = Vec::new();
+    let mut points: Vec<WindowPoint> = Vec::new();
     for range_km in between(far_km, near_km, POINTS) {
         let longest_s = design.longest_s(&groups, range_km, file.probability);
         let median_s = design.longest_s(&groups, range_km, 0.5).clamp(min_s, max_s);
-        let seen = design.stars(median_s, file.n_min)?;
-        let n = seen.len().max(1) as f64;
+        // Far out the camera's longest exposure is that of many ranges.
+        let (stars, probability) = match points.last().filter(|last| last.median_s == median_s) {
+            Some(last) => (last.stars, last.probability),
+            None => {
+                let seen = design.stars(median_s, file.n_min)?;
+                let n = seen.len().max(1) as f64;
+                (
+                    seen.iter().map(|seen| seen.expected).sum::<f64>() / n,
+                    seen.iter().map(|seen| seen.chance).sum::<f64>() / n,
+                )
+            }
+        };
         points.push(WindowPoint {
             range_km,
             longest_s: longest_s.min(max_s),
             median_s,
             shortest_s,
             is_open: shortest_s.is_some_and(|shortest_s| shortest_s <= longest_s),
-            stars: seen.iter().map(|seen| seen.expected).sum::<f64>() / n,
-            probability: seen.iter().map(|seen| seen.chance).sum::<f64>() / n,
+            stars,
+            probability,
         });
     }
     let lost = StarsLost {

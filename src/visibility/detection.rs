@@ -2,7 +2,9 @@
 //!
 //! Pixels are drawn independently of each other, so that P = 1 − Π P(DN_i ≤ T | μ_i), the product over the pixels of the image, with
 //! μ_i = B + E f_i of background B, electrons E and the share f_i of the point-spread function in that pixel, smeared by the motion.
-//! Where an image lies within a pixel is a matter of chance: P is the mean over a grid of places.
+//! Where an image lies within a pixel is a matter of chance: P is the mean over a grid of places. The chance that the same pixels have without
+//! the image is taken off: a threshold within the noise, or a background above it, detects nothing. Nor is anything detected by itself
+//! where so many empty pixels are above I1 that clusters run together over the whole frame.
 
 use contract::PixelPoint;
 use sim::optics::{ImagePoint, Stamp};
@@ -18,6 +20,9 @@ const PLACES: usize = 4;
 const LEAST_PART: f64 = 4e-3;
 /// Pixels with a smaller share of all light are not drawn at all.
 const LEAST_SHARE: f64 = 1e-6;
+/// Share of empty pixels above I1 from which on they hang together without end: the threshold of site percolation on a square lattice
+/// with eight neighbours (Malarz & Galam 2005, Phys. Rev. E 71, 016125).
+const PERCOLATION: f64 = 0.407;
 /// Nodes of the table of a curve for each factor of e in electrons.
 const NODES_PER_E: f64 = 24.0;
 
@@ -49,6 +54,11 @@ impl DetectionRule {
             }
         }
     }
+}
+
+/// Whether the empty pixels of a frame, which expect `background_e` electrons, run together above I1.
+pub fn is_flooded(camera: &CameraModel, rule: &DetectionRule, background_e: f64) -> bool {
+    camera.threshold(rule.thresholds(camera, background_e).low_dn).above(background_e) >= PERCOLATION
 }
 
 /// The shares of the light of an image in its pixels, at several places within a pixel.
@@ -98,16 +108,17 @@ impl ImageShares {
 
     /// The chance that an image of `electrons` over a background of `background_e` a pixel is detected.
     pub fn chance(&self, threshold: &PixelThreshold, electrons: f64, background_e: f64) -> f64 {
-        let missed: f64 = self
+        let dark = threshold.ln_below(background_e);
+        let gained: f64 = self
             .places
             .iter()
             .map(|shares| {
-                let ln: f64 =
+                let lit: f64 =
                     shares.iter().map(|share| threshold.ln_below(background_e + electrons * share)).sum();
-                libm::exp(ln)
+                libm::exp(shares.len() as f64 * dark) - libm::exp(lit)
             })
             .sum();
-        1.0 - missed / self.places.len().max(1) as f64
+        (gained / self.places.len().max(1) as f64).max(0.0)
     }
 }
 
@@ -128,18 +139,22 @@ impl DetectionCurve {
         background_e_per_s: f64,
     ) -> Self {
         let background_e = background_e(camera, exposure_s, background_e_per_s);
+        if is_flooded(camera, rule, background_e) {
+            return Self { chances: vec![0.0] };
+        }
         let threshold = camera.threshold(rule.thresholds(camera, background_e).high_dn);
         Self::of_shares(&ImageShares::of_star(camera, trail_px), &threshold, background_e)
     }
 
     fn of_shares(shares: &ImageShares, threshold: &PixelThreshold, background_e: f64) -> Self {
-        // A star of an electron is seen as often as nothing; the table ends where none is missed.
+        // From a star of an electron on; the table ends where brighter ones are seen no better.
+        let surest = shares.chance(threshold, f64::MAX.sqrt(), background_e);
         let mut chances = Vec::new();
         loop {
             let electrons = libm::exp(chances.len() as f64 / NODES_PER_E);
             let chance = shares.chance(threshold, electrons, background_e);
             chances.push(chance);
-            if chance >= 1.0 - 1e-12 || electrons > 1e9 {
+            if chance >= surest - 1e-12 || electrons > 1e9 {
                 return Self { chances };
             }
         }

@@ -38,7 +38,7 @@ pub use camera::{CameraConfig, CameraModel, mean_motion_rad_s};
 pub use confirm::{Bench, StarFrame, StarTrial};
 pub use definition::{BUILT_IN_REQUIREMENTS, Requirements};
 pub use design::{AspectGroup, Design, Reached, between};
-pub use detection::{DetectionCurve, FrameThresholds, ImageShares, background_e};
+pub use detection::{DetectionCurve, FrameThresholds, ImageShares, background_e, is_flooded};
 pub use inverse::{FoundValue, Search, resolvable, search};
 pub use pixel::{PixelThreshold, readout_e};
 pub use poisson_binomial::at_least;

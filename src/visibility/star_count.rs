@@ -11,10 +11,11 @@ use super::sky::{Field, Sky};
 
 /// Chances below this are left out of sums over stars.
 const LEAST_CHANCE: f64 = 1e-9;
-/// Growth of the noise variance between neighbouring curves.
-const LEVEL_STEP: f64 = 0.1;
-/// Most curves.
-const MOST_LEVELS: usize = 16;
+/// Step from one level of the background to the next, in standard deviations of an empty pixel: a chance that is normal in the
+/// background is then interpolated to 0.002.
+const LEVEL_STEP: f64 = 0.25;
+/// Most levels; beyond, as near the Sun, they are farther apart.
+const MOST_LEVELS: usize = 24;
 
 /// Detection curves of one exposure at several levels of the background.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,7 +48,8 @@ impl Curves {
         let variance =
             |light_e_per_s| background_e(camera, exposure_s, light_e_per_s) + read_e * read_e + 1.0;
         let ratio = variance(high_e_per_s) / variance(low_e_per_s);
-        let steps = ((libm::log(ratio.max(1.0)) / LEVEL_STEP).ceil() as usize).min(MOST_LEVELS - 1);
+        let growth = LEVEL_STEP / variance(low_e_per_s).sqrt();
+        let steps = ((libm::log(ratio.max(1.0)) / growth).ceil() as usize).min(MOST_LEVELS - 1);
         let levels_e_per_s: Vec<f64> = (0..=steps)
             .map(|i| {
                 let grown = variance(low_e_per_s) * libm::pow(ratio, i as f64 / steps.max(1) as f64);

@@ -10,7 +10,7 @@ use sim::scene::{Appearance, Lighting, Spacecraft, TargetConfig};
 use sim::truth::{Observer, OrbitConfig, RelativeElements, Schedule, States, Trajectory, shadow};
 
 use super::camera::{CameraModel, moving_point};
-use super::detection::{ImageShares, background_e};
+use super::detection::{ImageShares, background_e, is_flooded};
 use super::requirement::{DetectionRule, ExposureTable, MotionGuidance, MotionTable, TargetLight};
 use crate::scenario::FarRangeScenario;
 
@@ -156,6 +156,9 @@ impl Aspect {
     ) -> f64 {
         let camera = watch.camera;
         let background_e = background_e(camera, exposure_s, light_e_per_s);
+        if is_flooded(camera, watch.rule, background_e) {
+            return 0.0;
+        }
         let threshold = camera.threshold(watch.rule.thresholds(camera, background_e).high_dn);
         let electrons = sight.e_per_s * exposure_s;
         let mut body = Vec::new();
