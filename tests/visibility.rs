@@ -166,7 +166,7 @@ fn the_stars_of_all_fields_add_up_to_the_catalogue() {
     }
 }
 
-/// Liebe (2002, IEEE Trans. Aerosp. Electron. Syst. 38, 587), Eq. 5: 6.57 exp(1.08 M) stars brighter than M are in the sky. A fit through
+/// Liebe (2002, IEEE Trans. Aerosp. Electron. Syst. 38, 587): 6.57 exp(1.08 M) stars brighter than M are in the sky. A fit through
 /// counts, good to some 20 %: 1450, 4280 and 12,600 stars to 5, 6 and 7.
 #[test]
 fn the_density_of_stars_is_that_of_the_literature() {

@@ -10,7 +10,7 @@ use super::definition::Requirements;
 use super::design::{Design, Reached, design_with};
 use super::inverse::{FoundValue, Search, resolvable, search};
 use super::report::{Found, Simulated, Status, Verdict, VisibilityReport};
-use super::requirement::{Demand, Find, Over, Parameter, Requirement};
+use super::requirement::{Demand, Find, Over, Parameter, Requirement, Want};
 use super::sky::Pointing;
 use crate::failure::Failure;
 use crate::statistics::clopper_pearson;
@@ -195,7 +195,7 @@ impl<'a> Assessment<'a> {
             status: if is_met { Status::Met } else { Status::NotMet },
             reached: reached.probability,
             // Room of the camera as it is.
-            margin: own.map(|own| own - value),
+            margin: own.map(|own| if find.want == Want::Largest { value - own } else { own - value }),
             evidence,
             simulated,
             binds: (!is_met)
@@ -331,7 +331,7 @@ impl<'a> Assessment<'a> {
         asked: f64,
     ) -> Result<(Option<f64>, &'static str), Failure> {
         Ok(match demand {
-            Demand::Stars { .. } => (Some(100.0 * (reached.probability - asked)), "%"),
+            Demand::Stars { .. } => (Some(100.0 * (reached.probability - asked)), "points"),
             Demand::LimitingMagnitude { magnitude, .. } => {
                 let limit = self.design.limiting_magnitude(reached.exposure_s, asked)?;
                 (limit.map(|limit| limit - magnitude), "mag")
@@ -341,7 +341,7 @@ impl<'a> Assessment<'a> {
                 let greatest = curves::greatest_range_km(self.design, &groups, reached.exposure_s, asked)?;
                 (greatest.map(|greatest| greatest - to_km), "km")
             }
-            Demand::ExposureWindow { .. } => (Some(100.0 * (reached.probability - asked)), "%"),
+            Demand::ExposureWindow { .. } => (Some(100.0 * (reached.probability - asked)), "points"),
         })
     }
 

@@ -119,14 +119,15 @@ impl<'a> Design<'a> {
     /// [`SimError`] when the catalogue cannot be read.
     pub fn sky(&self) -> Result<&Sky, SimError> {
         if self.sky.get().is_none() {
-            let exposure_s = self.longest_s;
-            let trail_px = star_trail_px(&self.camera, &self.motion, exposure_s);
-            // The shortest trail collects the light best.
-            let trail_px = trail_px.min(1.0);
-            let curve = DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, 0.0);
-            let faintest_e = curve.electrons_for(LEAST_CHANCE).unwrap_or(1e12);
             let file = &self.requirements.file;
-            let least_e_per_s = FAINTER * faintest_e / exposure_s;
+            // The longest exposure shows the faintest stars, unless it drowns them.
+            let faintest = |exposure_s: f64| {
+                let trail_px = star_trail_px(&self.camera, &self.motion, exposure_s);
+                let curve = DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, 0.0);
+                curve.electrons_for(LEAST_CHANCE).map_or(1e12, |electrons| electrons / exposure_s)
+            };
+            let exposures = between(file.exposure.min_s, self.longest_s, 9);
+            let least_e_per_s = FAINTER * exposures.map(faintest).fold(1e12, f64::min);
             let sky = Sky::new(&self.camera, &file.motion, &file.sky, self.pointings, least_e_per_s)?;
             // Another thread cannot have set it: the design is not shared.
             let _ = self.sky.set(sky);
