@@ -15,6 +15,10 @@ use super::sky::Pointing;
 use crate::failure::Failure;
 use crate::statistics::clopper_pearson;
 
+/// Factor of a step by which a value is moved that all boresights do not agree with, and most of such steps.
+const POLISH: f64 = 1.005;
+const POLISH_STEPS: usize = 8;
+
 /// Verifies all requirements and computes the curves. `progress` is told what is being looked at.
 ///
 /// # Errors
@@ -160,6 +164,7 @@ impl<'a> Assessment<'a> {
                 }
                 Search::Found(found) => found,
             };
+        let value = self.polished(demand, find, value, asked)?;
         let (reached, simulated) = self.at_value(demand, find.parameter, value)?;
         let (failing, failing_simulated) = match failing_value {
             Some(failing) => {
@@ -214,6 +219,29 @@ impl<'a> Assessment<'a> {
             }),
             ..verdict
         })
+    }
+
+    /// A value that the search found from some boresights, moved until all of them agree that the law is met; a few steps at most.
+    fn polished(&self, demand: &Demand, find: &Find, found: f64, asked: f64) -> Result<f64, Failure> {
+        let inwards = if find.want == Want::Largest { 1.0 / POLISH } else { POLISH };
+        let mut value = found;
+        for _ in 0..POLISH_STEPS {
+            if self.law_at(demand, find.parameter, value)?.probability >= asked {
+                break;
+            }
+            value = (value * inwards).clamp(find.from, find.to);
+        }
+        Ok(value)
+    }
+
+    /// What a value of a parameter reaches by the law.
+    fn law_at(&self, demand: &Demand, parameter: Parameter, value: f64) -> Result<Reached, Failure> {
+        if parameter == Parameter::ExposureS && self.design.covers(value) {
+            return Ok(self.design.reached(demand, Some(value))?);
+        }
+        let pointings = self.requirements.file.sky.pointings as usize;
+        let (design, exposure_s) = design_with(self.requirements, parameter, value, pointings)?;
+        Ok(design.reached(demand, exposure_s)?)
     }
 
     /// What a value of a parameter reaches, by the law and by simulation.

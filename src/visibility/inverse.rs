@@ -16,8 +16,6 @@ const GRID: usize = 13;
 const STEPS: usize = 10;
 /// Boresights that the search looks from; its result is then looked at from all.
 const SEARCH_POINTINGS: usize = 2000;
-/// What so many boresights know of the probability over all, where no frames ask for more room.
-const SEARCH_ROOM: f64 = 0.005;
 /// Power with which the simulation shows a difference that is there.
 const POWER: f64 = 0.95;
 
@@ -86,7 +84,7 @@ pub fn search(
     let file = &requirements.file;
     let asked = demand.probability(file.probability);
     let (above, below) = resolvable(asked, file.confirm.frames, file.confirm.confidence);
-    let goal = above.unwrap_or(asked + SEARCH_ROOM.min(0.5 * (1.0 - asked)));
+    let goal = above.unwrap_or(asked);
     let pointings = SEARCH_POINTINGS.min(file.sky.pointings as usize);
     let fixed = match find.parameter {
         Parameter::ExposureS if own.covers(find.to) => Some(own.thinned(pointings)?),
