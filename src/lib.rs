@@ -24,3 +24,5 @@ pub mod study_engine;
 pub mod study_table;
 pub mod table;
 pub mod toml_file;
+pub mod visibility;
+pub mod visibility_table;

@@ -91,11 +91,7 @@ impl Simulator {
         let target = Spacecraft::new(&simulation.target)?;
         // Before the shutter, which takes the sensor's saturation for granted.
         simulation.sensor.check()?;
-        let trajectory = Trajectory::new(&simulation.orbit)?;
-        let schedule = Schedule::new(&simulation.schedule)?;
-        let shutter = Shutter::new(&simulation.shutter, simulation.sensor.saturation_e())?;
-        let half_interval_s = simulation.sensor.interlace.map_or(0.0, |interlace| interlace.offsets_s()[1]);
-        check_times(&schedule, &trajectory, shutter.lag_s(), half_interval_s)?;
+        let (trajectory, schedule, shutter) = flight(simulation, &simulation.sensor)?;
         let projection = Projection::new(&simulation.camera)?;
         let vignetting = Vignetting::new(&simulation.optics, &simulation.camera)?;
         let (columns, rows) = projection.detector();
@@ -139,6 +135,25 @@ impl Simulator {
         })
     }
 
+    /// Puts the same camera before the same sky on another flight: seed, orbit, schedule, attitude, knowledge, mounting, shutter
+    /// and target become those of `simulation`, whose camera, detector, optics and catalogue are not looked at. What it then
+    /// makes is what [`Simulator::new`] of all that would make, in a thousandth of the time.
+    ///
+    /// # Errors
+    /// [`SimError`] for the first value that is not allowed; the simulator is then as it was.
+    pub fn fly(&mut self, simulation: &Simulation) -> Result<(), SimError> {
+        let seed = Seed { seed: simulation.seed, case: 0 };
+        let target = Spacecraft::new(&simulation.target)?;
+        let (trajectory, schedule, shutter) = flight(simulation, self.sensor.config())?;
+        let attitude = Attitude::new(&simulation.attitude, &simulation.mounting, seed)?;
+        let knowledge = Knowledge::new(&simulation.knowledge, seed)?;
+        let camera_from_body = simulation.mounting.actual.camera_from_body();
+        (self.seed, self.target, self.camera_from_body) = (seed, target, camera_from_body);
+        (self.trajectory, self.schedule, self.shutter) = (trajectory, schedule, shutter);
+        (self.attitude, self.knowledge) = (attitude, knowledge);
+        Ok(())
+    }
+
     /// The stars that are drawn.
     pub fn catalog(&self) -> &Catalog {
         &self.catalog
@@ -161,6 +176,19 @@ impl Simulator {
     pub fn camera(&self) -> Result<SimulatedCamera<'_>, SimError> {
         SimulatedCamera::new(self)
     }
+}
+
+/// Where the spacecraft are, when images are taken, and for how long; checked with each other.
+fn flight(
+    simulation: &Simulation,
+    sensor: &SensorConfig,
+) -> Result<(Trajectory, Schedule, Shutter), SimError> {
+    let trajectory = Trajectory::new(&simulation.orbit)?;
+    let schedule = Schedule::new(&simulation.schedule)?;
+    let shutter = Shutter::new(&simulation.shutter, sensor.saturation_e())?;
+    let half_interval_s = sensor.interlace.map_or(0.0, |interlace| interlace.offsets_s()[1]);
+    check_times(&schedule, &trajectory, shutter.lag_s(), half_interval_s)?;
+    Ok((trajectory, schedule, shutter))
 }
 
 /// Checks that the chaser can see from where it is: at the time that the shutter control looks at for the first frame,

@@ -7,6 +7,7 @@ mod run;
 mod scenario;
 mod score;
 mod study;
+mod visibility;
 
 use std::process::ExitCode;
 
@@ -40,6 +41,8 @@ enum Command {
     /// Monte Carlo: a scenario over everything that can vary
     #[command(subcommand)]
     Study(study::StudyCommand),
+    /// Which camera sees enough stars and the target: verify requirements, find exposure, aperture or field
+    Visibility(visibility::VisibilityArguments),
     /// List, check and start scenarios
     #[command(subcommand)]
     Scenario(scenario::ScenarioCommand),
@@ -69,6 +72,7 @@ pub fn main() -> ExitCode {
         Command::Process(arguments) => dataset::process(&arguments, &output),
         Command::Score(arguments) => score::score(&arguments, &output),
         Command::Study(command) => study::study(&command, &output),
+        Command::Visibility(arguments) => visibility::visibility(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
     };
     match answer {

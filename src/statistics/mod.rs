@@ -2,13 +2,16 @@
 //!
 //! Neighbouring frames show almost the same scene, so 1000 of them hold less evidence than 1000 throws of a coin.
 //! Every interval here is of 95 % and is widened by the effective sample size ([`effective_size`]). Rates take
-//! the score interval of Wilson ([`wilson`]), means the normal law, medians the order statistics.
+//! the score interval of Wilson ([`wilson`]), means the normal law, medians the order statistics. Frames that are independent by
+//! construction take the exact bounds of Clopper and Pearson ([`clopper_pearson`]).
 
 mod autocorrelation;
+mod clopper_pearson;
 mod location;
 mod proportion;
 
 pub use autocorrelation::effective_size;
+pub use clopper_pearson::{binomial_at_least, clopper_pearson};
 pub use location::{mean_interval, median, median_interval, rms_interval};
 pub use proportion::wilson;
 

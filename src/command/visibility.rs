@@ -1,0 +1,74 @@
+//! `boresight visibility`: which camera is needed.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::Answer;
+use super::output::Output;
+use crate::failure::Failure;
+use crate::visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, Status, assess, write_report};
+use crate::visibility_table::{visibility_markdown, visibility_table};
+
+#[derive(Debug, Args)]
+pub(super) struct VisibilityArguments {
+    /// A built-in requirement file (`--list`) or a TOML file (docs/visibility.md)
+    #[arg(required_unless_present_any = ["schema", "list"])]
+    requirement: Option<String>,
+    /// A new or empty directory for visibility.json, visibility.md and the curves
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Frames simulated for each result, instead of the file's `confirm.frames`; 0: none
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    frames: Option<u32>,
+    /// Threads; default: all cores. The results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Print the JSON Schema of requirement files
+    #[arg(long, conflicts_with_all = ["requirement", "list", "out", "frames", "jobs"])]
+    schema: bool,
+    /// List the built-in requirement files
+    #[arg(long, conflicts_with_all = ["requirement", "out", "frames", "jobs"])]
+    list: bool,
+}
+
+/// Exit status 0 when every requirement is met, 1 when one is not or cannot be.
+pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Result<Answer, Failure> {
+    if arguments.schema {
+        let schema = schemars::schema_for!(RequirementFile);
+        let text = serde_json::to_string_pretty(&schema)
+            .map_err(|error| Failure::Usage(format!("the schema cannot be written: {error}")))?;
+        output.answer(&schema, text)?;
+        return Ok(Answer::Yes);
+    }
+    let Some(word) = &arguments.requirement else {
+        let names: Vec<_> = BUILT_IN_REQUIREMENTS.iter().map(|built_in| built_in.name).collect();
+        output.answer(&names, names.join("\n"))?;
+        return Ok(Answer::Yes);
+    };
+    let mut requirements = Requirements::read(word)?;
+    if let Some(frames) = arguments.frames {
+        requirements.file.confirm.frames = frames;
+    }
+    let steps = requirements.file.requirements.len() as u64 + 2;
+    let progress = output.progress_of(steps, "steps", &requirements.name);
+    let told = |what: &str| {
+        progress.set_message(format!("{}, {what}", requirements.name));
+        progress.inc(1);
+    };
+    let threads = arguments.jobs.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|error| Failure::Usage(format!("threads cannot be started: {error}")))?;
+    let report = pool.install(|| assess(&requirements, told))?;
+    progress.finish_and_clear();
+    if let Some(folder) = &arguments.out {
+        write_report(&report, &visibility_markdown(&report), folder)?;
+    }
+    let mut text = visibility_table(&report, output.is_terminal());
+    if let Some(folder) = &arguments.out {
+        text.push_str(&format!("\nwritten to {}\n", folder.display()));
+    }
+    output.answer(&report, text.trim_end())?;
+    let all_met = report.requirements.iter().all(|verdict| verdict.status == Status::Met);
+    Ok(if all_met { Answer::Yes } else { Answer::No })
+}

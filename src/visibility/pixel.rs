@@ -1,0 +1,193 @@
+//! The chance that a pixel rises above a threshold, as a function of the electrons it expects.
+//!
+//! The digital number of a pixel is floor((e (1 − β e/w) + n)/g + b + ½), with e electrons of a Poisson law cut at the full well w,
+//! n of a normal law, the gain g and the bias b. It is above the threshold T when e (1 − β e/w) + n ≥ L = (T + ½ − b) g, so that
+//!
+//! P(DN > T | μ) = Σ_k Pois(k; μ) Q((L − k (1 − β k/w))/σ),
+//!
+//! Q the upper tail of the normal law (a sum over k as in Janesick, *Photon Transfer*, 2007, chapter 3, without its normal approximation). The simulator *draws* from this law;
+//! here it is added up, because nothing in the simulator tells a probability.
+
+use sim::sensor::{SensorConfig, Switch};
+
+/// Nodes of the table for each standard deviation of a pixel at the threshold.
+const NODES_PER_SIGMA: f64 = 32.0;
+/// How far above the threshold the table goes, in those standard deviations.
+const SIGMAS_ABOVE: f64 = 12.0;
+/// Most nodes; the table is then coarser, or ends earlier.
+const MOST_NODES: usize = 1 << 15;
+/// The logarithm of a probability that no draw will ever meet.
+const NEVER: f64 = -700.0;
+
+/// The law of one pixel against one threshold, tabulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PixelThreshold {
+    /// ln P(DN ≤ T) at equal steps of μ from 0.
+    ln_below: Vec<f64>,
+    step_e: f64,
+}
+
+impl PixelThreshold {
+    /// The law of a pixel of `sensor` against the digital number `threshold_dn`.
+    pub fn new(sensor: &SensorConfig, threshold_dn: f64) -> Self {
+        let limit_e = (threshold_dn.floor() + 0.5 - sensor.bias_dn) * sensor.gain_e_per_dn;
+        let law = Law { sensor, limit_e, sigma_e: readout_e(sensor) };
+        if !law.can_be_reached(threshold_dn) {
+            return Self { ln_below: vec![0.0], step_e: 1.0 };
+        }
+        let level_e = limit_e.max(0.0);
+        let sigma_e = (level_e + law.sigma_e * law.sigma_e + 1.0).sqrt();
+        let top_e = level_e + SIGMAS_ABOVE * sigma_e;
+        let nodes = ((top_e * NODES_PER_SIGMA / sigma_e).ceil() as usize).clamp(64, MOST_NODES);
+        let step_e = top_e / nodes as f64;
+        Self { ln_below: (0..=nodes).map(|i| law.ln_below(i as f64 * step_e)).collect(), step_e }
+    }
+
+    /// ln P(DN ≤ T) of a pixel that expects `electrons`.
+    #[inline]
+    pub fn ln_below(&self, electrons: f64) -> f64 {
+        let at = electrons.max(0.0) / self.step_e;
+        let node = at as usize;
+        match (self.ln_below.get(node), self.ln_below.get(node + 1)) {
+            (Some(low), Some(high)) => low + (at - node as f64) * (high - low),
+            // More light changes nothing there: a pixel is never below, or, where its well is too small, as often as a full one.
+            _ => self.ln_below.last().copied().unwrap_or(0.0),
+        }
+    }
+
+    /// P(DN > T) of a pixel that expects `electrons`.
+    pub fn above(&self, electrons: f64) -> f64 {
+        -libm::expm1(self.ln_below(electrons))
+    }
+}
+
+/// Standard deviation of what the readout adds, electrons; what rows and columns share counts as if each pixel had its own.
+pub fn readout_e(sensor: &SensorConfig) -> f64 {
+    let (pixel_e, lines) = (sensor.read_noise_e, sensor.line_noise);
+    let variance_e2 = pixel_e * pixel_e + lines.row_e * lines.row_e + lines.column_e * lines.column_e;
+    sensor.noise.read.of(variance_e2).sqrt()
+}
+
+struct Law<'a> {
+    sensor: &'a SensorConfig,
+    limit_e: f64,
+    sigma_e: f64,
+}
+
+impl Law<'_> {
+    /// Whether a full pixel can be above the threshold at all.
+    fn can_be_reached(&self, threshold_dn: f64) -> bool {
+        let full_e = self.collected_e(self.sensor.full_well_e);
+        threshold_dn < f64::from(self.sensor.full_scale_dn()) && full_e + 5.0 * self.sigma_e >= self.limit_e
+    }
+
+    /// What the readout makes of so many electrons: cut at the full well, and bent.
+    fn collected_e(&self, electrons: f64) -> f64 {
+        let held_e = electrons.min(self.sensor.full_well_e);
+        held_e * (1.0 - self.sensor.non_linearity * held_e / self.sensor.full_well_e)
+    }
+
+    /// P(above) of a pixel that holds exactly so many electrons.
+    fn above_of(&self, electrons: f64) -> f64 {
+        let distance_e = self.limit_e - self.collected_e(electrons);
+        if self.sigma_e == 0.0 {
+            return if distance_e <= 0.0 { 1.0 } else { 0.0 };
+        }
+        0.5 * libm::erfc(distance_e / (self.sigma_e * std::f64::consts::SQRT_2))
+    }
+
+    fn ln_below(&self, mean_e: f64) -> f64 {
+        let (mut above, mut below) = (0.0, 0.0);
+        if self.sensor.noise.shot == Switch::Off || mean_e == 0.0 {
+            above = self.above_of(mean_e);
+            below = 1.0 - above;
+        } else {
+            // The terms of the Poisson law; of a wide one only every so many, for it is smooth.
+            let width_e = mean_e.sqrt();
+            let stride = (width_e / 20.0).floor().max(1.0);
+            let reach = ((9.0 * width_e + 20.0) / stride).ceil() as i64;
+            let middle = mean_e.floor();
+            let ln_mean = libm::log(mean_e);
+            let mut all = 0.0;
+            for i in -reach..=reach {
+                let electrons = middle + i as f64 * stride;
+                if electrons < 0.0 {
+                    continue;
+                }
+                let share = libm::exp(electrons * ln_mean - mean_e - libm::lgamma(electrons + 1.0));
+                let over = self.above_of(electrons);
+                all += share;
+                above += share * over;
+                below += share * (1.0 - over);
+            }
+            (above, below) = (above / all, below / all);
+        }
+        // The smaller of both has the digits.
+        if above < 0.5 { libm::log1p(-above) } else { libm::log(below.max(1e-300)).max(NEVER) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sensor() -> SensorConfig {
+        SensorConfig {
+            bit_depth: 12,
+            gain_e_per_dn: 10.0,
+            bias_dn: 40.0,
+            full_well_e: 60_000.0,
+            read_noise_e: 15.0,
+            ..SensorConfig::default()
+        }
+    }
+
+    /// scipy 1.17: sum(poisson.pmf(k, mu) * norm.sf((275 - k)/15) for k in range(4000)).
+    #[test]
+    fn the_law_agrees_with_a_plain_sum() {
+        let law = PixelThreshold::new(&sensor(), 67.0);
+        for (mean_e, expected) in SCIPY {
+            let got = law.above(mean_e);
+            // Linear between nodes, a thirty-second of a standard deviation apart: an eighth of (z/32)² of a tail at z of them.
+            let tolerance = if expected < 1e-3 { 2e-2 } else { 2e-3 };
+            assert!((got / expected - 1.0).abs() < tolerance, "{mean_e}: {got} {expected}");
+        }
+    }
+
+    const SCIPY: [(f64, f64); 5] = [
+        (150.0, 1.337_734_535_497_808e-10),
+        (220.0, 0.004_869_674_011_663_865),
+        (270.0, 0.409_582_821_767_703),
+        (300.0, 0.862_567_927_968_520_6),
+        (400.0, 0.999_999_835_704_183_3),
+    ];
+
+    #[test]
+    fn without_noise_it_is_a_step() {
+        let mut sensor = sensor();
+        sensor.noise.shot = Switch::Off;
+        sensor.noise.read = Switch::Off;
+        let law = PixelThreshold::new(&sensor, 67.0);
+        // floor(e/10 + 40.5) > 67 from 275 electrons on; a node is at most a thirty-second of 17 electrons wide.
+        assert_eq!((law.above(273.0), law.above(277.0)), (0.0, 1.0));
+    }
+
+    #[test]
+    fn a_threshold_at_full_scale_or_beyond_the_well_is_never_passed() {
+        assert_eq!(PixelThreshold::new(&sensor(), 4095.0).above(1e9), 0.0);
+        let shallow = SensorConfig { full_well_e: 150.0, ..sensor() };
+        assert_eq!(PixelThreshold::new(&shallow, 67.0).above(1e9), 0.0);
+        // A full one of 200 electrons needs five standard deviations of its read noise: 2.9e-7.
+        let hardly = SensorConfig { full_well_e: 200.0, ..sensor() };
+        assert!(PixelThreshold::new(&hardly, 67.0).above(1e9) < 1e-6);
+    }
+
+    #[test]
+    fn more_light_is_never_less_likely_seen() {
+        for threshold_dn in [0.0, 41.0, 67.0, 500.0, 4000.0] {
+            let law = PixelThreshold::new(&sensor(), threshold_dn);
+            let chances: Vec<f64> = (0..2000).map(|i| law.above(f64::from(i) * 25.0)).collect();
+            assert!(chances.is_sorted() && chances[1999] == 1.0, "{threshold_dn}");
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! How many of several independent events come true, each with a probability of its own: the Poisson-binomial law.
+
+/// P(N ≥ `n_min`), exact: the law of N, cut at `n_min`, event by event (Chen & Liu 1997, Statistica Sinica 7, 875, Sec. 2, the
+/// direct recursion). `law` is a buffer that can be used again.
+pub fn at_least(n_min: usize, probabilities: impl IntoIterator<Item = f64>, law: &mut Vec<f64>) -> f64 {
+    law.clear();
+    law.resize(n_min, 0.0);
+    let Some(none) = law.first_mut() else { return 1.0 };
+    *none = 1.0;
+    // No more events than so many have come true so far.
+    let mut seen = 0;
+    for p in probabilities {
+        seen = (seen + 1).min(n_min - 1);
+        for n in (1..=seen).rev() {
+            law[n] = law[n] * (1.0 - p) + law[n - 1] * p;
+        }
+        law[0] *= 1.0 - p;
+    }
+    (1.0 - law.iter().sum::<f64>()).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chance(n_min: usize, probabilities: &[f64]) -> f64 {
+        at_least(n_min, probabilities.iter().copied(), &mut Vec::new())
+    }
+
+    /// All alike: the binomial law. 1 − Σ_{k<n} C(20, k) 0.3^k 0.7^(20 − k), added up in rational numbers (Python's `fractions`).
+    #[test]
+    fn equal_probabilities_give_the_binomial_law() {
+        for (n_min, expected) in
+            [(1, 0.999_202_077_337_023_9), (5, 0.762_492_221_122_398_3), (10, 0.047_961_897_331_343_48)]
+        {
+            assert!((chance(n_min, &[0.3; 20]) - expected).abs() < 1e-14, "{n_min}");
+        }
+    }
+
+    /// Two and three events, written out.
+    #[test]
+    fn few_events_are_as_written_out() {
+        let (a, b, c) = (0.1, 0.6, 0.85);
+        assert!((chance(1, &[a, b]) - (a + b - a * b)).abs() < 1e-15);
+        assert!((chance(2, &[a, b, c]) - (a * b + a * c + b * c - 2.0 * a * b * c)).abs() < 1e-15);
+        assert!((chance(3, &[a, b, c]) - a * b * c).abs() < 1e-15);
+    }
+
+    #[test]
+    fn certain_and_impossible_events_count_as_such() {
+        assert_eq!(chance(0, &[]), 1.0);
+        assert_eq!(chance(1, &[]), 0.0);
+        assert_eq!(chance(3, &[1.0, 0.0, 1.0, 0.0, 1.0]), 1.0);
+        assert_eq!(chance(4, &[1.0, 0.0, 1.0, 0.0, 1.0]), 0.0);
+    }
+
+    #[test]
+    fn the_order_of_events_does_not_matter() {
+        let ps: Vec<f64> = (0..40).map(|i| f64::from(i) / 40.0).collect();
+        let turned: Vec<f64> = ps.iter().rev().copied().collect();
+        for n_min in [1, 15, 20, 25, 40] {
+            assert!((chance(n_min, &ps) - chance(n_min, &turned)).abs() < 1e-14);
+        }
+    }
+}
