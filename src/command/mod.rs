@@ -1,6 +1,7 @@
 //! The command `boresight`: arguments in, exit status out. Printing, clocks and environment live here.
 
 mod dataset;
+mod gate;
 mod options;
 mod output;
 mod run;
@@ -40,6 +41,8 @@ enum Command {
     /// Monte Carlo: a scenario over everything that can vary
     #[command(subcommand)]
     Study(study::StudyCommand),
+    /// Say whether a result is worse than a baseline; exit status 1 when it is
+    Gate(gate::GateArguments),
     /// List, check and start scenarios
     #[command(subcommand)]
     Scenario(scenario::ScenarioCommand),
@@ -69,6 +72,7 @@ pub fn main() -> ExitCode {
         Command::Process(arguments) => dataset::process(&arguments, &output),
         Command::Score(arguments) => score::score(&arguments, &output),
         Command::Study(command) => study::study(&command, &output),
+        Command::Gate(arguments) => gate::gate(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
     };
     match answer {
