@@ -198,8 +198,8 @@ pub(super) fn interval(
 enum Side {
     /// Sum and count of each block; whether the figure is the root of their ratio.
     Ratio { blocks: Vec<(f64, f64)>, is_root: bool },
-    /// Values in order, each with its block.
-    Sorted(Vec<(f64, usize)>),
+    /// Values in order, each with its block; and how many each block has.
+    Sorted { values: Vec<(f64, usize)>, counts: Vec<usize> },
 }
 
 impl Side {
@@ -209,7 +209,9 @@ impl Side {
             let mut sorted: Vec<(f64, usize)> =
                 with_value.map(|(unit, term)| (term.sum, blocks.of(unit))).collect();
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-            return Self::Sorted(sorted);
+            let mut counts = vec![0; blocks.count()];
+            sorted.iter().for_each(|(_, block)| counts[*block] += 1);
+            return Self::Sorted { values: sorted, counts };
         }
         let mut sums = vec![(0.0, 0.0); blocks.count()];
         for (unit, (sum, of)) in Sums::new(terms, reduction, 0.0).units.into_iter().enumerate() {
@@ -230,11 +232,13 @@ impl Side {
                 let ratio = (of > 0.0).then(|| sum / of)?;
                 Some(if *is_root { ratio.max(0.0).sqrt() } else { ratio })
             }
-            Self::Sorted(sorted) => {
-                let chosen = || sorted.iter().filter(|(_, block)| taken(*block)).map(|(value, _)| *value);
-                let count = chosen().count();
-                let upper = chosen().nth(count / 2)?;
-                Some(if count % 2 == 1 { upper } else { f64::midpoint(chosen().nth(count / 2 - 1)?, upper) })
+            Self::Sorted { values, counts } => {
+                let count: usize =
+                    (0..counts.len()).filter(|block| taken(*block)).map(|block| counts[block]).sum();
+                let chosen = values.iter().filter(|(_, block)| taken(*block)).map(|(value, _)| *value);
+                let mut middle = chosen.skip(count.checked_sub(1)? / 2);
+                let lower = middle.next()?;
+                Some(if count % 2 == 1 { lower } else { f64::midpoint(lower, middle.next()?) })
             }
         }
     }

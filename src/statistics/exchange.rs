@@ -14,6 +14,8 @@ use sim::randomness::{Effect, Seed};
 const MOST_EXHAUSTED: usize = 13;
 /// Exchanges drawn where there are more, besides the one that changes nothing.
 const DRAWN: usize = 9_999;
+/// Sets that an interval takes of those drawn: its ends are quantiles that scatter by a twentieth of its width.
+const FOR_AN_INTERVAL: usize = 1_999;
 /// What statistics may differ by and still be equal: sums of the same numbers with other signs are rounded differently.
 const TIE: f64 = 1e-9;
 
@@ -41,6 +43,11 @@ impl Exchanges {
     /// Number of blocks.
     pub fn blocks(&self) -> usize {
         self.blocks
+    }
+
+    /// How many sets besides the empty one an interval takes: all, or some of those drawn.
+    fn for_an_interval(&self) -> usize {
+        if self.blocks <= MOST_EXHAUSTED { self.bits.len() - 1 } else { FOR_AN_INTERVAL }
     }
 
     fn sets(&self) -> impl Iterator<Item = Set<'_>> {
@@ -74,13 +81,14 @@ impl BlockEffects {
     /// The effect with the blocks of a set exchanged, over the root of the sum of squares, which no exchange changes. Of hits and misses
     /// it is the statistic of McNemar's test for blocks (Yang, Sun & Hardin 2010, Biometrical Journal 52, 638–652). 0 where no block
     /// differs.
-    fn statistic(&self, exchanged: Set<'_>) -> f64 {
-        let (mut sum, mut squares) = (0.0, 0.0);
-        for (block, effect) in self.effects.iter().enumerate() {
-            sum += if exchanged.has(block) { -effect } else { *effect };
-            squares += effect * effect;
-        }
-        if squares > 0.0 { sum.clamp(-self.most, self.most) / squares.sqrt() } else { 0.0 }
+    fn statistic(&self, exchanged: Set<'_>, root_of_squares: f64) -> f64 {
+        let signed = |(block, effect): (usize, &f64)| if exchanged.has(block) { -effect } else { *effect };
+        let sum: f64 = self.effects.iter().enumerate().map(signed).sum();
+        if root_of_squares > 0.0 { sum.clamp(-self.most, self.most) / root_of_squares } else { 0.0 }
+    }
+
+    fn root_of_squares(&self) -> f64 {
+        self.effects.iter().map(|effect| effect * effect).sum::<f64>().sqrt()
     }
 }
 
@@ -112,11 +120,11 @@ pub struct JointTest {
 /// A p is the share of exchanges that give as large a statistic; of drawn ones the identity is one, so that p is never 0 (Phipson & Smyth
 /// 2010, Statistical Applications in Genetics and Molecular Biology 9, 39).
 pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -> JointTest {
-    let observed: Vec<f64> = exchanges
-        .sets()
-        .next()
-        .map(|identity| figures.iter().map(|figure| figure.statistic(identity)).collect())
-        .unwrap_or_default();
+    let roots: Vec<f64> = figures.iter().map(BlockEffects::root_of_squares).collect();
+    let statistic = |figure: usize, set: Set<'_>| figures[figure].statistic(set, roots[figure]);
+    let nothing = vec![0; exchanges.words];
+    let identity = Set { words: &nothing };
+    let observed: Vec<f64> = (0..figures.len()).map(|figure| statistic(figure, identity)).collect();
     // From the largest statistic down: where each stands, and at each exchange the largest of it and those below it.
     let mut order: Vec<usize> = (0..figures.len()).collect();
     order.sort_by(|a, b| observed[*b].total_cmp(&observed[*a]).then(a.cmp(b)));
@@ -126,7 +134,7 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
     for set in exchanges.sets() {
         let mut below = f64::NEG_INFINITY;
         for &figure in order.iter().rev() {
-            let statistic = figures[figure].statistic(set);
+            let statistic = statistic(figure, set);
             below = below.max(statistic);
             alone[figure] += u64::from(reaches(statistic, observed[figure]));
             together[figure] += u64::from(reaches(below, observed[figure]));
@@ -163,9 +171,10 @@ pub fn interval_by_sets(
     exchanges: &Exchanges,
     difference: impl Fn(&dyn Fn(usize) -> bool) -> Option<f64>,
 ) -> Option<super::Interval> {
-    let mut values: Vec<f64> =
-        exchanges.sets().skip(1).filter_map(|set| difference(&|block| set.has(block))).collect();
-    if values.len() * 2 < exchanges.sets().count() {
+    let count = exchanges.for_an_interval();
+    let sets = exchanges.sets().skip(1).take(count);
+    let mut values: Vec<f64> = sets.filter_map(|set| difference(&|block| set.has(block))).collect();
+    if values.is_empty() || values.len() * 2 < count {
         return None;
     }
     values.sort_by(f64::total_cmp);
