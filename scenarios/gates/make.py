@@ -7,7 +7,7 @@
 away. They begin at places of the golden ratio within equal parts of the day, so that no period of the orbit or of a drift is met at one
 phase alone.
 
-`docking.toml`: from 60 m to contact in 34 s instead of from 500 m in eight minutes.
+`docking.toml`: from 30 m to contact in half a minute instead of from 500 m in eight minutes.
 """
 
 from datetime import datetime, timedelta
@@ -19,7 +19,7 @@ STRETCHES, IMAGES, GOLDEN = 6, 30, 0.6180339887498949
 
 HEADER = "# Written by make.py from ../{name}.toml; {what} Comments are there.\n"
 
-SEGMENTS = [("to_d3_m = 20.0", 4.0), ("to_d3_m = 6.0", 1.5), ("to_d3_m = 2.0", 0.5), (None, 0.3)]
+SEGMENTS = [("to_d3_m = 12.0", 2.0), ("to_d3_m = 5.0", 1.0), ("to_d3_m = 2.0", 0.4), (None, 0.3)]
 
 
 def without_comments(text):
@@ -50,18 +50,19 @@ def argon():
 
 def docking():
     text = without_comments((HERE / "../docking.toml").read_text())
-    text = re.sub(r"start_d3_m = .*", "start_d3_m = 60.0", text)
+    text = re.sub(r"start_d3_m = .*", "start_d3_m = 30.0", text)
+    text = re.sub(r"lateral_at_start_m = .*", "lateral_at_start_m = [0.3, -0.15]", text)
     begin, end = text.index("[[approach.segments]]"), text.index("[[cameras]]")
     segments = [
         "[[approach.segments]]\nkind = \"glide\"\n" + (f"{to}\n" if to else "") + f"speed_m_s = {speed}\n"
         for to, speed in SEGMENTS
     ]
     text = text[:begin] + "\n".join(segments) + "\n" + text[end:]
-    return retitled(text, "Docking for a gate: from 60 m to contact in half a minute")
+    return retitled(text, "Docking for a gate: from 30 m to contact in half a minute")
 
 
 for name, make, what in [
     ("argon", argon, "they differ in title and schedule alone."),
-    ("docking", docking, "they differ in title and in the segments of the approach alone."),
+    ("docking", docking, "they differ in title and in the approach alone."),
 ]:
     (HERE / f"{name}.toml").write_text(HEADER.format(name=name, what=what) + make())

@@ -60,7 +60,8 @@ struct BaselineArguments {
     /// Replace a baseline that is there already
     #[arg(long)]
     replace: bool,
-    /// Frames (fields, cases) of a block; default: ten times as many as the figures remember, at least twenty blocks
+    /// Frames (fields, cases) of a block; default: ten times as many as the figures remember, fewer where that leaves
+    /// fewer than twenty blocks, at least thirty
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     block_length: Option<u64>,
 }

@@ -95,7 +95,7 @@ pub struct Baseline {
 
 impl Baseline {
     /// A baseline of a sample, cut into blocks of about `length` units; without it, ten times as long as its figures remember, but not
-    /// so long that there are fewer than twenty.
+    /// so long that there are fewer than twenty, and not shorter than thirty units.
     ///
     /// # Errors
     /// [`Failure::Usage`] for an empty reason, or fewer blocks than can show anything.
@@ -116,7 +116,7 @@ impl Baseline {
         let blocks = Blocks::cut(kind, world, &sample.table, length);
         if blocks.count() < LEAST_BLOCKS {
             return Err(Failure::Usage(format!(
-                "the result has {units} {} in {} blocks, expected at least {LEAST_BLOCKS} blocks: fewer cannot show anything",
+                "the result has {units} {} in {} blocks, expected at least {LEAST_BLOCKS} blocks: fewer cannot show anything. A longer run, or --block-length, gives more",
                 kind.units(world),
                 blocks.count()
             )));
@@ -212,9 +212,8 @@ impl Baseline {
             return Err(refuse("rows_sha256", message));
         }
         let (table, numbers) = rows::read(&rows_path, &figures)?;
-        let identity = header.run.clone();
-        let blocks = Blocks::from_numbers(identity.kind, &identity.world, &table, numbers);
-        Ok(Self { header, sample: Sample { identity, table }, blocks })
+        let sample = Sample { identity: header.run.clone(), table };
+        Ok(Self { header, sample, blocks: Blocks::from_numbers(numbers) })
     }
 }
 

@@ -7,6 +7,8 @@ use crate::statistics::effective_size;
 
 /// Fewer blocks than this cannot show anything at a level of 5 %: 2⁻⁵ = 3 %.
 pub const LEAST_BLOCKS: usize = 5;
+/// Blocks are not made shorter than this, units: in a shorter sequence a memory cannot be seen, and it is one block.
+const SHORTEST_BLOCK: usize = 30;
 /// A block is so many autocorrelation times long. Of a sequence whose correlation falls off exponentially, neighbouring means are then
 /// correlated by 2.5 %, and a test at 5 % rejects in 5.4 % (docs/gate.md).
 const MEMORIES_A_BLOCK: f64 = 10.0;
@@ -17,8 +19,6 @@ const ENOUGH_BLOCKS: usize = 20;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Blocks {
     of_units: Vec<usize>,
-    /// Where each sequence of neighbouring units begins, and where the last one ends.
-    sequences: Vec<usize>,
     count: usize,
 }
 
@@ -33,14 +33,8 @@ pub(super) struct Memory {
 
 impl Blocks {
     /// Blocks from the number of each unit's, as they stand in a file: whole numbers that ascend by one from 0.
-    pub(super) fn from_numbers(
-        kind: SourceKind,
-        world: &str,
-        table: &UnitTable,
-        numbers: Vec<usize>,
-    ) -> Self {
-        let count = numbers.last().map_or(0, |last| last + 1);
-        Self { of_units: numbers, sequences: sequences(kind, world, table), count }
+    pub(super) fn from_numbers(numbers: Vec<usize>) -> Self {
+        Self { count: numbers.last().map_or(0, |last| last + 1), of_units: numbers }
     }
 
     /// Cuts each sequence of neighbouring units into equal pieces of about `length` units.
@@ -54,14 +48,14 @@ impl Blocks {
             of_units.extend((0..units).map(|unit| count + unit * pieces / units));
             count += pieces;
         }
-        Self { of_units, sequences, count }
+        Self { of_units, count }
     }
 
     /// Blocks of so many units each, of one sequence.
     #[cfg(test)]
     pub(super) fn every(units: usize, length: usize) -> Self {
         let of_units: Vec<usize> = (0..units).map(|unit| unit / length).collect();
-        Self { count: units.div_ceil(length), of_units, sequences: vec![0, units] }
+        Self { count: units.div_ceil(length), of_units }
     }
 
     /// Number of blocks.
@@ -77,14 +71,6 @@ impl Blocks {
     /// Units of a block in the mean; 0 without any.
     pub fn mean_length(&self) -> f64 {
         if self.count == 0 { 0.0 } else { self.of_units.len() as f64 / self.count as f64 }
-    }
-
-    /// The autocorrelation time of a series with one value a unit, units, 1 or more.
-    pub(super) fn memory_of(&self, series: &[f64]) -> f64 {
-        let sequences: Vec<Vec<f64>> =
-            self.sequences.windows(2).map(|ends| series[ends[0]..ends[1]].to_vec()).collect();
-        let effective = effective_size(&sequences);
-        if effective > 0.0 { series.len() as f64 / effective } else { 1.0 }
     }
 }
 
@@ -110,17 +96,23 @@ fn sequences(kind: SourceKind, world: &str, table: &UnitTable) -> Vec<usize> {
 
 /// The longest autocorrelation time of the figures of a run.
 pub(super) fn memory(kind: SourceKind, world: &str, table: &UnitTable) -> Memory {
-    let whole = Blocks::cut(kind, world, table, usize::MAX);
-    let of_figures = table.figures.iter().map(|figure| (whole.memory_of(&influence(figure)), &figure.name));
+    let sequences = sequences(kind, world, table);
+    let memory_of = |series: &[f64]| {
+        let cut: Vec<Vec<f64>> = sequences.windows(2).map(|ends| series[ends[0]..ends[1]].to_vec()).collect();
+        let effective = effective_size(&cut);
+        if effective > 0.0 { series.len() as f64 / effective } else { 1.0 }
+    };
+    let of_figures = table.figures.iter().map(|figure| (memory_of(&influence(figure)), &figure.name));
     of_figures.fold(Memory { units: 1.0, figure: String::new() }, |longest, (units, figure)| {
         if units > longest.units { Memory { units, figure: figure.clone() } } else { longest }
     })
 }
 
-/// A length of blocks for a run of this memory: ten times that, or shorter where that would leave fewer than twenty.
+/// A length of blocks for a run of this memory, units: ten times that, or shorter where that would leave fewer than twenty, but at least
+/// thirty.
 pub(super) fn length_for(memory: &Memory, units: usize) -> usize {
     let wanted = (MEMORIES_A_BLOCK * memory.units).ceil() as usize;
-    wanted.min(units / ENOUGH_BLOCKS).max(1)
+    wanted.min(units / ENOUGH_BLOCKS).max(SHORTEST_BLOCK)
 }
 
 #[cfg(test)]
@@ -151,7 +143,7 @@ mod tests {
         assert_eq!((approach.count(), approach.of(0), approach.of(129)), (4, 0, 3));
         assert_eq!(Blocks::cut(SourceKind::Study, "docking", &table, 30).count(), 130);
         let numbers: Vec<usize> = (0..130).map(|unit| blocks.of(unit)).collect();
-        assert_eq!(Blocks::from_numbers(SourceKind::Run, "far_range", &table, numbers), blocks);
+        assert_eq!(Blocks::from_numbers(numbers), blocks);
     }
 
     #[test]
@@ -172,6 +164,6 @@ mod tests {
         // (1 + ρ)/(1 − ρ) = 19; its estimate scatters by some 5 %.
         assert!(memory.figure == "slow" && (15.0..24.0).contains(&memory.units), "{memory:?}");
         assert!((150..240).contains(&length_for(&memory, 20_000)));
-        assert_eq!(length_for(&memory, 1000), 50);
+        assert_eq!((length_for(&memory, 1000), length_for(&memory, 100)), (50, 30));
     }
 }

@@ -3,7 +3,7 @@
 use indexmap::IndexMap;
 
 use super::baseline::Baseline;
-use super::effects::{FigureEffect, interval, memory};
+use super::effects::{FigureEffect, interval, neighbour_correlation};
 use super::flips::Flips;
 use super::identity::Pairing;
 use super::read::Sample;
@@ -17,9 +17,6 @@ use crate::toml_file;
 const Z_POWER: f64 = 1.644_853_626_951_472_2;
 /// A figure that the result lacks is gone when that would be chance with no more than this probability.
 const GONE_BY_CHANCE: f64 = 1e-3;
-/// A warning is due when blocks are not at least so many times as long as what the differences remember.
-const ENOUGH_MEMORIES: f64 = 5.0;
-
 /// What a comparison is asked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompareOptions {
@@ -71,11 +68,11 @@ pub fn compare(
     let (worse, better) = (joint_test(&worse, &exchanges, alpha), joint_test(&better, &exchanges, alpha));
 
     let mut figures = IndexMap::new();
-    let mut remembered: f64 = 1.0;
+    let mut correlation: f64 = 0.0;
     for (index, ((before, after), effect)) in pairs.iter().zip(&effects).enumerate() {
         let judge = Judge { effect, worse: &worse, better: &better, index, alpha, figures: pairs.len() };
         let interval = interval(before, after, blocks, &exchanges);
-        remembered = remembered.max(memory([before, after], blocks));
+        correlation = correlation.max(neighbour_correlation(&effect.worse.effects));
         figures.insert(before.name.clone(), judge.report(interval.map(|i| (i.low, i.high))));
     }
     if figures.values().all(|figure| figure.verdict == FigureVerdict::TooLittleData) {
@@ -101,8 +98,8 @@ pub fn compare(
         alpha,
         blocks: blocks.count() as u64,
         block_length: blocks.mean_length(),
-        memory: remembered,
-        notes: notes(baseline, result, pairing, remembered),
+        neighbour_correlation: correlation,
+        notes: notes(baseline, result, pairing, (correlation, pairs.len())),
         figures,
         flips: (pairing == Pairing::Frames)
             .then(|| Flips::of(&baseline.sample.table.units, &result.table.units)),
@@ -169,8 +166,13 @@ fn pairs<'a>(
         .collect()
 }
 
-/// What a reader must know.
-fn notes(baseline: &Baseline, result: &Sample, pairing: Pairing, remembered: f64) -> Vec<String> {
+/// What a reader must know. `correlation` is the largest of neighbouring blocks, and of how many figures it is that.
+fn notes(
+    baseline: &Baseline,
+    result: &Sample,
+    pairing: Pairing,
+    (correlation, figures): (f64, usize),
+) -> Vec<String> {
     let mut notes = Vec::new();
     let (before, after) = (&baseline.sample.identity, &result.identity);
     if pairing == Pairing::Blocks && before.seed == after.seed {
@@ -179,12 +181,12 @@ fn notes(baseline: &Baseline, result: &Sample, pairing: Pairing, remembered: f64
             before.version, after.version
         ));
     }
-    let length = baseline.blocks.mean_length();
-    if length < ENOUGH_MEMORIES * remembered && remembered > 2.0 {
+    // What the largest of so many independent correlations exceeds in one comparison of twenty.
+    let by_chance = normal_quantile(1.0 - 0.05 / figures as f64) / (baseline.blocks.count() as f64).sqrt();
+    if correlation > by_chance {
         notes.push(format!(
-            "Differences remember up to {remembered:.0} {}, blocks are {length:.0} long in the mean: probabilities are too small. A longer \
-             run, or --block-length of its baseline, cures it.",
-            before.kind.units(&before.world)
+            "Neighbouring blocks go together (correlation {correlation:.2}, by chance at most {by_chance:.2}): they are too short, and \
+             probabilities too small. A baseline with a longer --block-length cures it, as long as blocks are many."
         ));
     }
     notes

@@ -221,21 +221,21 @@ impl Side {
         Self::Ratio { blocks: sums, is_root: reduction == Reduction::Rms }
     }
 
-    fn value(&self, taken: &dyn Fn(usize) -> bool) -> Option<f64> {
+    fn value(&self, taken: &[bool]) -> Option<f64> {
         match self {
             Self::Ratio { blocks, is_root } => {
                 let (sum, of) = blocks
                     .iter()
                     .enumerate()
-                    .filter(|(block, _)| taken(*block))
+                    .filter(|(block, _)| taken[*block])
                     .fold((0.0, 0.0), |(sum, of), (_, block)| (sum + block.0, of + block.1));
                 let ratio = (of > 0.0).then(|| sum / of)?;
                 Some(if *is_root { ratio.max(0.0).sqrt() } else { ratio })
             }
             Self::Sorted { values, counts } => {
                 let count: usize =
-                    (0..counts.len()).filter(|block| taken(*block)).map(|block| counts[block]).sum();
-                let chosen = values.iter().filter(|(_, block)| taken(*block)).map(|(value, _)| *value);
+                    counts.iter().zip(taken).filter(|(_, taken)| **taken).map(|(count, _)| count).sum();
+                let chosen = values.iter().filter(|(_, block)| taken[*block]).map(|(value, _)| *value);
                 let mut middle = chosen.skip(count.checked_sub(1)? / 2);
                 let lower = middle.next()?;
                 Some(if count % 2 == 1 { lower } else { f64::midpoint(lower, middle.next()?) })
@@ -244,19 +244,14 @@ impl Side {
     }
 }
 
-/// How many frames a difference remembers: the autocorrelation time of what each unit adds to it, in units.
-pub(super) fn memory(terms: [&FigureTerms; 2], blocks: &Blocks) -> f64 {
-    let reduction = terms[0].reduction;
-    let pooled = terms.map(|run| values(&run.terms));
-    let centre = if reduction == Reduction::Median { median(&pooled).unwrap_or(0.0) } else { 0.0 };
-    let [a, b] = terms.map(|run| Sums::new(&run.terms, reduction, centre));
-    if a.of + b.of == 0.0 {
-        return 1.0;
-    }
-    let together = (a.sum + b.sum) / (a.of + b.of);
-    let difference: Vec<f64> =
-        a.units.iter().zip(&b.units).map(|(a, b)| (b.0 - together * b.1) - (a.0 - together * a.1)).collect();
-    blocks.memory_of(&difference)
+/// The correlation of the effects of neighbouring blocks, about their mean; 0 where no block differs. Of independent ones it scatters
+/// by 1/√n about 0.
+pub(super) fn neighbour_correlation(effects: &[f64]) -> f64 {
+    let mean = effects.iter().sum::<f64>() / effects.len().max(1) as f64;
+    let off: Vec<f64> = effects.iter().map(|effect| effect - mean).collect();
+    let squares: f64 = off.iter().map(|off| off * off).sum();
+    let products: f64 = off.windows(2).map(|pair| pair[0] * pair[1]).sum();
+    if squares > 0.0 { products / squares } else { 0.0 }
 }
 
 /// What each unit of one run adds to a figure, about its value.

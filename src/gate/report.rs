@@ -108,8 +108,8 @@ pub struct GateReport {
     pub blocks: u64,
     /// Units of a block, in the mean.
     pub block_length: f64,
-    /// The longest autocorrelation time of what the units add to the differences, units.
-    pub memory: f64,
+    /// The largest correlation of the effects of neighbouring blocks, of any figure. Blocks that are long enough have little.
+    pub neighbour_correlation: f64,
     /// What a reader must know of how far to trust it.
     pub notes: Vec<String>,
     /// Figures by name.

@@ -21,7 +21,7 @@ pub(crate) enum Fault {
     Shift(f64),
     /// All errors are larger by this factor.
     LargerErrors(f64),
-    /// All measurements are shifted along the rows, px.
+    /// All measurements are shifted along the rows, px, away from nought: in the direction of the bias that they have.
     Bias(f64),
     /// So much of all frames is wrong more.
     MoreWrong(f64),
@@ -34,7 +34,7 @@ pub(crate) const FAULTS: [Fault; 6] = [
     Fault::LostHits(0.03),
     Fault::Shift(0.5),
     Fault::LargerErrors(1.2),
-    Fault::Bias(0.15),
+    Fault::Bias(0.1),
     Fault::MoreWrong(0.025),
     Fault::FewerAttitudes(0.03),
 ];
@@ -45,6 +45,11 @@ impl Fault {
         let random = &mut Seed { seed, case: 1 }.stream(0, Effect::CaseSeed, 0);
         let correct = frames.iter().filter(|frame| matches!(frame.verdict, Verdict::Correct { .. })).count();
         let correct = correct as f64 / frames.len() as f64;
+        let dec_of = |frame: &FrameVerdict| match frame.verdict {
+            Verdict::Correct { error } => error.dec.degrees(),
+            _ => 0.0,
+        };
+        let away = frames.iter().map(dec_of).sum::<f64>().signum() * PIXEL_DEG;
         let mut faulty = frames.to_vec();
         for frame in &mut faulty {
             let u = uniform(random);
@@ -56,7 +61,7 @@ impl Fault {
                     Verdict::Wrong { error, taken: Taken::Nothing, cause: Cause::LostMotionTest }
                 }
                 (verdict, Self::Shift(px)) => with_error(verdict, |ra, dec| (ra + px * PIXEL_DEG, dec)),
-                (verdict, Self::Bias(px)) => with_error(verdict, |ra, dec| (ra, dec + px * PIXEL_DEG)),
+                (verdict, Self::Bias(px)) => with_error(verdict, |ra, dec| (ra, dec + px * away)),
                 (verdict, Self::LargerErrors(factor)) => {
                     with_error(verdict, |ra, dec| (ra * factor, dec * factor))
                 }
