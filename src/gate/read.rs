@@ -223,3 +223,46 @@ impl FrameDigest {
         self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_keeps_twelve_binary_digits_and_whole_numbers_below_that() {
+        for value in [0.0_f32, 1.0, -22.0, 4095.0, 0.013_9, -1.7e-5, 3.4e38, 1e-40] {
+            let kept = rounded(value);
+            assert!((kept - value).abs() <= value.abs() / 4096.0 + f32::MIN_POSITIVE, "{value}: {kept}");
+            assert_eq!(rounded(kept), kept, "once is enough");
+        }
+        assert_eq!([0.0, 1.0, -22.0, 4095.0].map(rounded), [0.0, 1.0, -22.0, 4095.0]);
+    }
+
+    /// A rate counts all its frames, an amount has one value a case, and the verdict of a case is how many of its frames were right.
+    #[test]
+    fn the_cases_of_a_study_are_units() {
+        let figure = |value, count, of| CaseFigure { value, count, of };
+        let table = CaseTable {
+            drawn: indexmap::IndexMap::new(),
+            figures: ["correct_rate", "ra_rms_deg"].map(str::to_owned).to_vec(),
+            rows: vec![
+                crate::study::CaseRow {
+                    case: 0,
+                    seed: 3,
+                    drawn: Vec::new(),
+                    figures: vec![figure(Some(0.75), 30, 40), figure(Some(0.5), 30, 30)],
+                },
+                crate::study::CaseRow {
+                    case: 1,
+                    seed: 4,
+                    drawn: Vec::new(),
+                    figures: vec![figure(Some(0.0), 0, 40), figure(None, 0, 0)],
+                },
+            ],
+        };
+        let units = units_of_cases(&table);
+        assert_eq!(units.units[0].verdict, "30 of 40");
+        assert_eq!(units.figures[0].terms, [Term { sum: 30.0, of: 40 }, Term { sum: 0.0, of: 40 }]);
+        assert_eq!(units.figures[1].terms, [Term { sum: 0.5, of: 1 }, Term::default()]);
+    }
+}
