@@ -23,6 +23,7 @@ fn null_control_other_seeds_are_rejected_as_often_as_alpha_says() {
     let run = |seed: u64| sample_of(seed, &Synthetic { stretches: 12, frames: 30 }.run(seed));
     let count =
         rejected(400, |trial| rejects(&baseline_of(run(2 * trial)), &run(2 * trial + 1), Pairing::Blocks));
+    println!("made-up runs with other seeds: {count} of 400 rejected");
     assert!(count <= MOST_OF_400, "{count} of 400");
 }
 
@@ -33,6 +34,7 @@ fn null_control_a_harmless_change_on_the_same_frames_is_rejected_as_often_as_alp
         let [a, b] = [0, 1].map(|pipeline| sample_of(trial, &harmless(&frames, trial, pipeline)));
         rejects(&baseline_of(a), &b, Pairing::Frames)
     });
+    println!("made-up runs with a harmless change: {count} of 400 rejected");
     assert!(count <= MOST_OF_400, "{count} of 400");
 }
 
@@ -55,6 +57,7 @@ fn planted_faults_are_caught_at_their_stated_size() {
             let faulty = fault.plant(&frames, trial);
             rejects(&baseline_of(sample_of(trial, &frames)), &sample_of(trial, &faulty), Pairing::Frames)
         });
+        println!("{fault:?} in made-up runs: caught in {caught} of 100");
         assert!(caught >= 95, "{fault:?}: {caught} of 100");
     }
 }
@@ -79,7 +82,46 @@ fn the_smallest_visible_change_is_visible() {
         let rms = report.figures["ra_rms_deg"].result.unwrap();
         amount += u32::from(worse("ra_rms_deg", &|size| Fault::LargerErrors(1.0 + size / rms)));
     }
+    println!("changes of the smallest visible size: rate {rate}, amount {amount} of 100 found worse");
     assert!(rate >= 90 && amount >= 90, "rate {rate}, amount {amount} of 100");
+}
+
+/// A pipeline that no longer tells its stars has not become better at it.
+#[test]
+fn a_figure_that_vanishes_is_gone_and_shuts_the_gate() {
+    let mut frames = Synthetic { stretches: 12, frames: 30 }.run(1);
+    let baseline = baseline_of(sample_of(1, &frames));
+    frames.iter_mut().for_each(|frame| frame.n_stars = None);
+    let report = compare(&baseline, &sample_of(1, &frames), &CompareOptions::default()).unwrap();
+    assert_eq!(report.worse().collect::<Vec<_>>(), ["stars_mean"]);
+    assert_eq!(report.figures["stars_mean"].verdict, FigureVerdict::Gone);
+}
+
+/// A change that is certain and of no account: every error a thousandth larger, in every block.
+#[test]
+fn a_change_below_the_tolerance_is_no_worsening() {
+    let frames = Synthetic { stretches: 12, frames: 30 }.run(1);
+    let slightly = sample_of(1, &Fault::LargerErrors(1.001).plant(&frames, 1));
+    let mut options = CompareOptions { figures: vec!["ra_rms_deg".to_owned()], ..CompareOptions::default() };
+    let baseline = baseline_of(sample_of(1, &frames));
+    assert_eq!(compare(&baseline, &slightly, &options).unwrap().verdict, FigureVerdict::NoWorse);
+    options.tolerances.insert("ra_rms_deg".to_owned(), 0.0);
+    assert_eq!(compare(&baseline, &slightly, &options).unwrap().verdict, FigureVerdict::Worse);
+}
+
+#[test]
+fn what_limits_the_trust_in_a_comparison_is_noted() {
+    let run = |seed: u64| Synthetic { stretches: 4, frames: 200 }.run(seed);
+    let frame_by_frame =
+        boresight::gate::Baseline::new(sample_of(1, &run(1)), "too short blocks", Some(1)).unwrap();
+    let report = compare(&frame_by_frame, &sample_of(2, &run(2)), &CompareOptions::default()).unwrap();
+    assert!(report.notes.iter().any(|note| note.contains("too short")), "{:?}", report.notes);
+    let baseline = baseline_of(sample_of(1, &run(1)));
+    let mut other = sample_of(1, &run(1));
+    other.identity.frames_sha256 = "of another simulator".to_owned();
+    let report = compare(&baseline, &other, &CompareOptions::default()).unwrap();
+    assert_eq!(report.pairing, Pairing::Blocks);
+    assert!(report.notes.iter().any(|note| note.contains("the simulator has changed")), "{:?}", report.notes);
 }
 
 /// A run of ARGON's first frames.
