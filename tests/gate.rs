@@ -89,7 +89,7 @@ fn the_smallest_visible_change_is_visible() {
 /// A pipeline that no longer tells its stars has not become better at it.
 #[test]
 fn a_figure_that_vanishes_is_gone_and_shuts_the_gate() {
-    let mut frames = Synthetic { stretches: 12, frames: 30 }.run(1);
+    let mut frames = Synthetic { stretches: 30, frames: 30 }.run(1);
     let baseline = baseline_of(sample_of(1, &frames));
     frames.iter_mut().for_each(|frame| frame.n_stars = None);
     let report = compare(&baseline, &sample_of(1, &frames), &CompareOptions::default()).unwrap();
@@ -335,7 +335,7 @@ fn the_gates_fly_the_built_in_scenarios() {
 #[test]
 #[ignore = "800 runs of the simulator"]
 fn real_runs_with_other_seeds_are_rejected_as_often_as_alpha_says() {
-    let runs = real::runs(0..800, 4, 12);
+    let runs = real::runs(0..800, 4, 6);
     let blocks = rejected(400, |pair| {
         let [a, b] = [2 * pair, 2 * pair + 1].map(|seed| sample_of(seed, &runs[seed as usize]));
         rejects(&baseline_of(a), &b, Pairing::Blocks)
