@@ -163,7 +163,7 @@ impl PreparedDocking {
         Ok(DockingRan { score, first_failure })
     }
 
-    /// Makes fields on this thread, has the pipeline process them and scores its answers; nothing is written.
+    /// Makes fields on this thread, has the pipeline process them and judges its answers; nothing is written.
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
@@ -171,7 +171,7 @@ impl PreparedDocking {
         &self,
         fields: Range<u64>,
         factory: &dyn DockingPipelineFactory,
-    ) -> Result<DockingScore, Failure> {
+    ) -> Result<DockingScorer, Failure> {
         let mut pipeline = factory.build(&self.setup)?;
         let mut scorer = DockingScorer::new(context(&self.run_file, &self.setup));
         let mut workspace = self.simulator.workspace()?;
@@ -185,7 +185,7 @@ impl PreparedDocking {
             let truth = true_field(&truth_as_filed(exposure.truth), &self.setup);
             scorer.add(&truth, Some(&answer_as_filed(&outcome))).map_err(unscorable)?;
         }
-        Ok(scorer.finish())
+        Ok(scorer)
     }
 
     fn fly(
@@ -265,6 +265,18 @@ pub fn score_docking(
     measurements: &Path,
     motion: Option<&Path>,
 ) -> Result<DockingScore, Failure> {
+    Ok(judge_docking(directory, measurements, motion)?.finish())
+}
+
+/// [`score_docking`], as far as the verdicts on the fields.
+///
+/// # Errors
+/// As [`score_docking`].
+pub fn judge_docking(
+    directory: &Path,
+    measurements: &Path,
+    motion: Option<&Path>,
+) -> Result<DockingScorer, Failure> {
     let run_file = RunFile::<DockingScenario>::read(&directory.join("run.toml"))?;
     let setup = SetupFile::read(&directory.join("setup.toml"))?.setup();
     let mut scorer = DockingScorer::new(context(&run_file, &setup));
@@ -298,7 +310,7 @@ pub fn score_docking(
     match (answers.next(), reports.next(), motion) {
         (Some((field, _)), _, _) => Err(foreign(measurements, field)),
         (None, Some((field, _)), Some(path)) => Err(foreign(path, field)),
-        _ => Ok(scorer.finish()),
+        _ => Ok(scorer),
     }
 }
 

@@ -10,6 +10,8 @@ pub mod docking_writer;
 pub mod failure;
 pub mod files;
 pub mod flight;
+pub mod gate;
+pub mod gate_table;
 pub mod inject;
 pub mod mitsuba;
 pub mod pipeline_choice;

@@ -18,7 +18,7 @@ use crate::flight::fly;
 use crate::inject::{InjectedPipeline, Stage};
 use crate::run_file::RunFile;
 use crate::scenario::{FarRangeScenario, ScenarioSource};
-use crate::score::{Score, ScoreContext, Scored, Scorer};
+use crate::score::{ScoreContext, Scored, Scorer};
 use crate::star_list::star_list;
 
 /// Which frames are made, on how many threads, and whether their images are kept.
@@ -175,7 +175,7 @@ impl Prepared {
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
-    pub fn score(&self, frames: Range<u64>, factory: &dyn PipelineFactory) -> Result<Score, Failure> {
+    pub fn score(&self, frames: Range<u64>, factory: &dyn PipelineFactory) -> Result<Scored, Failure> {
         let mut pipeline = factory.build(&self.setup())?;
         let unproject = |point| self.simulator.projection().unproject(point);
         let mut scorer = Scorer::new(context(&self.run_file, &unproject));
@@ -185,7 +185,7 @@ impl Prepared {
             let outcome = pipeline.process(&exposure.frame, &exposure.telemetry);
             scorer.add(&exposure.truth, &exposure.objects, Some(&outcome)).map_err(unscorable)?;
         }
-        Ok(scorer.finish().score)
+        Ok(scorer.finish())
     }
 
     fn dataset(&self, directory: &RunDirectory, flight: &Flight) -> Result<DatasetWriter, Failure> {

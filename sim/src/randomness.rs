@@ -64,6 +64,8 @@ pub enum Effect {
     CaseSeed = 62,
     /// Resampling of cases for the intervals of a study's figures (addressed with the study's seed).
     Bootstrap = 63,
+    /// Which blocks a gate exchanges between baseline and result (addressed with the number of blocks).
+    BlockExchange = 64,
 }
 
 /// The generator behind every draw.

@@ -1,6 +1,7 @@
 //! The command `boresight`: arguments in, exit status out. Printing, clocks and environment live here.
 
 mod dataset;
+mod gate;
 mod options;
 mod output;
 mod run;
@@ -43,6 +44,8 @@ enum Command {
     Study(study::StudyCommand),
     /// Which camera sees enough stars and the target: verify requirements, find exposure, aperture or field
     Visibility(visibility::VisibilityArguments),
+    /// Say whether a result is worse than a baseline; exit status 1 when it is
+    Gate(gate::GateArguments),
     /// List, check and start scenarios
     #[command(subcommand)]
     Scenario(scenario::ScenarioCommand),
@@ -73,6 +76,7 @@ pub fn main() -> ExitCode {
         Command::Score(arguments) => score::score(&arguments, &output),
         Command::Study(command) => study::study(&command, &output),
         Command::Visibility(arguments) => visibility::visibility(&arguments, &output),
+        Command::Gate(arguments) => gate::gate(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
     };
     match answer {

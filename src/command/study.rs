@@ -19,8 +19,8 @@ use crate::pipeline_choice::PipelineChoice;
 use crate::run::{Expectation, Flight, Prepared};
 use crate::scenario::Scenario;
 use crate::study::{
-    CaseRow, CaseTable, Plan, ShardManifest, ShardStore, Study, StudyFile, Summary, is_narrow_enough,
-    run_cases,
+    CaseRow, CaseTable, Plan, ShardManifest, ShardStore, Study, StudyFile, StudyRecord, Summary,
+    is_narrow_enough, run_cases,
 };
 use crate::study_engine::{Engine, run_on_dask};
 use crate::study_table::{live, study_table};
@@ -262,6 +262,7 @@ fn finish(
     output: &Output,
 ) -> Result<Answer, Failure> {
     let summary = Summary::new(study, hash, &path.display().to_string(), table);
+    store.write_record(&StudyRecord::new(study)?)?;
     let cases = store.write_cases(table)?;
     let written = store.write_summary(&summary)?;
     let text = study_table(&summary, output.is_terminal());

@@ -142,7 +142,7 @@ impl FileError {
         Self::Format { path: path.to_owned(), format, reason: reason.to_string() }
     }
 
-    pub(super) fn value(
+    pub(crate) fn value(
         path: &Path,
         place: Place,
         field: impl Into<String>,

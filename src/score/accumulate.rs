@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use super::angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
 use super::cause::{Cause, Detector};
+use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
 use super::report::{Figure, GroupScore, Score, names};
 use super::verdict::{FrameVerdict, Taken, Verdict, judge};
 
@@ -207,52 +208,72 @@ fn counts(words: &[&str], occurrences: impl Iterator<Item = &'static str>) -> In
 }
 
 fn figures(sequences: &[&[&FrameVerdict]]) -> IndexMap<String, Figure> {
-    let of_all =
-        |holds: &dyn Fn(&FrameVerdict) -> bool| Figure::rate(&collect(sequences, |frame| Some(holds(frame))));
-    let of_detected = |component: fn(LineOfSightError) -> Angle, limit: Angle| {
-        Figure::rate(&collect(sequences, |frame| {
-            frame.verdict.error().map(|error| component(error).abs() < limit)
-        }))
+    definitions().iter().map(|figure| (figure.name.clone(), figure.figure(sequences))).collect()
+}
+
+/// The figures of a far-range score, in their order.
+fn definitions() -> Vec<Definition<'static, FrameVerdict>> {
+    let of_all = |name: &str, holds: fn(&FrameVerdict) -> bool| {
+        Definition::rate(name, move |frame: &FrameVerdict| Some(holds(frame)))
     };
-    let of_correct = |component: fn(LineOfSightError) -> Angle| {
-        collect(sequences, move |frame| match frame.verdict {
+    let of_detected = |name: &str, component: fn(LineOfSightError) -> Angle, limit: Angle| {
+        Definition::rate(name, move |frame: &FrameVerdict| {
+            frame.verdict.error().map(|error| component(error).abs() < limit)
+        })
+    };
+    let of_correct = |name: &str, reduction: Reduction, component: fn(LineOfSightError) -> Angle| {
+        Definition::of(name, reduction, move |frame: &FrameVerdict| match frame.verdict {
             Verdict::Correct { error } => Some(component(error).degrees()),
             _ => None,
         })
     };
     let ra = |error: LineOfSightError| error.ra;
     let dec = |error: LineOfSightError| error.dec;
-    let (ra_deg, dec_deg) = (of_correct(ra), of_correct(dec));
-    let stars = collect(sequences, |frame| frame.n_stars.map(f64::from));
-    [
-        (names::HIT_RATE, of_all(&|frame| frame.verdict.is_detected())),
-        (names::RA_WITHIN_1PX, of_detected(ra, ONE_PIXEL)),
-        (names::RA_WITHIN_2PX, of_detected(ra, TWO_PIXELS)),
-        (names::DEC_WITHIN_1PX, of_detected(dec, ONE_PIXEL)),
-        (names::DEC_WITHIN_2PX, of_detected(dec, TWO_PIXELS)),
-        (names::CORRECT_RATE, of_all(&|frame| matches!(frame.verdict, Verdict::Correct { .. }))),
-        (names::WRONG_RATE, of_all(&|frame| matches!(frame.verdict, Verdict::Wrong { .. }))),
-        (names::MISS_RATE, of_all(&|frame| matches!(frame.verdict, Verdict::Missed { .. }))),
-        (names::RA_RMS_DEG, Figure::rms(&ra_deg)),
-        (names::DEC_RMS_DEG, Figure::rms(&dec_deg)),
-        (names::RA_MEAN_DEG, Figure::mean(&ra_deg)),
-        (names::DEC_MEAN_DEG, Figure::mean(&dec_deg)),
-        (names::RA_MEDIAN_DEG, Figure::median(&ra_deg)),
-        (names::DEC_MEDIAN_DEG, Figure::median(&dec_deg)),
-        (names::STARS_MEAN, Figure::mean(&stars)),
-        (
-            names::ATTITUDE_FROM_STARS_RATE,
-            of_all(&|frame| frame.attitude_source == Some(AttitudeSource::Stars)),
-        ),
+    let stars = |frame: &FrameVerdict| frame.n_stars.map(f64::from);
+    vec![
+        of_all(names::HIT_RATE, |frame| frame.verdict.is_detected()),
+        of_detected(names::RA_WITHIN_1PX, ra, ONE_PIXEL),
+        of_detected(names::RA_WITHIN_2PX, ra, TWO_PIXELS),
+        of_detected(names::DEC_WITHIN_1PX, dec, ONE_PIXEL),
+        of_detected(names::DEC_WITHIN_2PX, dec, TWO_PIXELS),
+        of_all(names::CORRECT_RATE, |frame| matches!(frame.verdict, Verdict::Correct { .. })),
+        of_all(names::WRONG_RATE, |frame| matches!(frame.verdict, Verdict::Wrong { .. })),
+        of_all(names::MISS_RATE, |frame| matches!(frame.verdict, Verdict::Missed { .. })),
+        of_correct(names::RA_RMS_DEG, Reduction::Rms, ra),
+        of_correct(names::DEC_RMS_DEG, Reduction::Rms, dec),
+        of_correct(names::RA_MEAN_DEG, Reduction::Mean, ra),
+        of_correct(names::DEC_MEAN_DEG, Reduction::Mean, dec),
+        of_correct(names::RA_MEDIAN_DEG, Reduction::Median, ra),
+        of_correct(names::DEC_MEDIAN_DEG, Reduction::Median, dec),
+        Definition::of(names::STARS_MEAN, Reduction::Mean, stars),
+        of_all(names::ATTITUDE_FROM_STARS_RATE, |frame| frame.attitude_source == Some(AttitudeSource::Stars)),
     ]
-    .into_iter()
-    .map(|(name, figure)| (name.to_owned(), figure))
-    .collect()
 }
 
-/// The values of the frames that have one, sequence by sequence.
-fn collect<T>(sequences: &[&[&FrameVerdict]], value: impl Fn(&FrameVerdict) -> Option<T>) -> Vec<Vec<T>> {
-    sequences.iter().map(|sequence| sequence.iter().filter_map(|frame| value(frame)).collect()).collect()
+impl Scored {
+    /// Every frame by itself, with what it adds to each figure.
+    pub fn units(&self) -> UnitTable {
+        UnitTable::of_frames(&self.verdicts)
+    }
+}
+
+impl UnitTable {
+    /// The frames of a far-range run, from their verdicts.
+    pub fn of_frames(frames: &[FrameVerdict]) -> Self {
+        let unit = |frame: &FrameVerdict| {
+            let row = frame.row();
+            UnitVerdict {
+                number: frame.frame,
+                group: frame.group.to_string(),
+                verdict: row.verdict.to_owned(),
+                cause: row.cause.map(str::to_owned),
+            }
+        };
+        Self {
+            units: frames.iter().map(unit).collect(),
+            figures: definitions().iter().map(|figure| FigureTerms::new(figure, frames)).collect(),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ mod angles;
 mod argon_table2;
 mod belonging;
 mod cause;
+mod definition;
 pub mod docking;
 #[cfg(test)]
 mod hand_made;
@@ -27,6 +28,7 @@ pub use angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
 pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
 pub use belonging::belonging_to;
 pub use cause::Cause;
+pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 pub use report::{Figure, GroupScore, Score, names};
 pub use sense::{Better, Kind, Sense, sense};
 pub use verdict::{FrameVerdict, Taken, Verdict, VerdictRow};

@@ -3,16 +3,21 @@
 //! Neighbouring frames show almost the same scene, so 1000 of them hold less evidence than 1000 throws of a coin.
 //! Every interval here is of 95 % and is widened by the effective sample size ([`effective_size`]). Rates take
 //! the score interval of Wilson ([`wilson`]), means the normal law, medians the order statistics. Frames that are independent by
-//! construction take the exact bounds of Clopper and Pearson ([`clopper_pearson`]).
+//! construction take the exact bounds of Clopper and Pearson ([`clopper_pearson`]). Two runs are compared by exchanging blocks of
+//! them ([`joint_test`]).
 
 mod autocorrelation;
 mod clopper_pearson;
+mod exchange;
 mod location;
+mod normal_quantile;
 mod proportion;
 
 pub use autocorrelation::effective_size;
 pub use clopper_pearson::{binomial_at_least, clopper_pearson};
+pub use exchange::{BlockEffects, Exchanges, JointTest, Tested, interval_by_sets, joint_test};
 pub use location::{mean_interval, median, median_interval, rms_interval};
+pub use normal_quantile::normal_quantile;
 pub use proportion::wilson;
 
 /// The 97.5 % quantile of the standard normal law: every interval is two-sided with a confidence of 95 %.

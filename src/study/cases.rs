@@ -158,6 +158,29 @@ impl CaseTable {
         (Schema::new(fields), columns)
     }
 
+    /// The columns of a file of cases, without its rows.
+    ///
+    /// # Errors
+    /// [`FileError`] for a file that cannot be read or is damaged.
+    pub fn columns_of(path: &Path) -> Result<Self, FileError> {
+        guarded(path, || {
+            let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+            let builder = ParquetRecordBatchReaderBuilder::try_new(file)
+                .map_err(|error| FileError::format(path, "Parquet", error))?;
+            let fields = builder.schema().fields();
+            let drawn = fields.iter().filter_map(|field| {
+                let name = field.name().strip_prefix(SET)?;
+                Some((name.to_owned(), *field.data_type() == DataType::Float64))
+            });
+            let figures = fields.iter().filter_map(|field| field.name().strip_suffix(".of"));
+            Ok(Self {
+                drawn: drawn.collect(),
+                figures: figures.filter(|name| !name.starts_with(SET)).map(str::to_owned).collect(),
+                rows: Vec::new(),
+            })
+        })
+    }
+
     /// Reads a table with these columns, and what was written beside the rows.
     ///
     /// # Errors

@@ -48,13 +48,13 @@ fn figures_of(
             let prepared = Prepared::new(&case.source)?;
             let factory = choice.factory(&prepared.scenario().far_range, scratch)?;
             let frames = study.frames(prepared.frame_count())?;
-            Ok(prepared.score(frames, factory.as_ref())?.figures)
+            Ok(prepared.score(frames, factory.as_ref())?.score.figures)
         }
         Scenario::Docking(_) => {
             let prepared = PreparedDocking::new(&case.source, DockingRenderer::Fast)?;
             let factory = choice.docking_factory(&prepared.scenario().docking, scratch)?;
             let fields = study.frames(prepared.field_count())?;
-            Ok(prepared.score(fields, factory.as_ref())?.figures)
+            Ok(prepared.score(fields, factory.as_ref())?.finish().figures)
         }
     }
 }

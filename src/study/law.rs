@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::quantile::normal_quantile;
 use crate::files::read_column;
+use crate::statistics::normal_quantile;
 
 /// The law of a parameter. Every law is drawn by its quantile function from numbers of the unit interval, so that a design (Sobol,
 /// Latin hypercube) spreads any of them.

@@ -15,6 +15,7 @@ use tempfile::NamedTempFile;
 
 use super::cases::CaseTable;
 use super::definition::Study;
+use super::record::StudyRecord;
 use crate::failure::Failure;
 use crate::files::FileError;
 
@@ -252,6 +253,16 @@ impl ShardStore {
         let of = [("study_hash", self.plan.hash.clone()), ("version", self.plan.version.clone())];
         table.write(file.as_file(), &path, &of)?;
         replace(file, &path)?;
+        Ok(path)
+    }
+
+    /// What the study is of, `study.json`, written at once in the place of an earlier one.
+    ///
+    /// # Errors
+    /// [`Failure`] when it cannot be written.
+    pub fn write_record(&self, record: &StudyRecord) -> Result<PathBuf, Failure> {
+        let path = self.folder.join("study.json");
+        replace(partial_with(&path, &to_json(record)?)?, &path)?;
         Ok(path)
     }
 

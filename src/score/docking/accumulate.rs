@@ -9,13 +9,13 @@ use super::bins::{bin, group_name, lens_names};
 use super::cause::MissCause;
 use super::consistency::{nees, within_3_sigma};
 use super::errors::{PoseErrors, phi_error};
-use super::figures::figures;
+use super::figures::definitions;
 use super::portions::{MotionVerdict, PortionVerdict};
 use super::report::{DockingGroup, DockingScore, names};
 use super::sight::Sights;
 use super::truth::{TrueField, View};
 use super::verdict::{Gross, Verdict, gross};
-use crate::score::{Figure, ScoreError};
+use crate::score::{Figure, FigureTerms, ScoreError, UnitTable, UnitVerdict};
 
 /// What the score of a docking run needs besides the fields.
 #[derive(Debug, Clone)]
@@ -35,6 +35,8 @@ pub struct DockingContext {
 /// What the score keeps of a field.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct FieldVerdict {
+    /// Number of the field.
+    field: u64,
     /// Bin of the true range, and camera.
     group: (usize, usize),
     /// True ρ, m.
@@ -139,6 +141,7 @@ impl DockingScorer {
         let is_resolved = self.sights.resolves(truth.camera, &truth.pose);
         let is_clear = truth.view == View::Whole && is_resolved;
         self.verdicts.push(FieldVerdict {
+            field: truth.field,
             group: (bin(range_m), truth.camera),
             range_m,
             is_clear,
@@ -187,6 +190,29 @@ impl DockingScorer {
         Some(verdict)
     }
 
+    /// Every field by itself, with what it adds to each figure but the latency, which only a whole sequence has.
+    pub fn units(&self) -> UnitTable {
+        let lenses = lens_names(&self.context.setup.cameras);
+        let unit = |field: &FieldVerdict| {
+            let (verdict, cause) = match &field.verdict {
+                Verdict::Success { .. } => ("success", None),
+                Verdict::RangeOnly { .. } => ("range_only", None),
+                Verdict::Wrong { gross } => ("wrong", Some(gross.code())),
+                Verdict::Missed { cause } => ("missed", Some(cause.code())),
+            };
+            UnitVerdict {
+                number: field.field,
+                group: name_of(field.group, &lenses),
+                verdict: verdict.to_owned(),
+                cause: cause.map(str::to_owned),
+            }
+        };
+        UnitTable {
+            units: self.verdicts.iter().map(unit).collect(),
+            figures: definitions().iter().map(|figure| FigureTerms::new(figure, &self.verdicts)).collect(),
+        }
+    }
+
     /// The figures over all fields. A bin of range and lens is one sequence for the statistics, even where another one
     /// interrupts it.
     pub fn finish(self) -> DockingScore {
@@ -199,10 +225,6 @@ impl DockingScorer {
         let latency = Figure::mean(&[latency(&self.verdicts).into_iter().collect()]);
         all.figures.insert(names::LATENCY_FIELDS.to_owned(), latency);
         let lenses = lens_names(&self.context.setup.cameras);
-        let name = |(bin, camera): (usize, usize)| {
-            let lens = lenses.get(camera).cloned().unwrap_or_else(|| format!("camera {camera}"));
-            group_name(bin, &lens)
-        };
         DockingScore {
             world: "docking".to_owned(),
             scenario: self.context.scenario,
@@ -212,11 +234,19 @@ impl DockingScorer {
             frames: all.frames,
             portions: all.portions,
             figures: all.figures,
-            groups: groups.iter().map(|(group, fields)| (name(*group), group_score(&[fields]))).collect(),
+            groups: groups
+                .iter()
+                .map(|(group, fields)| (name_of(*group, &lenses), group_score(&[fields])))
+                .collect(),
             misses: all.misses,
             wrong: all.wrong,
         }
     }
+}
+
+fn name_of((bin, camera): (usize, usize), lenses: &[String]) -> String {
+    let lens = lenses.get(camera).cloned().unwrap_or_else(|| format!("camera {camera}"));
+    group_name(bin, &lens)
 }
 
 /// Names of the figures of every score, in their order.
@@ -245,7 +275,7 @@ fn group_score(sequences: &[&[&FieldVerdict]]) -> DockingGroup {
     DockingGroup {
         frames: fields().count() as u64,
         portions: fields().filter(|field| field.portion.is_some()).count() as u64,
-        figures: figures(sequences),
+        figures: definitions().iter().map(|figure| (figure.name.clone(), figure.figure(sequences))).collect(),
         misses: counts(&MissCause::CODES, misses),
         wrong: counts(&Gross::ALL.map(Gross::code), wrong),
     }

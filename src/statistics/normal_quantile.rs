@@ -2,8 +2,8 @@
 
 /// The number below which a normal number of mean 0 and standard deviation 1 falls with the probability `p` in (0, 1): the
 /// algorithm AS 241 (PPND16) of Wichura (1988), Applied Statistics 37, 477–484, good to about 1 part in 10¹⁶. On `libm`, so
-/// that the values of a case are the same bits on every machine.
-pub(super) fn normal_quantile(p: f64) -> f64 {
+/// that values drawn by it are the same bits on every machine.
+pub fn normal_quantile(p: f64) -> f64 {
     let q = p - 0.5;
     if q.abs() <= 0.425 {
         let r = 0.180625 - q * q;

@@ -1,0 +1,126 @@
+//! `boresight gate`: whether a result is worse than a baseline.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+
+use super::Answer;
+use super::output::Output;
+use crate::failure::Failure;
+use crate::files::{FileError, PartialFiles};
+use crate::gate::{Baseline, CompareOptions, FigureVerdict, Replace, compare, junit, read_result};
+use crate::gate_table::{baseline_text, gate_table};
+
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(super) struct GateArguments {
+    #[command(subcommand)]
+    command: Option<GateCommand>,
+    #[command(flatten)]
+    compare: Option<CompareArguments>,
+}
+
+#[derive(Debug, Subcommand)]
+enum GateCommand {
+    /// Make a baseline of a run or of a study, deliberately and for a reason
+    Baseline(BaselineArguments),
+}
+
+#[derive(Debug, Args)]
+struct CompareArguments {
+    /// Folder of a baseline (`boresight gate baseline`)
+    baseline: PathBuf,
+    /// Directory of a run, or of a study that is complete
+    result: PathBuf,
+    /// Probability of finding any figure worse when none is
+    #[arg(long, value_name = "P", default_value_t = 0.05)]
+    alpha: f64,
+    /// Only these figures, with commas between them; default: all of the baseline
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    figures: Vec<String>,
+    /// By how much a figure may be worse and pass, in its own unit; may be given for several. Default: 1 % of an amount's size, of
+    /// rates nothing
+    #[arg(long, value_name = "FIGURE=SIZE")]
+    tolerance: Vec<Tolerance>,
+    /// Write the report as JUnit XML too
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+struct BaselineArguments {
+    /// Directory of a run, or of a study that is complete
+    result: PathBuf,
+    /// Folder of the baseline
+    #[arg(short, long, value_name = "DIR")]
+    out: PathBuf,
+    /// Why this is what later results are held against
+    #[arg(long, value_name = "TEXT")]
+    reason: String,
+    /// Replace a baseline that is there already
+    #[arg(long)]
+    replace: bool,
+    /// Frames (fields, cases) of a block; default: ten times as many as the figures remember, fewer where that leaves
+    /// fewer than twenty blocks, at least thirty
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    block_length: Option<u64>,
+}
+
+/// A figure and its tolerance.
+#[derive(Debug, Clone)]
+struct Tolerance {
+    figure: String,
+    size: f64,
+}
+
+impl std::str::FromStr for Tolerance {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parsed = text.split_once('=').and_then(|(figure, size)| {
+            let size = size.trim().parse().ok().filter(|size: &f64| size.is_finite() && *size >= 0.0)?;
+            Some(Self { figure: figure.trim().to_owned(), size })
+        });
+        parsed.ok_or_else(|| {
+            format!("`{text}` is no tolerance; expected FIGURE=SIZE with a size of 0 or more, as in ra_rms_deg=0.001")
+        })
+    }
+}
+
+pub(super) fn gate(arguments: &GateArguments, output: &Output) -> Result<Answer, Failure> {
+    match (&arguments.command, &arguments.compare) {
+        (Some(GateCommand::Baseline(arguments)), _) => make_baseline(arguments, output),
+        (None, Some(arguments)) => run_gate(arguments, output),
+        // clap asks for the one or the other.
+        (None, None) => Err(Failure::Usage("BASELINE and RESULT are missing, expected both".to_owned())),
+    }
+}
+
+fn make_baseline(arguments: &BaselineArguments, output: &Output) -> Result<Answer, Failure> {
+    let sample = read_result(&arguments.result)?;
+    let mut baseline = Baseline::new(sample, &arguments.reason, arguments.block_length)?;
+    let replace = if arguments.replace { Replace::Allow } else { Replace::Refuse };
+    baseline.write(&arguments.out, replace)?;
+    let text = format!("{}baseline in {}", baseline_text(&baseline), arguments.out.display());
+    output.answer(&baseline.header, text)?;
+    Ok(Answer::Yes)
+}
+
+fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Failure> {
+    let baseline = Baseline::read(&arguments.baseline)?;
+    let result = read_result(&arguments.result)?;
+    let tolerances = arguments.tolerance.iter().map(|told| (told.figure.clone(), told.size)).collect();
+    let options = CompareOptions { alpha: arguments.alpha, figures: arguments.figures.clone(), tolerances };
+    let report = compare(&baseline, &result, &options)?;
+    if let Some(path) = &arguments.junit {
+        write_junit(path, &junit(&report)?)?;
+    }
+    output.answer(&report, gate_table(&report, output.is_terminal()))?;
+    Ok(if report.verdict == FigureVerdict::Worse { Answer::No } else { Answer::Yes })
+}
+
+fn write_junit(path: &Path, xml: &str) -> Result<(), Failure> {
+    let partial = PartialFiles::of(&[path])?;
+    std::fs::write(partial.path(0), xml).map_err(|source| FileError::io(partial.path(0), "write", source))?;
+    Ok(partial.complete()?)
+}

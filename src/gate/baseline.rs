@@ -1,0 +1,238 @@
+//! A baseline: what was good enough once, kept to be compared with.
+//!
+//! A folder with two files: `baseline.toml`, readable in a diff, says what was run, by which pipeline, why this is the baseline, how it is
+//! cut into blocks, and the figures; `rows.parquet` has a row a unit. The one holds the SHA-256 of the other.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use tempfile::NamedTempFile;
+
+use super::blocks::{Blocks, LEAST_BLOCKS, Memory, length_for, memory};
+use super::effects::value;
+use super::identity::Identity;
+use super::read::Sample;
+use super::rows;
+use crate::failure::Failure;
+use crate::files::FileError;
+use crate::score::Reduction;
+use crate::toml_file;
+
+/// Version of the form of these files.
+const FORMAT: u32 = 1;
+/// Largest `rows.parquet` that is read, bytes.
+const MOST_BYTES: u64 = 1 << 28;
+
+/// What becomes of a baseline that is there already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Replace {
+    /// It stays, and making another in its place is an error.
+    Refuse,
+    /// It is replaced.
+    Allow,
+}
+
+/// `baseline.toml`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BaselineHeader {
+    /// Version of the form of these files.
+    pub format: u32,
+    /// Why this is the baseline.
+    pub reason: String,
+    /// SHA-256 of `rows.parquet`.
+    pub rows_sha256: String,
+    /// Number of rows: frames, fields or cases.
+    pub units: u64,
+    /// How it is cut.
+    pub blocks: BlockRule,
+    /// Figures by name.
+    pub figures: IndexMap<String, BaselineFigure>,
+    /// What was run.
+    pub run: Identity,
+}
+
+/// How a baseline is cut into blocks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BlockRule {
+    /// How many there are.
+    pub count: u64,
+    /// Units of a block, about; blocks do not cross gaps, and are shorter where a sequence is.
+    pub length: u64,
+    /// The longest autocorrelation time of the figures, units.
+    pub memory: f64,
+    /// The figure that has it; empty when none remembers anything.
+    pub memory_of: String,
+}
+
+/// A figure of a baseline.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BaselineFigure {
+    /// How the values of the units are summed up: `rate`, `mean`, `rms`, `median`.
+    pub by: String,
+    /// The value; absent when it is counted over nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    /// How many values it is counted over.
+    pub of: u64,
+}
+
+/// A baseline in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Baseline {
+    /// `baseline.toml`.
+    pub header: BaselineHeader,
+    /// What was run and what came of each unit.
+    pub sample: Sample,
+    /// The block of each unit.
+    pub blocks: Blocks,
+}
+
+impl Baseline {
+    /// A baseline of a sample, cut into blocks of about `length` units; without it, ten times as long as its figures remember, but not
+    /// so long that there are fewer than twenty, and not shorter than thirty units.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for an empty reason, or fewer blocks than can show anything.
+    pub fn new(sample: Sample, reason: &str, length: Option<u64>) -> Result<Self, Failure> {
+        let reason = reason.trim();
+        if reason.is_empty() {
+            return Err(Failure::Usage(
+                "--reason is empty, expected why this result is what later ones are held against".to_owned(),
+            ));
+        }
+        let Identity { kind, world, .. } = &sample.identity;
+        let (kind, units) = (*kind, sample.table.units.len());
+        let Memory { units: remembered, figure } = memory(kind, world, &sample.table);
+        let length = length.map_or_else(
+            || length_for(&Memory { units: remembered, figure: String::new() }, units),
+            |length| length as usize,
+        );
+        let blocks = Blocks::cut(kind, world, &sample.table, length);
+        if blocks.count() < LEAST_BLOCKS {
+            return Err(Failure::Usage(format!(
+                "the result has {units} {} in {} blocks, expected at least {LEAST_BLOCKS} blocks: fewer cannot show anything. A longer run, or --block-length, gives more",
+                kind.units(world),
+                blocks.count()
+            )));
+        }
+        let figures = sample.table.figures.iter().map(|figure| {
+            let told = BaselineFigure {
+                by: figure.reduction.code().to_owned(),
+                value: value(figure.reduction, &figure.terms),
+                of: figure.terms.iter().map(|term| u64::from(term.of)).sum(),
+            };
+            (figure.name.clone(), told)
+        });
+        let header = BaselineHeader {
+            format: FORMAT,
+            reason: reason.to_owned(),
+            rows_sha256: String::new(),
+            units: units as u64,
+            blocks: BlockRule {
+                count: blocks.count() as u64,
+                length: length as u64,
+                memory: (remembered * 10.0).round() / 10.0,
+                memory_of: figure,
+            },
+            figures: figures.collect(),
+            run: sample.identity.clone(),
+        };
+        Ok(Self { header, sample, blocks })
+    }
+
+    /// Writes the files into a folder, which is made when it is not there. Each gets its name when both are complete.
+    ///
+    /// # Errors
+    /// [`Failure`] when there is a baseline already and `replace` refuses it, or a file cannot be written.
+    pub fn write(&mut self, folder: &Path, replace: Replace) -> Result<(), Failure> {
+        let [header, rows] = paths(folder);
+        for path in [&header, &rows] {
+            if replace == Replace::Refuse && path.exists() {
+                return Err(Failure::Usage(format!(
+                    "{}: exists; a baseline is replaced with --replace alone",
+                    path.display()
+                )));
+            }
+        }
+        std::fs::create_dir_all(folder).map_err(|source| FileError::io(folder, "create", source))?;
+        let new_rows = partial(folder)?;
+        rows::write(new_rows.as_file(), &rows, &self.sample.table, |unit| self.blocks.of(unit))?;
+        self.header.rows_sha256 = file_sha256(new_rows.path())?;
+        let text = toml::to_string(&self.header)
+            .map_err(|error| Failure::Usage(format!("the baseline cannot be written: {error}")))?;
+        let mut new_header = partial(folder)?;
+        new_header.write_all(text.as_bytes()).map_err(|source| FileError::io(&header, "write", source))?;
+        for (file, path) in [(new_rows, &rows), (new_header, &header)] {
+            let named = match replace {
+                Replace::Allow => file.persist(path),
+                Replace::Refuse => file.persist_noclobber(path),
+            };
+            named.map_err(|error| FileError::io(path, "create", error.error))?;
+        }
+        Ok(())
+    }
+
+    /// Reads a baseline.
+    ///
+    /// # Errors
+    /// [`Failure`] for a folder that holds none, or one that was damaged.
+    pub fn read(folder: &Path) -> Result<Self, Failure> {
+        let [path, rows_path] = paths(folder);
+        if !path.is_file() {
+            return Err(Failure::Usage(format!(
+                "{}: there is no `baseline.toml`, expected a folder that `boresight gate baseline` wrote",
+                folder.display()
+            )));
+        }
+        let text = toml_file::read_text(&path).map_err(|source| FileError::io(&path, "read", source))?;
+        let refuse = |at: &str, message: String| Failure::from(toml_file::refuse(&path, &text, at, message));
+        let header: BaselineHeader = toml_file::parse(&path, &text)?;
+        if header.format != FORMAT {
+            return Err(refuse("format", format!("is {}, expected {FORMAT}", header.format)));
+        }
+        let mut figures = Vec::new();
+        for (name, figure) in &header.figures {
+            let Some(reduction) = Reduction::parse(&figure.by) else {
+                let words = Reduction::ALL.map(Reduction::code).join(", ");
+                return Err(refuse(
+                    &format!("figures.{name}.by"),
+                    format!("is `{}`, expected one of {words}", figure.by),
+                ));
+            };
+            figures.push((name.clone(), reduction));
+        }
+        if file_sha256(&rows_path)? != header.rows_sha256 {
+            let message = format!("is not that of {}: one of the two files was changed", rows_path.display());
+            return Err(refuse("rows_sha256", message));
+        }
+        let (table, numbers) = rows::read(&rows_path, &figures)?;
+        let sample = Sample { identity: header.run.clone(), table };
+        Ok(Self { header, sample, blocks: Blocks::from_numbers(numbers) })
+    }
+}
+
+/// A file in a folder that is gone unless it is given a name.
+fn partial(folder: &Path) -> Result<NamedTempFile, FileError> {
+    let mut builder = tempfile::Builder::new();
+    // Readable by everybody, as a file of a repository is.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
+    let made = builder.prefix(".partial-").tempfile_in(folder);
+    made.map_err(|source| FileError::io(folder, "create", source))
+}
+
+fn paths(folder: &Path) -> [PathBuf; 2] {
+    ["baseline.toml", "rows.parquet"].map(|name| folder.join(name))
+}
+
+fn file_sha256(path: &Path) -> Result<String, FileError> {
+    let bytes =
+        sim::regular_file::read(path, MOST_BYTES).map_err(|source| FileError::io(path, "read", source))?;
+    Ok(Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect())
+}

@@ -1,0 +1,175 @@
+//! `rows.parquet` of a baseline: a row a unit, with its block and what it adds to each figure.
+
+use std::fs::File;
+use std::path::Path;
+use std::sync::Arc;
+
+use arrow_array::{Array, ArrayRef, Float32Array, RecordBatch, StringArray, UInt32Array, UInt64Array};
+use arrow_schema::{Field, Schema};
+use parquet::arrow::ArrowWriter;
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::basic::{Compression, Encoding};
+use parquet::file::properties::{EnabledStatistics, WriterProperties};
+use parquet::schema::types::ColumnPath;
+
+use crate::files::{FileError, Place, guarded};
+use crate::score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
+
+/// After the name of a figure of whose values a unit may have several: how many they are.
+const OF: &str = ".of";
+
+/// Writes the rows, with the number of each one's block, into a file that will be `path`.
+pub(super) fn write(
+    file: &File,
+    path: &Path,
+    table: &UnitTable,
+    block_of: impl Fn(usize) -> usize,
+) -> Result<(), FileError> {
+    let format = |error: &dyn std::fmt::Display| FileError::format(path, "Parquet", error);
+    let units = &table.units;
+    let mut fields = Vec::new();
+    let mut columns: Vec<ArrayRef> = Vec::new();
+    let mut add = |name: String, nullable: bool, column: ArrayRef| {
+        fields.push(Field::new(name, column.data_type().clone(), nullable));
+        columns.push(column);
+    };
+    add(
+        "number".to_owned(),
+        false,
+        Arc::new(UInt64Array::from_iter_values(units.iter().map(|unit| unit.number))),
+    );
+    let blocks = (0..units.len()).map(|unit| block_of(unit) as u32);
+    add("block".to_owned(), false, Arc::new(UInt32Array::from_iter_values(blocks)));
+    let text = |of: fn(&UnitVerdict) -> &str| Arc::new(StringArray::from_iter_values(units.iter().map(of)));
+    add("group".to_owned(), false, text(|unit| &unit.group));
+    add("verdict".to_owned(), false, text(|unit| &unit.verdict));
+    let causes = units.iter().map(|unit| unit.cause.as_deref());
+    add("cause".to_owned(), true, Arc::new(StringArray::from_iter(causes)));
+    for figure in &table.figures {
+        let sums = figure.terms.iter().map(|term| (term.of > 0).then_some(term.sum as f32));
+        add(figure.name.clone(), true, Arc::new(Float32Array::from_iter(sums)));
+        if figure.terms.iter().any(|term| term.of > 1) {
+            let ofs = figure.terms.iter().map(|term| term.of);
+            add(format!("{}{OF}", figure.name), false, Arc::new(UInt32Array::from_iter_values(ofs)));
+        }
+    }
+    let schema = Arc::new(Schema::new(fields));
+    let mut properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_statistics_enabled(EnabledStatistics::None);
+    // Amounts seldom repeat, and the last of their bytes are nought: byte by byte they are short.
+    for figure in table.figures.iter().filter(|figure| figure.reduction != Reduction::Rate) {
+        let column = ColumnPath::from(figure.name.as_str());
+        properties = properties
+            .set_column_dictionary_enabled(column.clone(), false)
+            .set_column_encoding(column, Encoding::BYTE_STREAM_SPLIT);
+    }
+    let properties = properties.build();
+    let batch = RecordBatch::try_new(Arc::clone(&schema), columns).map_err(|error| format(&error))?;
+    let mut writer = ArrowWriter::try_new(file, schema, Some(properties)).map_err(|error| format(&error))?;
+    writer.write(&batch).map_err(|error| format(&error))?;
+    writer.close().map_err(|error| format(&error))?;
+    Ok(())
+}
+
+/// Reads the rows of these figures, and the numbers of their blocks, which ascend by one from 0.
+pub(super) fn read(
+    path: &Path,
+    figures: &[(String, Reduction)],
+) -> Result<(UnitTable, Vec<usize>), FileError> {
+    guarded(path, || read_unguarded(path, figures))
+}
+
+fn read_unguarded(
+    path: &Path,
+    figures: &[(String, Reduction)],
+) -> Result<(UnitTable, Vec<usize>), FileError> {
+    let format = |error: &dyn std::fmt::Display| FileError::format(path, "Parquet", error);
+    let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| format(&error))?;
+    let mut table = UnitTable {
+        units: Vec::new(),
+        figures: figures
+            .iter()
+            .map(|(name, reduction)| FigureTerms {
+                name: name.clone(),
+                reduction: *reduction,
+                terms: Vec::new(),
+            })
+            .collect(),
+    };
+    let mut blocks = Vec::new();
+    for batch in builder.build().map_err(|error| format(&error))? {
+        add(path, &batch.map_err(|error| format(&error))?, &mut table, &mut blocks)?;
+    }
+    for unit in 1..table.units.len() {
+        let refuse = |column: &str, value: &dyn std::fmt::Display, expected: String| {
+            FileError::value(path, Place::Row(unit as u64), column, value, expected)
+        };
+        let (before, this) = (table.units[unit - 1].number, table.units[unit].number);
+        if this <= before {
+            return Err(refuse("number", &this, format!("more than {before}, that of the row before")));
+        }
+        let (before, this) = (blocks[unit - 1], blocks[unit]);
+        if this != before && this != before + 1 {
+            return Err(refuse("block", &this, format!("{before} or {}", before + 1)));
+        }
+    }
+    match blocks.first() {
+        Some(0) => Ok((table, blocks)),
+        Some(first) => Err(FileError::value(path, Place::Row(0), "block", first, "0 in the first row")),
+        None => Err(FileError::value(path, Place::Header, "number of rows", 0, "at least 1")),
+    }
+}
+
+fn add(
+    path: &Path,
+    batch: &RecordBatch,
+    table: &mut UnitTable,
+    blocks: &mut Vec<usize>,
+) -> Result<(), FileError> {
+    fn column<'a, A: Array + 'static>(
+        path: &Path,
+        batch: &'a RecordBatch,
+        name: &str,
+    ) -> Result<&'a A, FileError> {
+        let found = batch.column_by_name(name).and_then(|column| column.as_any().downcast_ref());
+        found.ok_or_else(|| {
+            FileError::format(path, "Parquet", format!("it has no column `{name}` of its type"))
+        })
+    }
+    let first_row = table.units.len();
+    let numbers: &UInt64Array = column(path, batch, "number")?;
+    let of_blocks: &UInt32Array = column(path, batch, "block")?;
+    let groups: &StringArray = column(path, batch, "group")?;
+    let verdicts: &StringArray = column(path, batch, "verdict")?;
+    let causes: &StringArray = column(path, batch, "cause")?;
+    for row in 0..batch.num_rows() {
+        table.units.push(UnitVerdict {
+            number: numbers.value(row),
+            group: groups.value(row).to_owned(),
+            verdict: verdicts.value(row).to_owned(),
+            cause: (!causes.is_null(row)).then(|| causes.value(row).to_owned()),
+        });
+        blocks.push(of_blocks.value(row) as usize);
+    }
+    for figure in &mut table.figures {
+        let sums: &Float32Array = column(path, batch, &figure.name)?;
+        let of = format!("{}{OF}", figure.name);
+        let ofs: Option<&UInt32Array> =
+            batch.column_by_name(&of).map(|_| column(path, batch, &of)).transpose()?;
+        for row in 0..batch.num_rows() {
+            if sums.is_null(row) {
+                figure.terms.push(Term::default());
+                continue;
+            }
+            let sum = f64::from(sums.value(row));
+            if !sum.is_finite() {
+                let place = Place::Row((first_row + row) as u64);
+                return Err(FileError::value(path, place, &figure.name, sum, "a finite number"));
+            }
+            figure.terms.push(Term { sum, of: ofs.map_or(1, |ofs| ofs.value(row)) });
+        }
+    }
+    Ok(())
+}

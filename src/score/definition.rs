@@ -1,0 +1,149 @@
+//! What a figure is: the values that every frame has for it, and how they are summed up.
+
+use super::report::Figure;
+
+/// How a figure sums up the values of the frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reduction {
+    /// The share of the values that are not 0: values are 0 or 1, any number of them a frame.
+    Rate,
+    /// The mean of the values, at most one a frame.
+    Mean,
+    /// The root mean square of the values, at most one a frame.
+    Rms,
+    /// The median of the values, at most one a frame.
+    Median,
+}
+
+impl Reduction {
+    /// Every one.
+    pub const ALL: [Self; 4] = [Self::Rate, Self::Mean, Self::Rms, Self::Median];
+
+    /// The word used in files.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Rate => "rate",
+            Self::Mean => "mean",
+            Self::Rms => "rms",
+            Self::Median => "median",
+        }
+    }
+
+    /// Reads [`Reduction::code`].
+    pub fn parse(code: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|reduction| reduction.code() == code)
+    }
+}
+
+/// The values of one unit (a frame, a field) for a figure, added to the list.
+type Values<'a, U> = Box<dyn Fn(&U, &mut Vec<f64>) + 'a>;
+
+/// The definition of a figure over units of the type `U`: score and gate both count by it.
+pub struct Definition<'a, U> {
+    /// Name of the figure.
+    pub name: String,
+    /// How its values are summed up.
+    pub reduction: Reduction,
+    values: Values<'a, U>,
+}
+
+impl<'a, U> Definition<'a, U> {
+    /// A rate of the units for which `holds` says something.
+    pub fn rate(name: impl Into<String>, holds: impl Fn(&U) -> Option<bool> + 'a) -> Self {
+        Self::pooled(name, move |unit, values| {
+            values.extend(holds(unit).map(|held| f64::from(u8::from(held))))
+        })
+    }
+
+    /// A rate of values, 0 or 1, of which a unit may have several.
+    pub fn pooled(name: impl Into<String>, values: impl Fn(&U, &mut Vec<f64>) + 'a) -> Self {
+        Self { name: name.into(), reduction: Reduction::Rate, values: Box::new(values) }
+    }
+
+    /// A mean, median or root mean square of the units that have a value.
+    pub fn of(name: impl Into<String>, reduction: Reduction, value: impl Fn(&U) -> Option<f64> + 'a) -> Self {
+        let values: Values<'a, U> = Box::new(move |unit, values| values.extend(value(unit)));
+        Self { name: name.into(), reduction, values }
+    }
+
+    /// The figure over some sequences of units, each in order of time.
+    pub fn figure(&self, sequences: &[&[&U]]) -> Figure {
+        let collected: Vec<Vec<f64>> = sequences
+            .iter()
+            .map(|sequence| {
+                let mut values = Vec::new();
+                sequence.iter().for_each(|unit| (self.values)(unit, &mut values));
+                values
+            })
+            .collect();
+        match self.reduction {
+            Reduction::Rate => {
+                let held = |values: &Vec<f64>| values.iter().map(|value| *value != 0.0).collect();
+                Figure::rate(&collected.iter().map(held).collect::<Vec<Vec<bool>>>())
+            }
+            Reduction::Mean => Figure::mean(&collected),
+            Reduction::Rms => Figure::rms(&collected),
+            Reduction::Median => Figure::median(&collected),
+        }
+    }
+
+    /// What one unit adds to the figure.
+    pub fn term(&self, unit: &U) -> Term {
+        let mut values = Vec::new();
+        (self.values)(unit, &mut values);
+        Term { sum: values.iter().sum(), of: values.len() as u32 }
+    }
+}
+
+/// What one unit adds to a figure.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Term {
+    /// The sum of its values; 0 without any.
+    pub sum: f64,
+    /// How many they are.
+    pub of: u32,
+}
+
+/// The terms of all units for one figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FigureTerms {
+    /// Name of the figure.
+    pub name: String,
+    /// How its values are summed up.
+    pub reduction: Reduction,
+    /// One a unit, in their order.
+    pub terms: Vec<Term>,
+}
+
+impl FigureTerms {
+    /// The terms of units by a definition.
+    pub fn new<U>(definition: &Definition<'_, U>, units: &[U]) -> Self {
+        Self {
+            name: definition.name.clone(),
+            reduction: definition.reduction,
+            terms: units.iter().map(|unit| definition.term(unit)).collect(),
+        }
+    }
+}
+
+/// What became of one unit, for a list of those that changed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnitVerdict {
+    /// Number of the frame, the field or the case.
+    pub number: u64,
+    /// Name of the group that it belongs to.
+    pub group: String,
+    /// The verdict's word.
+    pub verdict: String,
+    /// Why it was missed, or wrong in what.
+    pub cause: Option<String>,
+}
+
+/// A scored run, unit by unit: what a comparison of two runs needs.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct UnitTable {
+    /// The units, by number.
+    pub units: Vec<UnitVerdict>,
+    /// What they say of each figure.
+    pub figures: Vec<FigureTerms>,
+}

@@ -1,0 +1,77 @@
+//! Runs of the simulator, in this process.
+
+use std::ops::Range;
+
+use boresight::docking_renderer::DockingRenderer;
+use boresight::docking_run::PreparedDocking;
+use boresight::pipeline_choice::PipelineChoice;
+use boresight::run::Prepared;
+use boresight::scenario::{Scenario, ScenarioSource};
+use boresight::score::{FrameVerdict, UnitTable};
+use contract::docking::{
+    DockingOutcome, DockingPipeline, DockingPipelineFactory, DockingSetup, DockingSolution, Field,
+    FieldTelemetry,
+};
+use rayon::prelude::*;
+
+const PIPELINE: PipelineChoice = PipelineChoice { word: None, timeout_s: 10.0 };
+
+/// The scenario of a gate of the project.
+fn source(name: &str, seed: u64) -> ScenarioSource {
+    let path = format!("{}/scenarios/gates/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let mut source = ScenarioSource::read(&path).unwrap();
+    source.scenario.set_seed(seed);
+    source
+}
+
+/// Runs of the gate's ARGON by seed, with the first so many stretches of each day and the first so many frames of each.
+pub(crate) fn runs(seeds: Range<u64>, stretches: usize, frames: u64) -> Vec<Vec<FrameVerdict>> {
+    let run = |seed: u64| {
+        let mut source = source("argon", seed);
+        let Scenario::FarRange(scenario) = &mut source.scenario else { panic!("not far range") };
+        let mut place = 0..;
+        scenario.schedule.retain(|_| place.next().unwrap() % 6 < stretches);
+        scenario.schedule.iter_mut().for_each(|stretch| stretch.count = frames);
+        let prepared = Prepared::new(&source).unwrap();
+        let factory = PIPELINE.factory(&prepared.scenario().far_range, &std::env::temp_dir()).unwrap();
+        prepared.score(0..prepared.frame_count(), factory.as_ref()).unwrap().verdicts
+    };
+    seeds.into_par_iter().map(run).collect()
+}
+
+/// Runs of the gate's docking by seed, each as it is and with all its ranges a thousandth too long.
+pub(crate) fn docking_runs(seeds: Range<u64>, fields: Range<u64>) -> Vec<(UnitTable, UnitTable)> {
+    let run = |seed: u64| {
+        let prepared = PreparedDocking::new(&source("docking", seed), DockingRenderer::Fast).unwrap();
+        let factory = PIPELINE.docking_factory(&prepared.scenario().docking, &std::env::temp_dir()).unwrap();
+        let own = prepared.score(fields.clone(), factory.as_ref()).unwrap().units();
+        let scaled = prepared.score(fields.clone(), &Scaled(factory.as_ref())).unwrap().units();
+        (own, scaled)
+    };
+    seeds.into_par_iter().map(run).collect()
+}
+
+/// A pipeline whose ranges are a thousandth too long.
+struct Scaled<'a>(&'a dyn DockingPipelineFactory);
+
+struct ScaledPipeline(Box<dyn DockingPipeline>);
+
+impl DockingPipelineFactory for Scaled<'_> {
+    fn name(&self) -> String {
+        "ranges a thousandth too long".to_owned()
+    }
+
+    fn build(&self, setup: &DockingSetup) -> Result<Box<dyn DockingPipeline>, contract::ContractError> {
+        Ok(Box::new(ScaledPipeline(self.0.build(setup)?)))
+    }
+}
+
+impl DockingPipeline for ScaledPipeline {
+    fn process(&mut self, field: &Field, telemetry: &FieldTelemetry) -> DockingOutcome {
+        let mut outcome = self.0.process(field, telemetry);
+        if let DockingSolution::Measured(measurement) = &mut outcome.solution {
+            measurement.best.pose.position_m *= 1.001;
+        }
+        outcome
+    }
+}
