@@ -1,7 +1,7 @@
 //! Frames in order, made on several threads.
 
 use std::ops::Range;
-use std::sync::mpsc;
+use std::sync::{Mutex, PoisonError, mpsc};
 
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
@@ -41,7 +41,7 @@ pub fn fly<T: Send>(
 ///
 /// # Errors
 /// The first failure in the order of the frames; nothing after it is taken.
-pub fn in_order<W, T: Send>(
+pub fn in_order<W: Send, T: Send>(
     frames: Range<u64>,
     jobs: usize,
     frame_bytes: u64,
@@ -58,19 +58,28 @@ pub fn in_order<W, T: Send>(
         .build()
         .map_err(|error| Failure::Usage(format!("{jobs} threads cannot be started: {error}")))?;
     let batch = frames_per_job(frame_bytes) * jobs as u64;
-    let make_one = |workspace: &mut Result<W, _>, frame| match workspace {
-        Ok(workspace) => make(workspace, frame),
-        Err(_) => Err(Failure::Usage("the camera could not be made on every thread".to_owned())),
+    // Kept from batch to batch: a camera has tables that it makes as it goes.
+    let idle = Mutex::new(Vec::new());
+    let lend = || {
+        match idle.lock().unwrap_or_else(PoisonError::into_inner).pop() {
+            Some(workspace) => Ok(workspace),
+            None => workspace(),
+        }
+        .map(|workspace| Lent { idle: &idle, workspace: Some(workspace) })
+    };
+    let make_one = |lent: &mut Result<Lent<'_, W>, _>, frame| match lent {
+        Ok(Lent { workspace: Some(workspace), .. }) => make(workspace, frame),
+        _ => Err(Failure::Usage("the camera could not be made on every thread".to_owned())),
     };
     std::thread::scope(|scope| {
         // One batch is taken while the next one is made.
         let (made, waiting) = mpsc::sync_channel::<Vec<Result<T, Failure>>>(1);
-        let workspace = &workspace;
+        let lend = &lend;
         let make_one = &make_one;
         scope.spawn(move || {
             for start in frames.clone().step_by(batch as usize) {
                 let range = start..(start + batch).min(frames.end);
-                let results = pool.install(|| range.into_par_iter().map_init(workspace, make_one).collect());
+                let results = pool.install(|| range.into_par_iter().map_init(lend, make_one).collect());
                 if made.send(results).is_err() {
                     return; // Something failed, and nobody listens any more.
                 }
@@ -78,6 +87,18 @@ pub fn in_order<W, T: Send>(
         });
         waiting.into_iter().flatten().try_for_each(|result| take(result?))
     })
+}
+
+/// A workspace that goes back to the idle ones when its part of a batch is done.
+struct Lent<'a, W> {
+    idle: &'a Mutex<Vec<W>>,
+    workspace: Option<W>,
+}
+
+impl<W> Drop for Lent<'_, W> {
+    fn drop(&mut self) {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).extend(self.workspace.take());
+    }
 }
 
 #[cfg(test)]
