@@ -10,9 +10,9 @@ use sim::{SimulatedCamera, Simulator};
 use crate::failure::Failure;
 
 /// Frames that a thread makes before the batch is handed on, at most: enough to keep threads busy.
-const FRAMES_PER_JOB: u64 = 8;
+const FRAMES_PER_JOB: u64 = 16;
 /// Bytes of pixels in them, at most, though never less than one frame: few enough that memory stays flat.
-const BYTES_PER_JOB: u64 = 8 << 20;
+const BYTES_PER_JOB: u64 = 16 << 20;
 
 /// Frames of a batch for each thread, by the bytes that the pixels of one take.
 fn frames_per_job(frame_bytes: u64) -> u64 {
@@ -108,6 +108,6 @@ mod tests {
     #[test]
     fn a_batch_is_a_few_frames_and_one_when_frames_are_large() {
         let mb = |bytes: f64| frames_per_job((bytes * (1 << 20) as f64) as u64);
-        assert_eq!([mb(0.0), mb(0.8), mb(2.0), mb(8.0), mb(500.0)], [8, 8, 4, 1, 1]);
+        assert_eq!([mb(0.0), mb(0.8), mb(2.0), mb(16.0), mb(500.0)], [16, 16, 8, 1, 1]);
     }
 }

@@ -129,7 +129,7 @@ fn pixels_truth_and_telemetry_of_a_small_scene_are_frozen() {
 /// Frame truth, object truth, telemetry, pixels.
 const FROZEN: [&str; 4] = [
     "9cd92280b856144efa443138b1f3ee8a5e42704f3e469558c0fabd155f920af1",
-    "f1bc29111b4012ed14cdae8ca357732c75bc0f2e0d6cde17be2ee041d3e94dcf",
+    "10417743650b4355613c60ef293838b6c7919e997a64fe351eb0980c204534f0",
     "5bdfd6e0ecaa0fa2ac1968724ae3dcd398e1d3b5e199950c98f301dce0191d16",
     "625e735eb946aff89eb0b6f251504375503b7084b66c6ec5fce948133b911be4",
 ];

@@ -164,21 +164,6 @@ impl Stamp {
             .fold(0.0, f64::max)
     }
 
-    /// The electrons of each row, added up from the left: four rows side by side, for one after the other each sum would wait for the
-    /// one before.
-    fn row_sums(&self) -> impl Iterator<Item = f64> {
-        self.electrons.chunks_exact(self.stride.max(1)).map(|row| {
-            // Sums side by side: one after the other each would wait for the one before.
-            let mut sums = [0.0; LANES];
-            for electrons in row.as_chunks::<LANES>().0 {
-                for (sum, electrons) in sums.iter_mut().zip(electrons) {
-                    *sum += electrons;
-                }
-            }
-            sums.iter().sum()
-        })
-    }
-
     /// The fraction of its electrons outside every window, in [0, 1]; 0 for an empty stamp.
     pub fn cut(&self, windows: &[Window]) -> f64 {
         let (right, bottom) = (self.x + self.columns, self.y + self.rows);
@@ -201,39 +186,35 @@ impl Stamp {
         if touched.is_empty() {
             return if self.electrons.iter().any(|&signal| signal > 0.0) { 1.0 } else { 0.0 };
         }
-        let (mut total, mut lost) = (0.0, 0.0);
-        for ((x, y, row), sum) in self.rows().zip(self.row_sums()) {
-            // From the left: what lies before the next window that begins, and so on, windows that overlap counting once.
+        let mut kept = 0.0;
+        let (top, last) =
+            touched.iter().fold((bottom, self.y), |(top, last), w| (top.min(w.y), last.max(w.y + w.rows)));
+        for (x, y, row) in self.rows().skip(top.saturating_sub(self.y)).take_while(|(_, y, _)| *y < last) {
+            // From the left: to the end of the windows that hold a pixel, then to the next window that begins, and so on, windows
+            // that overlap counting once.
             let mut from = 0;
-            total += sum;
-            if !touched.iter().any(|w| w.contains(w.x, y)) {
-                lost += sum;
-                continue;
-            }
             while from < row.len() {
-                let covered_to = touched
-                    .iter()
-                    .filter(|w| w.contains(x + from, y))
-                    .map(|w| w.x + w.columns - x)
-                    .max()
-                    .unwrap_or(from)
-                    .min(row.len());
-                if covered_to > from {
-                    from = covered_to;
-                    continue;
+                let in_row = || touched.iter().filter(|w| w.contains(w.x, y));
+                let holding = in_row().filter(|w| w.contains(x + from, y)).map(|w| w.x + w.columns - x).max();
+                let next = match holding {
+                    Some(end) => end.min(row.len()),
+                    None => in_row().filter(|w| w.x > x + from).map(|w| w.x - x).min().unwrap_or(row.len()),
+                };
+                if holding.is_some() {
+                    kept += row[from..next].iter().sum::<f64>();
                 }
-                let next = touched
-                    .iter()
-                    .filter(|w| w.contains(w.x, y) && w.x > x + from)
-                    .map(|w| w.x - x)
-                    .min()
-                    .unwrap_or(row.len())
-                    .min(row.len());
-                lost += row[from..next].iter().sum::<f64>();
                 from = next;
             }
         }
-        if total > 0.0 { (lost / total).min(1.0) } else { 0.0 }
+        // Sums side by side: one after the other each would wait for the one before.
+        let mut sums = [0.0; LANES];
+        for electrons in self.electrons.as_chunks::<LANES>().0 {
+            for (sum, electrons) in sums.iter_mut().zip(electrons) {
+                *sum += electrons;
+            }
+        }
+        let total: f64 = sums.iter().sum();
+        if total > 0.0 { ((total - kept) / total).clamp(0.0, 1.0) } else { 0.0 }
     }
 }
 

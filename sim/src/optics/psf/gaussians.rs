@@ -41,6 +41,9 @@ pub(super) struct Component {
     sigma_px: f64,
     /// Share of its light in the column, or the row, of pixels about its centre, when that is in their middle.
     central_share: f64,
+    /// Natural logarithm of a bound on the share of the light in a pixel: weight · n(0) · the share above, with the normal
+    /// density n.
+    log_bound: f64,
     /// Shares of other pixels; `None`: by error functions.
     table: Option<Arc<ShareTable>>,
 }
@@ -66,10 +69,10 @@ impl Gaussians {
 
     /// Distance from the centre beyond which no component is followed, px; 0 when there is nothing to draw.
     pub(super) fn reach_px(&self, electrons: f64, floor_e: f64, scale: f64) -> f64 {
-        let floor_e = floor_e * self.floor_share;
+        let log_floor = libm::log(electrons / (floor_e * self.floor_share));
         self.components
             .iter()
-            .map(|component| component.scaled(scale).reach_px(electrons, floor_e))
+            .map(|component| component.scaled(scale).reach_px(log_floor))
             .fold(0.0, f64::max)
     }
 
@@ -83,9 +86,10 @@ impl Gaussians {
         profiles: &mut Profiles,
         stamp: &mut Stamp,
     ) {
+        let log_floor = libm::log(electrons / (floor_e * self.floor_share));
         for component in &self.components {
             let component = component.scaled(scale);
-            let own_px = component.reach_px(electrons, floor_e * self.floor_share);
+            let own_px = component.reach_px(log_floor);
             if own_px > 0.0 {
                 let condensed = condensed(points, component.sigma_px);
                 let points = condensed.as_ref().map_or(points, |(few, count)| &few[..*count]);
@@ -188,8 +192,15 @@ impl Component {
 
     /// One without a table.
     fn of_width(weight: f64, sigma_px: f64) -> Self {
-        let half = 0.5 / (sigma_px * std::f64::consts::SQRT_2);
-        Self { weight, sigma_px, central_share: libm::erf(half), table: None }
+        let central_share = libm::erf(0.5 / (sigma_px * std::f64::consts::SQRT_2));
+        let density = 1.0 / (sigma_px * (2.0 * std::f64::consts::PI).sqrt());
+        Self {
+            weight,
+            sigma_px,
+            central_share,
+            log_bound: libm::log(weight * density * central_share),
+            table: None,
+        }
     }
 
     fn scaled(&self, scale: f64) -> Cow<'_, Self> {
@@ -200,17 +211,12 @@ impl Component {
         }
     }
 
-    /// Distance from the centre beyond which, along a column or a row, no pixel holds `floor_e`, px; 0 when no
-    /// pixel at all does. A pixel whose nearer edge is d away holds at most flux · n(d) · share(±0.5), with the
-    /// normal density n.
-    fn reach_px(&self, electrons: f64, floor_e: f64) -> f64 {
-        let density = 1.0 / (self.sigma_px * (2.0 * std::f64::consts::PI).sqrt());
-        let brightest = electrons * self.weight * density * self.central_share;
-        if brightest > floor_e {
-            0.5 + self.sigma_px * (2.0 * libm::log(brightest / floor_e)).sqrt()
-        } else {
-            0.0
-        }
+    /// Distance from the centre beyond which, along a column or a row, no pixel holds a floor, px; 0 when no pixel at all does.
+    /// `log_floor` is the natural logarithm of the light over the floor. A pixel whose nearer edge is d away holds at most
+    /// flux · n(d) · share(±0.5).
+    fn reach_px(&self, log_floor: f64) -> f64 {
+        let above = log_floor + self.log_bound;
+        if above > 0.0 { 0.5 + self.sigma_px * (2.0 * above).sqrt() } else { 0.0 }
     }
 
     /// Shares of the flux in `count` pixels from `first` on along one axis, of a Gaussian about `centre`.
