@@ -41,6 +41,7 @@ impl DatasetWriter {
             magnitude_limit: scenario.star_list.magnitude_limit,
             star_epoch_utc: Some(format_utc(star_epoch)),
             readout: Some(scenario.readout()),
+            zero_suppression_dn: scenario.zero_suppression_dn,
             camera: scenario.camera.clone(),
             mounting: scenario.mounting.nominal,
             far_range: scenario.far_range.clone(),

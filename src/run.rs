@@ -109,6 +109,7 @@ impl Prepared {
             camera_from_body: scenario.mounting.nominal.camera_from_body(),
             bit_depth: scenario.sensor.bit_depth,
             readout: Some(scenario.readout()),
+            zero_suppression_dn: scenario.zero_suppression_dn,
             stars: self.stars.iter().map(StarRow::listed).collect(),
         }
     }

@@ -95,6 +95,7 @@ fn answer(
             read_noise_e: READ_NOISE_E,
             saturation_dn: 4095,
         }),
+        zero_suppression_dn: None,
         stars: stars.to_vec(),
     };
     let telemetry = Telemetry {

@@ -25,6 +25,7 @@ fn camera_file() -> CameraFile {
             read_noise_e: 15.0,
             saturation_dn: 1020,
         }),
+        zero_suppression_dn: Some(40),
         camera: Camera {
             columns: 24,
             rows: 16,

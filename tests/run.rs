@@ -201,6 +201,33 @@ fn a_slice_of_whole_images_is_that_of_the_whole() {
     check_slice("starting-point", "50..62", 55..58);
 }
 
+/// A camera that suppresses zeros tells pipelines so, in a run as in a dataset: what would look below is refused.
+#[test]
+fn zero_suppression_is_told_to_pipelines_and_those_that_look_below_it_are_refused() {
+    let bench = Bench::new();
+    let scenario = |thresholds: &str| {
+        bench.scenario("suppressed.toml", "argon", |table| {
+            table.remove("roi");
+            table.insert("zero_suppression_dn".into(), 67.into());
+            let thresholds = format!("thresholds = {{ {thresholds} }}").parse::<toml::Table>().unwrap();
+            table.insert("far_range".into(), thresholds.into());
+        });
+    };
+    // A pixel passes from 68 DN on.
+    scenario("mode = 'constant', low = 0.0165, high = 0.03");
+    bench.boresight("run suppressed.toml --frames 300..303 --out run").done();
+    assert!(bench.csv("run/measurements.csv").iter().any(|row| row["status"] == "detected"));
+    bench.boresight("render suppressed.toml --frames 300..303 --out data --format png").done();
+    bench.boresight("process data").done();
+    bench.check_same("run/measurements.csv", "data/measurements.csv");
+    bench.edit("data/camera.toml", "low = 0.0165", "low = 0.016");
+    bench.boresight("process data --out low.csv").refused(&["thresholds.low is 0.016, 65 DN"]);
+    scenario("mode = 'automatic'");
+    bench
+        .boresight("run suppressed.toml --frames 300..303")
+        .refused(&["thresholds.mode is automatic", "constant"]);
+}
+
 #[test]
 fn the_seed_changes_every_frame_but_not_the_hot_pixels() {
     let bench = Bench::new();

@@ -25,6 +25,8 @@ pub struct Setup {
     pub bit_depth: u8,
     /// Gain, bias, read noise and saturation as calibrated; `None` when they are not known.
     pub readout: Option<Readout>,
+    /// Pixels up to this digital number arrive as 0, whatever they were; `None`: every pixel arrives as it was.
+    pub zero_suppression_dn: Option<u16>,
     /// The uploaded star list, ordered by `id`.
     pub stars: Vec<ListedStar>,
 }

@@ -32,6 +32,7 @@ fn setup() -> Setup {
         camera_from_body: Rotation::identity(),
         bit_depth: 12,
         readout: None,
+        zero_suppression_dn: None,
         stars: Vec::new(),
     }
 }

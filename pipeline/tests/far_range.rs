@@ -128,6 +128,7 @@ fn setup() -> Setup {
         camera_from_body: nominal(),
         bit_depth: 12,
         readout: Some(READOUT),
+        zero_suppression_dn: None,
         stars: stars(),
     }
 }

@@ -37,10 +37,11 @@ pub struct Exposure {
     pub objects: Vec<ObjectTruth>,
 }
 
-/// Which pixels of a frame are drawn of which a camera keeps regions. What it keeps is the same, bit for bit.
+/// Which pixels of a frame are drawn of which a camera keeps regions, or only what is above a floor. What it keeps is the same, bit for
+/// bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Drawing {
-    /// Those that the camera looks at: all above the threshold of its regions, and all in its regions.
+    /// Those that the camera looks at: all above the threshold of its regions or its floor, and all in its regions.
     #[default]
     Seen,
     /// All of them.
@@ -284,13 +285,17 @@ impl<'a> SimulatedCamera<'a> {
         }
 
         let Self { laws, raw, regions, drawing, .. } = self;
+        let collected = Collected { charge: &charge, seed: simulator.seed, frame: number };
         let windows = match regions {
-            Some(regions) => {
-                let collected = Collected { charge: &charge, seed: simulator.seed, frame: number };
-                Some(keep_regions(sensor, &collected, regions, *drawing, laws, raw)?)
-            }
+            Some(regions) => Some(keep_regions(sensor, &collected, regions, *drawing, laws, raw)?),
             None => {
-                sensor.read_out(&charge, &simulator.seed, number, laws, raw.whole())?;
+                match simulator.zero_suppression_dn {
+                    Some(floor_dn) => {
+                        read_out_above(sensor, floor_dn, &collected, *drawing, laws, raw)?;
+                        raw.suppress(floor_dn);
+                    }
+                    None => sensor.read_out(&charge, &simulator.seed, number, laws, raw.whole())?,
+                }
                 None
             }
         };
@@ -350,14 +355,27 @@ fn keep_regions(
     laws: &mut FlatLaws,
     raw: &mut SparseImage,
 ) -> Result<Vec<Window>, SimError> {
-    sensor.read_out_above(regions.threshold_dn(), collected, laws, raw)?;
+    read_out_above(sensor, regions.threshold_dn(), collected, drawing, laws, raw)?;
+    let windows = regions.extract_from(raw.raw(), raw.runs());
+    sensor.read_out_windows(&windows, collected, laws, raw);
+    Ok(windows)
+}
+
+/// Reads out all pixels of a frame that are above a floor, or all that there are.
+fn read_out_above(
+    sensor: &Sensor,
+    floor_dn: u16,
+    collected: &Collected<'_>,
+    drawing: Drawing,
+    laws: &mut FlatLaws,
+    raw: &mut SparseImage,
+) -> Result<(), SimError> {
+    sensor.read_out_above(floor_dn, collected, laws, raw)?;
     if drawing == Drawing::All {
         let (columns, rows) = raw.raw().size();
         sensor.read_out_windows(&[Window { x: 0, y: 0, columns, rows }], collected, laws, raw);
     }
-    let windows = regions.extract_from(raw.raw(), raw.runs());
-    sensor.read_out_windows(&windows, collected, laws, raw);
-    Ok(windows)
+    Ok(())
 }
 
 /// What the detector makes by itself, as a source that is described by its stamp.

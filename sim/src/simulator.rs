@@ -50,6 +50,8 @@ pub struct Simulation {
     pub shutter: ShutterConfig,
     /// Regions kept on board; `None`: whole images.
     pub roi: Option<RoiConfig>,
+    /// Whole images: pixels up to this digital number are sent as 0; `None`: every pixel as it is.
+    pub zero_suppression_dn: Option<u16>,
     /// The target as a source of light.
     pub target: TargetConfig,
     /// Whether Moon and planets are in the field.
@@ -73,6 +75,7 @@ pub struct Simulator {
     pub(crate) cosmic_rays: Option<CosmicRays>,
     pub(crate) shutter: Shutter,
     pub(crate) roi: Option<RoiConfig>,
+    pub(crate) zero_suppression_dn: Option<u16>,
     pub(crate) seed: Seed,
     pub(crate) target: Spacecraft,
     pub(crate) solar_system: Switch,
@@ -97,6 +100,7 @@ impl Simulator {
         let (columns, rows) = projection.detector();
         if let Some(roi) = &simulation.roi {
             roi.check(columns, rows)?;
+            check_no_suppression(simulation.zero_suppression_dn)?;
         }
         simulation.catalog.check()?;
         let catalog = Catalog::load(&simulation.catalog, folder)?;
@@ -128,6 +132,7 @@ impl Simulator {
                 .transpose()?,
             shutter,
             roi: simulation.roi.clone(),
+            zero_suppression_dn: simulation.zero_suppression_dn,
             seed,
             target,
             solar_system: simulation.solar_system,
@@ -175,6 +180,18 @@ impl Simulator {
     /// None after [`Simulator::new`], which made the same checks.
     pub fn camera(&self) -> Result<SimulatedCamera<'_>, SimError> {
         SimulatedCamera::new(self)
+    }
+}
+
+/// Refuses zero suppression beside regions of interest, whose pixels are sent as they are.
+fn check_no_suppression(zero_suppression_dn: Option<u16>) -> Result<(), SimError> {
+    match zero_suppression_dn {
+        None => Ok(()),
+        Some(floor_dn) => Err(SimError::Parameter {
+            field: "zero_suppression_dn",
+            value: floor_dn.to_string(),
+            expected: "none beside [roi]: the pixels of regions are sent as they are",
+        }),
     }
 }
 

@@ -50,6 +50,34 @@ fn a_sparse_frame_is_the_whole_frame_on_an_even_detector() {
     assert_sparse_is_whole(&small_scene::simulator(&simulation), 0..400);
 }
 
+/// Whole images of which only what is above a floor is drawn are those drawn as a whole, with 0 for what is not above it.
+#[test]
+fn suppressed_images_are_whole_images_above_the_floor() {
+    for floor_dn in [43, 46, 67] {
+        for mut simulation in [small_scene::still(), small_scene::defective(small_scene::restless())] {
+            simulation.roi = None;
+            simulation.zero_suppression_dn = Some(floor_dn);
+            let simulator = small_scene::simulator(&simulation);
+            let (mut seen, mut all) =
+                (simulator.camera().unwrap(), simulator.camera().unwrap().drawing(Drawing::All));
+            let mut lit = 0;
+            for number in 0..10 {
+                let (seen, all) = (seen.expose(number).unwrap(), all.expose(number).unwrap());
+                assert!(seen == all, "frame {number} over {floor_dn}");
+                assert!(
+                    seen.frame.dn().iter().all(|&dn| dn == 0 || dn > floor_dn)
+                        && seen.frame.windows().is_none()
+                );
+                lit += seen.frame.dn().iter().filter(|dn| **dn > 0).count();
+            }
+            assert!(lit > 20, "{lit} pixels over {floor_dn}");
+        }
+    }
+    let both = Simulation { zero_suppression_dn: Some(67), ..restless(67) };
+    let refusal = Simulator::new(&both, std::path::Path::new("")).unwrap_err().to_string();
+    assert!(refusal.starts_with("zero_suppression_dn is 67, expected none beside [roi]"), "{refusal}");
+}
+
 /// Wells that overflow, particles, dead pixels, smear: with and without the noise of lines, which leaves no pixel undrawn.
 #[test]
 fn a_sparse_frame_is_the_whole_frame_with_every_effect_of_the_detector() {

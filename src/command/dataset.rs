@@ -335,6 +335,7 @@ fn setup(arguments: &ProcessArguments, dataset: &Dataset) -> Result<Setup, Failu
         camera_from_body: camera.mounting.camera_from_body(),
         bit_depth: camera.bit_depth,
         readout: camera.readout,
+        zero_suppression_dn: camera.zero_suppression_dn,
         stars: stars.iter().map(StarRow::listed).collect(),
     })
 }

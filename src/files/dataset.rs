@@ -33,6 +33,9 @@ pub struct CameraFile {
     /// Gain, bias, read noise and saturation as calibrated; without it, the built-in pipeline cannot fit centroids.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub readout: Option<Readout>,
+    /// Pixels up to this digital number are 0 in the images, whatever they were, 0 to 65535; without it, none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub zero_suppression_dn: Option<u16>,
     /// Nominal camera.
     pub camera: Camera,
     /// Nominal mounting; without it, the camera's axes are those of the body.

@@ -57,6 +57,10 @@ pub struct FarRangeScenario {
     pub shutter: ShutterConfig,
     /// Regions of interest kept on board; absent: whole images are transmitted.
     pub roi: Option<RoiConfig>,
+    /// Zero suppression of whole images: pixels up to this digital number, 0 to 65535, are transmitted as 0, and only those above it
+    /// are drawn; absent: every pixel is. A pipeline must not look below it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub zero_suppression_dn: Option<u16>,
     /// The target spacecraft as a source of light.
     pub target: TargetConfig,
     /// Whether the Moon and the planets are drawn, "on" or "off" (the default). They are in no star list.
@@ -107,6 +111,7 @@ impl FarRangeScenario {
             sensor: self.sensor.clone(),
             shutter: self.shutter.clone(),
             roi: self.roi.clone(),
+            zero_suppression_dn: self.zero_suppression_dn,
             target: self.target.clone(),
             solar_system: self.solar_system,
         }

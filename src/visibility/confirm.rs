@@ -145,6 +145,7 @@ impl Bench<'_> {
             camera_from_body: Rotation::<CameraFrame, Body>::identity(),
             bit_depth: self.camera.sensor.bit_depth,
             readout: None,
+            zero_suppression_dn: None,
             stars: Vec::new(),
         };
         let piece = flights.len().div_ceil(rayon::current_num_threads()).max(1);
@@ -288,6 +289,7 @@ impl Bench<'_> {
             sensor: camera.sensor.clone(),
             shutter: ShutterConfig::Fixed { exposure_s },
             roi: None,
+            zero_suppression_dn: None,
             target,
             solar_system: Switch::Off,
         }

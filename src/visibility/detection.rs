@@ -168,8 +168,8 @@ impl DetectionCurve {
             return self.chances.first().copied().unwrap_or(0.0);
         }
         let node = at as usize;
-        match (self.chances.get(node), self.chances.get(node + 1)) {
-            (Some(low), Some(high)) => low + (at - node as f64) * (high - low),
+        match self.chances.get(node..) {
+            Some([low, high, ..]) => low + (at - node as f64) * (high - low),
             _ => self.chances.last().copied().unwrap_or(0.0),
         }
     }

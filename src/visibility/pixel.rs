@@ -48,8 +48,8 @@ impl PixelThreshold {
     pub fn ln_below(&self, electrons: f64) -> f64 {
         let at = electrons.max(0.0) / self.step_e;
         let node = at as usize;
-        match (self.ln_below.get(node), self.ln_below.get(node + 1)) {
-            (Some(low), Some(high)) => low + (at - node as f64) * (high - low),
+        match self.ln_below.get(node..) {
+            Some([low, high, ..]) => low + (at - node as f64) * (high - low),
             // More light changes nothing there: a pixel is never below, or, where its well is too small, as often as a full one.
             _ => self.ln_below.last().copied().unwrap_or(0.0),
         }

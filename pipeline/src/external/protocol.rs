@@ -49,6 +49,8 @@ struct Greeting<'a> {
     camera: &'a Camera,
     q_cam_sc: [f64; 4],
     bit_depth: u8,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    zero_suppression_dn: Option<u16>,
     stars: Vec<Star>,
 }
 
@@ -107,6 +109,7 @@ pub(super) fn greeting(setup: &Setup) -> Result<Vec<u8>, String> {
         camera: &setup.camera,
         q_cam_sc: setup.camera_from_body.wxyz(),
         bit_depth: setup.bit_depth,
+        zero_suppression_dn: setup.zero_suppression_dn,
         stars: setup.stars.iter().map(star).collect(),
     })
 }

@@ -93,6 +93,44 @@ impl FarRangeConfig {
         }
         require("max_gap_s", self.max_gap_s, "above 0 to 1e9", |v| v > 0.0 && v <= 1e9)
     }
+
+    /// Checks that a camera whose pixels up to `zero_suppression_dn` arrive as 0 hides none that the pipeline looks at.
+    ///
+    /// # Errors
+    /// [`PipelineError::Parameter`] for the parameter by which it would.
+    pub(super) fn check_suppression(
+        &self,
+        zero_suppression_dn: Option<u16>,
+        bit_depth: u8,
+    ) -> Result<(), PipelineError> {
+        let Some(floor_dn) = zero_suppression_dn else { return Ok(()) };
+        let refused =
+            |field, value: String, expected| Err(PipelineError::Parameter { field, value, expected });
+        if self.weights == Weights::AboveBackground {
+            let expected = "intensity, with zero_suppression_dn: the background does not arrive";
+            return refused("weights", "above_background".to_owned(), expected);
+        }
+        if self.centroid != CentroidConfig::Brightness {
+            let expected =
+                "brightness, with zero_suppression_dn: a fit takes the faint pixels of an image too";
+            return refused("centroid.mode", "fit".to_owned(), expected);
+        }
+        match self.thresholds {
+            ThresholdConfig::Automatic { .. } => {
+                let expected = "constant, with zero_suppression_dn: the background does not arrive";
+                refused("thresholds.mode", "automatic".to_owned(), expected)
+            }
+            ThresholdConfig::Constant { low, .. } => {
+                let full_scale = f64::from(u32::MAX >> (32 - u32::from(bit_depth.clamp(1, 16))));
+                if (low * full_scale).floor() < f64::from(floor_dn) {
+                    let value = format!("{low}, {} DN", (low * full_scale).floor());
+                    let expected = "zero_suppression_dn or more: below it pixels arrive as 0";
+                    return refused("thresholds.low", value, expected);
+                }
+                Ok(())
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -120,6 +158,32 @@ mod tests {
         assert!(
             refusal(r#"{"tracking": {"weight_size": 0, "weight_displacement": 0}}"#).contains("weight_size")
         );
+    }
+
+    #[test]
+    fn a_threshold_below_the_suppression_is_refused_and_never_a_wrong_answer() {
+        let checked = |json: &str| {
+            let config = serde_json::from_str::<FarRangeConfig>(json).unwrap();
+            config.check_suppression(Some(67), 12).map_err(|error| error.to_string())
+        };
+        let constant = |low: f64, more: &str| {
+            format!(r#"{{"thresholds": {{"mode": "constant", "low": {low}, "high": 0.03}}{more}}}"#)
+        };
+        // Full scale is 4095: 0.0165 is 67.6 DN, a pixel passes from 68 on.
+        assert_eq!(checked(&constant(0.0165, "")), Ok(()));
+        let expected = "thresholds.low is 0.016, 65 DN, expected zero_suppression_dn or more: below it pixels arrive as 0";
+        assert_eq!(checked(&constant(0.016, "")), Err(expected.to_owned()));
+        for (json, field) in [
+            ("{}".to_owned(), "thresholds.mode is automatic"),
+            (constant(0.0165, r#", "weights": "above_background""#), "weights is above_background"),
+            (
+                constant(0.0165, r#", "centroid": {"mode": "fit", "psf_sigma_px": 0.8}"#),
+                "centroid.mode is fit",
+            ),
+        ] {
+            assert!(checked(&json).unwrap_err().starts_with(field), "{json}");
+        }
+        assert_eq!(FarRangeConfig::default().check_suppression(None, 12), Ok(()));
     }
 
     #[test]

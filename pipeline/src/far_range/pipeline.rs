@@ -53,9 +53,11 @@ impl FarRange {
     ///
     /// # Errors
     /// Those of [`FarRangeConfig::check`], of the camera's check and of [`contract::Readout::check`];
-    /// [`PipelineError::Parameter`] for fitted centres with a camera whose readout is not known.
+    /// [`PipelineError::Parameter`] for fitted centres with a camera whose readout is not known, and for thresholds below the zero
+    /// suppression of the camera.
     pub fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
         config.check()?;
+        config.check_suppression(setup.zero_suppression_dn, setup.bit_depth)?;
         let model = CameraModel::new(&setup.camera)?;
         let fitter = match (&config.centroid, setup.readout) {
             (CentroidConfig::Brightness, _) => None,

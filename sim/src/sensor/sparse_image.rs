@@ -63,6 +63,19 @@ impl SparseImage {
         })
     }
 
+    /// Makes 0 of all that is not above a floor.
+    pub(crate) fn suppress(&mut self, floor_dn: u16) {
+        let columns = self.raw.columns.max(1);
+        let rows =
+            self.raw.dn.chunks_exact_mut(columns).zip(self.pieces.chunks_exact(self.pieces_per_row.max(1)));
+        for (row, pieces) in rows {
+            let drawn = row.chunks_mut(PIECE).zip(pieces).filter(|(_, piece)| **piece != Piece::Blank);
+            for dn in drawn.flat_map(|(pixels, _)| pixels) {
+                *dn = if *dn > floor_dn { *dn } else { 0 };
+            }
+        }
+    }
+
     /// Nothing drawn.
     pub(super) fn clear(&mut self) {
         let columns = self.raw.columns.max(1);

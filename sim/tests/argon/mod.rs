@@ -35,6 +35,7 @@ pub(crate) fn simulation() -> Simulation {
         sensor: section(&table, "sensor"),
         shutter: section(&table, "shutter"),
         roi: Some(section(&table, "roi")),
+        zero_suppression_dn: None,
         target: section(&table, "target"),
         solar_system: section(&table, "solar_system"),
     }

@@ -78,6 +78,7 @@ pub(crate) fn still() -> Simulation {
         },
         shutter: ShutterConfig::Fixed { exposure_s: 0.25 },
         roi: None,
+        zero_suppression_dn: None,
         target: TargetConfig::LambertSphere { radius_m: 0.1, albedo: 0.3 },
         solar_system: Switch::Off,
     }
