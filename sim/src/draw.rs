@@ -372,7 +372,7 @@ impl Work for Respond<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { image, stamp } = self;
-        let width = stamp.size().0;
+        let width = stamp.columns();
         for (x, y, row) in stamp.rows_mut() {
             let to = (x + width).min(image.columns);
             if y >= image.rows || x >= to {

@@ -100,7 +100,13 @@ impl Simulator {
         let (columns, rows) = projection.detector();
         if let Some(roi) = &simulation.roi {
             roi.check(columns, rows)?;
-            check_no_suppression(simulation.zero_suppression_dn)?;
+            if let Some(floor_dn) = simulation.zero_suppression_dn {
+                return Err(SimError::Parameter {
+                    field: "zero_suppression_dn",
+                    value: floor_dn.to_string(),
+                    expected: "none beside [roi]: the pixels of regions are sent as they are",
+                });
+            }
         }
         simulation.catalog.check()?;
         let catalog = Catalog::load(&simulation.catalog, folder)?;
@@ -180,18 +186,6 @@ impl Simulator {
     /// None after [`Simulator::new`], which made the same checks.
     pub fn camera(&self) -> Result<SimulatedCamera<'_>, SimError> {
         SimulatedCamera::new(self)
-    }
-}
-
-/// Refuses zero suppression beside regions of interest, whose pixels are sent as they are.
-fn check_no_suppression(zero_suppression_dn: Option<u16>) -> Result<(), SimError> {
-    match zero_suppression_dn {
-        None => Ok(()),
-        Some(floor_dn) => Err(SimError::Parameter {
-            field: "zero_suppression_dn",
-            value: floor_dn.to_string(),
-            expected: "none beside [roi]: the pixels of regions are sent as they are",
-        }),
     }
 }
 

@@ -80,9 +80,23 @@ impl Stamp {
 
     /// Adds electrons to a pixel; outside the stamp nothing happens.
     pub(crate) fn add(&mut self, x: usize, y: usize, electrons: f64) {
-        if (self.x..self.x + self.columns).contains(&x) && (self.y..self.y + self.rows).contains(&y) {
-            self.electrons[(y - self.y) * self.stride + x - self.x] += electrons;
+        if let Some(pixel) = self.pixel_mut(x, y) {
+            *pixel += electrons;
         }
+    }
+
+    /// Takes the light out of a pixel; outside the stamp nothing happens.
+    pub(crate) fn empty(&mut self, x: usize, y: usize) {
+        if let Some(pixel) = self.pixel_mut(x, y) {
+            *pixel = 0.0;
+        }
+    }
+
+    /// The electrons of a pixel; `None` outside the stamp.
+    fn pixel_mut(&mut self, x: usize, y: usize) -> Option<&mut f64> {
+        let is_inside =
+            (self.x..self.x + self.columns).contains(&x) && (self.y..self.y + self.rows).contains(&y);
+        is_inside.then(|| &mut self.electrons[(y - self.y) * self.stride + x - self.x])
     }
 
     /// Where the light of the undisturbed image has its mean, off the detector included.
@@ -114,13 +128,6 @@ impl Stamp {
         &self.electrons[start..start + self.columns]
     }
 
-    /// Takes the light out of a pixel; outside the stamp nothing happens.
-    pub(crate) fn empty(&mut self, x: usize, y: usize) {
-        if (self.x..self.x + self.columns).contains(&x) && (self.y..self.y + self.rows).contains(&y) {
-            self.electrons[(y - self.y) * self.stride + x - self.x] = 0.0;
-        }
-    }
-
     /// Its rows, with the zeros after them: first column, row, expected electrons.
     #[inline(always)]
     pub(crate) fn rows_mut(&mut self) -> impl Iterator<Item = (usize, usize, &mut [f64])> {
@@ -128,9 +135,9 @@ impl Stamp {
         self.electrons.chunks_exact_mut(self.stride.max(1)).enumerate().map(move |(j, row)| (x, y + j, row))
     }
 
-    /// Its columns and rows.
-    pub(crate) fn size(&self) -> (usize, usize) {
-        (self.columns, self.rows)
+    /// Its columns, without the zeros after them.
+    pub(crate) fn columns(&self) -> usize {
+        self.columns
     }
 
     /// What the truth table tells, over a flat background of `background_e` electrons a pixel (sky and dark

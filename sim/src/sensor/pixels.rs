@@ -11,6 +11,7 @@ use super::readout::Sensor;
 use crate::draw::ExpectedImage;
 use crate::lanes::Lanes;
 use crate::randomness::Streams;
+use crate::widest::arch;
 
 /// Electrons that the readout adds to each row and each column of a frame.
 pub(super) struct LineOffsets {
@@ -58,7 +59,7 @@ impl Sensor {
     ) {
         let tables = laws.own_means(&self.law);
         // The same steps on every machine, on the widest registers that it has.
-        pulp::Arch::new().dispatch(OwnMeansFrame { expected, streams, tables, raw });
+        arch().dispatch(OwnMeansFrame { expected, streams, tables, raw });
     }
 
     /// The frame in which no table holds the law of a pixel, because rows and columns have offsets or the flat level is high:

@@ -37,6 +37,7 @@ use crate::SimError;
 use crate::draw::{ExpectedImage, PIECE};
 use crate::lanes::{LANES, Lanes};
 use crate::randomness::{Effect, Seed, Streams, uniform};
+use crate::widest::arch;
 
 /// What a frame is read out from.
 pub(crate) struct Collected<'a> {
@@ -127,7 +128,7 @@ impl Sensor {
         let task = Task { law, expected, words: &words, again: &again, columns, rows };
         let tables = laws.own_means(law);
         // The same steps on every machine, on the widest registers that it has.
-        pulp::Arch::new().dispatch(OwnMeansPieces { task, tables, image });
+        arch().dispatch(OwnMeansPieces { task, tables, image });
     }
 }
 

@@ -64,8 +64,7 @@ pub(crate) fn same_on_all_registers<T: PartialEq>(work: impl Fn() -> T) {
     }
 }
 
-/// The fast path is the slow path on wider registers. The sensor's own loops, which choose their registers themselves, have tests
-/// beside them.
+/// The fast path is the slow path on wider registers.
 #[test]
 fn frames_are_the_same_bits_on_all_registers() {
     let argon = argon::simulation();
