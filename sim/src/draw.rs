@@ -270,6 +270,18 @@ impl ExpectedImage {
         self.span::<PIECE>(p * PIECE, y, out);
     }
 
+    /// Of each `N` pixels of row `y`, whether something was drawn in any of them.
+    pub(crate) fn lit_parts<const N: usize>(&self, y: usize, is_lit: &mut [bool]) {
+        is_lit.fill(false);
+        self.objects.parts_of(y, |from, to| is_lit[from / N..to.div_ceil(N)].fill(true));
+        let words = &self.is_single[y * self.words_per_row..(y + 1) * self.words_per_row];
+        for (word, is_lit) in words.iter().zip(is_lit.chunks_mut(PIECE / N)).filter(|(word, _)| **word != 0) {
+            for (i, is_lit) in is_lit.iter_mut().enumerate() {
+                *is_lit |= word >> (i * N) & (u64::MAX >> (PIECE - N)) != 0;
+            }
+        }
+    }
+
     /// Expected electrons of the pixels of row `y` from column `x` on, made by `N` pixels at a time.
     #[inline(always)]
     fn span<const N: usize>(&self, x: usize, y: usize, out: &mut [f64]) {

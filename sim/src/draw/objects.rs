@@ -56,6 +56,11 @@ impl Objects {
         self.in_row[y].push(Part { object: self.count, from, to });
     }
 
+    /// Tells the parts of a row that objects cover, each by its first column and the one after its last.
+    pub(super) fn parts_of(&self, y: usize, mut tell: impl FnMut(usize, usize)) {
+        self.in_row[y].iter().for_each(|part| tell(part.from, part.to));
+    }
+
     /// Adds the light of all objects to the pixels of row `y` from column `x` on.
     #[inline(always)]
     pub(super) fn add_to(&self, x: usize, y: usize, out: &mut [f64]) {

@@ -4,11 +4,11 @@ use rand::Rng;
 
 use super::config::Switch;
 use super::flat_laws::FlatLaws;
-use super::own_means::OwnMeans;
+use super::own_means::{EvenMean, OwnMeans, PART, next_words};
 use super::poisson_digits::PoissonDigits;
 use super::raw_image::RawImage;
 use super::readout::Sensor;
-use crate::draw::ExpectedImage;
+use crate::draw::{ExpectedImage, PIECE};
 use crate::lanes::Lanes;
 use crate::randomness::Streams;
 use crate::widest::arch;
@@ -119,7 +119,7 @@ impl Sensor {
     }
 }
 
-/// The drawing of a frame in which every pixel has a mean of its own.
+/// The drawing of a frame by the tables of own means; where the background is even and nothing was drawn, by its one mean.
 struct OwnMeansFrame<'a> {
     expected: &'a ExpectedImage,
     streams: &'a Streams,
@@ -135,11 +135,29 @@ impl pulp::WithSimd for OwnMeansFrame<'_> {
     fn with_simd<S: pulp::Simd>(self, _: S) {
         let Self { expected, streams, tables, raw } = self;
         let (columns, rows) = (raw.columns, raw.rows);
+        let even = (!expected.has_field()).then(|| EvenMean::new(expected.flat_e()));
         let mut means = vec![0.0; columns];
+        let mut is_lit = vec![true; columns.div_ceil(PART)];
         for (y, row) in raw.dn.chunks_exact_mut(columns.max(1)).enumerate() {
-            expected.row(y, &mut means);
             let own = |x: usize| streams.at((rows + y * columns + x) as u64);
-            tables.draw_row(&means, Lanes::at(streams, y as u64), row, own);
+            let mut lanes = Lanes::at(streams, y as u64);
+            let Some(even) = &even else {
+                expected.row(y, &mut means);
+                tables.draw_row(&means, lanes, row, own);
+                continue;
+            };
+            expected.lit_parts::<PART>(y, &mut is_lit);
+            if is_lit.contains(&true) {
+                expected.row(y, &mut means);
+            } else {
+                means.fill(expected.flat_e());
+            }
+            let pieces = row.chunks_mut(PIECE).zip(means.chunks(PIECE)).zip(is_lit.chunks(PIECE / PART));
+            for (p, ((row, means_e), is_lit)) in pieces.enumerate() {
+                let words = next_words(&mut lanes);
+                let own = |i: usize| own(p * PIECE + i);
+                tables.draw_mostly_even_piece(even, is_lit, means_e, &words, row, own);
+            }
         }
     }
 }

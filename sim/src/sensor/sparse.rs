@@ -29,7 +29,7 @@ use super::blooming::Overflow;
 use super::charge::Charge;
 use super::exceedance::{DarkLimit, Exceedance};
 use super::flat_laws::FlatLaws;
-use super::own_means::OwnMeans;
+use super::own_means::{OwnMeans, next_words};
 use super::pixel_law::PixelLaw;
 use super::readout::Sensor;
 use super::sparse_image::{Piece, Pixel, SparseImage};
@@ -246,10 +246,7 @@ impl pulp::WithSimd for OwnMeansPieces<'_> {
                 }
                 next = p + 1;
                 *piece = Piece::Drawn;
-                let mut words = [0; PIECE];
-                for words in words.as_chunks_mut::<LANES>().0 {
-                    *words = lanes.next();
-                }
+                let words = next_words(&mut lanes);
                 let first = y * task.columns + p * PIECE;
                 let length = PIECE.min(task.columns - p * PIECE);
                 let mut means_e = [0.0; PIECE];
