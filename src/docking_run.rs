@@ -163,7 +163,8 @@ impl PreparedDocking {
         Ok(DockingRan { score, first_failure })
     }
 
-    /// Makes fields on this thread, has the pipeline process them and judges its answers; nothing is written.
+    /// Makes fields on this thread, has the pipeline process them and judges its answers; nothing is written. What is given back beside
+    /// the judgement is the first failure of the pipeline, if it failed at all.
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
@@ -171,8 +172,9 @@ impl PreparedDocking {
         &self,
         fields: Range<u64>,
         factory: &dyn DockingPipelineFactory,
-    ) -> Result<DockingScorer, Failure> {
+    ) -> Result<(DockingScorer, Option<FirstFailure>), Failure> {
         let mut pipeline = factory.build(&self.setup)?;
+        let mut first_failure = None;
         let mut scorer = DockingScorer::new(context(&self.run_file, &self.setup));
         let mut workspace = self.simulator.workspace()?;
         let mut digitiser = Digitiser::default();
@@ -180,12 +182,13 @@ impl PreparedDocking {
             let exposure = self.renderer.expose(&self.simulator, &self.setup, &mut workspace, number)?;
             let outcome =
                 pipeline.process(&exposure.video.digitise(&digitiser), &exposure.telemetry(digitiser));
+            first_failure = first_failure.or_else(|| FirstFailure::of_field(number, &outcome));
             digitiser = outcome.digitiser.filter(|wish| wish.check().is_ok()).unwrap_or(digitiser);
             // What the files of a run would give back, so that both have the same score to the bit.
             let truth = true_field(&truth_as_filed(exposure.truth), &self.setup);
             scorer.add(&truth, Some(&answer_as_filed(&outcome))).map_err(unscorable)?;
         }
-        Ok(scorer)
+        Ok((scorer, first_failure))
     }
 
     fn fly(

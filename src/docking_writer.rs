@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use contract::docking::{DockingOutcome, DockingSetup, DockingSolution, Field, FieldTelemetry, NoPose};
+use contract::docking::{DockingOutcome, DockingSetup, Field, FieldTelemetry};
 use sim::docking::FieldTruth;
 
 use crate::failure::Failure;
@@ -192,11 +192,7 @@ impl Answers {
 
     /// Writes an answer; what it gives back is the answer as it stands in the files.
     pub(crate) fn add(&mut self, field: u64, outcome: &DockingOutcome) -> Result<DockingOutcome, FileError> {
-        if let DockingSolution::NoSolution(NoPose::Failed(reason)) = &outcome.solution
-            && self.first_failure.is_none()
-        {
-            self.first_failure = Some(FirstFailure { frame: field, reason: reason.clone() });
-        }
+        self.first_failure = self.first_failure.take().or_else(|| FirstFailure::of_field(field, outcome));
         self.measurements.write(field, outcome)?;
         if let Some((motion, features)) = &mut self.more {
             if let Some(report) = &outcome.motion {

@@ -8,13 +8,16 @@ use contract::docking::{DockingPipelineFactory, Field};
 use pipeline::docking::{DockingConfig, DockingFactory};
 use pipeline::external::{ExternalDockingFactory, ExternalFactory};
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
+use sha2::{Digest, Sha256};
 
 use crate::failure::Failure;
 use crate::files::{FrameHeader, ImageFormat, format_utc, write_field, write_frame};
-use crate::scenario::World;
+use crate::scenario::{Scenario, World};
 use crate::toml_file;
 
 const EXEC: &str = "exec:";
+/// A larger file among a program's words counts by its name alone.
+const MOST_BYTES: u64 = 1 << 30;
 
 /// A pipeline by the word of the command line: the name of a world's built-in one, or `exec:COMMAND`.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +32,48 @@ impl PipelineChoice {
     /// Whether it is the built-in one of a world.
     pub fn is_built_in(&self, world: World) -> bool {
         self.word.as_deref().is_none_or(|word| word == world.code())
+    }
+
+    /// Refuses a choice that the world of a scenario does not have, or a program that is not there.
+    ///
+    /// # Errors
+    /// As [`PipelineChoice::factory`].
+    pub fn check(&self, scenario: &Scenario) -> Result<(), Failure> {
+        let nowhere = Path::new("");
+        match scenario {
+            Scenario::FarRange(scenario) => self.factory(&scenario.far_range, nowhere).map(drop),
+            Scenario::Docking(scenario) => self.docking_factory(&scenario.docking, nowhere).map(drop),
+        }
+    }
+
+    /// Words of a command line that choose it; none for the built-in one of a world.
+    pub fn arguments(&self, world: World) -> Vec<String> {
+        match &self.word {
+            Some(word) if !self.is_built_in(world) => {
+                ["--pipeline", word, "--timeout-s", &self.timeout_s.to_string()].map(str::to_owned).to_vec()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// SHA-256 of what a program's answers depend on, as far as it can be known: its words, the files among them, its limit of time;
+    /// none for the built-in pipeline of a world, whose parameters are the scenario's.
+    pub fn hash(&self, world: World) -> Option<[u8; 32]> {
+        let word = self.word.as_ref().filter(|_| !self.is_built_in(world))?;
+        let mut hash = Sha256::new();
+        let mut part = |bytes: &[u8]| {
+            hash.update((bytes.len() as u64).to_le_bytes());
+            hash.update(bytes);
+        };
+        part(word.as_bytes());
+        part(&self.timeout_s.to_bits().to_le_bytes());
+        for file in shlex::split(word.strip_prefix(EXEC).unwrap_or(word)).into_iter().flatten() {
+            // A word that names no file is a program of the search path, or an option.
+            if let Ok(bytes) = sim::regular_file::read(Path::new(&file), MOST_BYTES) {
+                part(&bytes);
+            }
+        }
+        Some(hash.finalize().into())
     }
 
     /// The factory of a far-range pipeline. A program finds the images of its frames in `scratch`.

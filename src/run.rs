@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use contract::docking::{DockingOutcome, DockingSolution, NoPose};
 use contract::{NoSolution, Outcome, Pipeline, PipelineFactory, Setup, Solution};
 use hifitime::Epoch;
 use sim::Simulator;
@@ -176,17 +177,19 @@ impl Prepared {
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
-    pub fn score(&self, frames: Range<u64>, factory: &dyn PipelineFactory) -> Result<Scored, Failure> {
+    pub fn score(&self, frames: Range<u64>, factory: &dyn PipelineFactory) -> Result<Ran, Failure> {
         let mut pipeline = factory.build(&self.setup())?;
+        let mut first_failure = None;
         let unproject = |point| self.simulator.projection().unproject(point);
         let mut scorer = Scorer::new(context(&self.run_file, &unproject));
         let mut camera = self.simulator.camera()?;
         for frame in frames {
             let exposure = camera.expose(frame)?;
             let outcome = pipeline.process(&exposure.frame, &exposure.telemetry);
+            first_failure = first_failure.or_else(|| FirstFailure::of(frame, &outcome));
             scorer.add(&exposure.truth, &exposure.objects, Some(&outcome)).map_err(unscorable)?;
         }
-        Ok(scorer.finish())
+        Ok(Ran { scored: scorer.finish(), first_failure })
     }
 
     fn dataset(&self, directory: &RunDirectory, flight: &Flight) -> Result<DatasetWriter, Failure> {
@@ -262,6 +265,26 @@ pub struct FirstFailure {
     pub frame: u64,
     /// The reason.
     pub reason: String,
+}
+
+impl FirstFailure {
+    /// That of a frame, if the pipeline itself failed at it.
+    fn of(frame: u64, outcome: &Outcome) -> Option<Self> {
+        match &outcome.solution {
+            Solution::NoSolution(NoSolution::Failed(reason)) => Some(Self { frame, reason: reason.clone() }),
+            _ => None,
+        }
+    }
+
+    /// That of a field, if the pipeline itself failed at it.
+    pub(crate) fn of_field(frame: u64, outcome: &DockingOutcome) -> Option<Self> {
+        match &outcome.solution {
+            DockingSolution::NoSolution(NoPose::Failed(reason)) => {
+                Some(Self { frame, reason: reason.clone() })
+            }
+            _ => None,
+        }
+    }
 }
 
 /// Scores measurements, somebody's or our own, against the truth in `directory`. Clusters are evidence for the causes
@@ -342,11 +365,7 @@ impl Answers {
     }
 
     fn add(&mut self, frame: u64, outcome: &Outcome) -> Result<(), FileError> {
-        if let Solution::NoSolution(NoSolution::Failed(reason)) = &outcome.solution
-            && self.first_failure.is_none()
-        {
-            self.first_failure = Some(FirstFailure { frame, reason: reason.clone() });
-        }
+        self.first_failure = self.first_failure.take().or_else(|| FirstFailure::of(frame, outcome));
         self.measurements.write(frame, outcome)?;
         self.clusters.write(outcome.clusters.iter().map(|&cluster| FrameCluster { frame, cluster }))
     }

@@ -36,17 +36,37 @@ impl FromStr for Engine {
 const PYTHON: &str = "BORESIGHT_PYTHON";
 /// The program as workers find it, where it is not at the same place as here.
 const PROGRAM: &str = "BORESIGHT_PROGRAM";
-/// The driver's exit status when Dask is not installed.
-const MISSING: i32 = 3;
 
 const INSTALL: &str =
     "`pip install './python[dask]'` installs it, and BORESIGHT_PYTHON names the interpreter";
+
+/// Refuses where Python, the package or Dask is not there.
+///
+/// # Errors
+/// [`Failure::Usage`] that says what installs it.
+pub fn check_dask() -> Result<(), Failure> {
+    let python = python();
+    let tried = Command::new(&python).args(["-c", "import boresight.dask_engine, distributed"]).output();
+    match tried {
+        Ok(output) if output.status.success() => Ok(()),
+        Ok(_) => Err(Failure::Usage(format!(
+            "--engine dask: `{python}` has no Dask engine of Boresight; {INSTALL}"
+        ))),
+        Err(error) => {
+            Err(Failure::Usage(format!("--engine dask: `{python}` cannot be started ({error}); {INSTALL}")))
+        }
+    }
+}
+
+fn python() -> String {
+    std::env::var(PYTHON).unwrap_or_else(|_| "python3".to_owned())
+}
 
 /// Has the workers of a cluster make the shards of a plan (JSON, as `study plan` prints it) below `out`; `done` is told of
 /// each shard.
 ///
 /// # Errors
-/// [`Failure::Usage`] when Python, the package or Dask is not there, and when a shard failed.
+/// [`Failure::Usage`] when the driver does not start, and when a shard failed.
 pub fn run_on_dask(
     plan: &str,
     out: &Path,
@@ -54,7 +74,7 @@ pub fn run_on_dask(
     workers: usize,
     mut done: impl FnMut(u64),
 ) -> Result<(), Failure> {
-    let python = std::env::var(PYTHON).unwrap_or_else(|_| "python3".to_owned());
+    let python = python();
     let program = match std::env::var(PROGRAM) {
         Ok(program) => program,
         Err(_) => std::env::current_exe()
@@ -99,13 +119,8 @@ pub fn run_on_dask(
         .wait()
         .map_err(|error| Failure::Usage(format!("--engine dask: `{python}` was lost: {error}")))?;
     let log = log.join().unwrap_or_default();
-    let is_missing = status.code() == Some(MISSING)
-        || log.contains("No module named 'boresight'")
-        || log.contains("No module named boresight");
     if status.success() {
         Ok(())
-    } else if is_missing {
-        Err(Failure::Usage(format!("--engine dask: `{python}` has no Dask engine of Boresight; {INSTALL}")))
     } else {
         Err(Failure::Usage(format!("--engine dask: the driver failed ({status}):\n{}", log.trim_end())))
     }

@@ -3,7 +3,7 @@
 use comfy_table::{Attribute, Cell};
 
 use crate::score::{Kind, sense};
-use crate::study::{CaseTable, Estimate, Summary, overall};
+use crate::study::{CaseFigure, CaseRow, Estimate, Study, Summary, overall};
 use crate::table::{finish, percent, plain_table};
 
 /// Parameters of the sensitivity table, at most.
@@ -32,6 +32,10 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     }
     let stopped = if summary.is_narrow_enough { ", stopped as its figure was known well enough" } else { "" };
     let mut text = format!("{}: {} cases of {}{stopped}\n", summary.study, summary.cases, summary.of);
+    if summary.failed_cases > 0 {
+        let cases = summary.failed_cases;
+        text.push_str(&format!("In {cases} of them the pipeline itself failed: it crashed, gave no answer in time, or none that can be read.\n"));
+    }
     text.push_str(&finish(table));
     text.push_str(
         "Intervals are of 95 %. All together: rates over all frames (Wilson, by the scatter between cases), other figures the mean of the\n\
@@ -95,10 +99,33 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     text
 }
 
-/// A figure of the cases so far, in a few words.
-pub fn live(table: &CaseTable, figure: &str, seed: u64) -> String {
-    let estimate = table.figure(figure).and_then(|cases| overall(figure, &cases, seed, 0));
-    format!("{figure} {}", shown(figure, estimate.as_ref()))
+/// A figure of the cases so far, in a few words: estimated anew after each twentieth more of them, so that it costs little however many
+/// there are.
+pub struct LiveFigure {
+    name: String,
+    column: Option<usize>,
+    seed: u64,
+    cases: Vec<CaseFigure>,
+    next: usize,
+}
+
+impl LiveFigure {
+    /// Of a study, before its first case.
+    pub fn new(study: &Study, name: String) -> Self {
+        let column = study.figures().iter().position(|figure| *figure == name);
+        Self { name, column, seed: study.file.seed, cases: Vec::new(), next: 1 }
+    }
+
+    /// Adds a case; what is to be shown now, if it is to be shown anew.
+    pub fn add(&mut self, row: &CaseRow) -> Option<String> {
+        self.cases.push(*row.figures.get(self.column?)?);
+        if self.cases.len() < self.next {
+            return None;
+        }
+        self.next = self.cases.len() + (self.cases.len() / 20).max(1);
+        let estimate = overall(&self.name, &self.cases, self.seed, 0);
+        Some(format!("{} {}", self.name, shown(&self.name, estimate.as_ref())))
+    }
 }
 
 fn shown(name: &str, estimate: Option<&Estimate>) -> String {

@@ -123,7 +123,7 @@ fn curves(report: &VisibilityReport) -> Vec<Sheet> {
     });
     sheets.push(Sheet {
         title: "Worst pointings at the nominal exposure".to_owned(),
-        head: vec!["RA, °", "Dec, °", "in field", "detected", "enough, %"],
+        head: vec!["RA, °", "Dec, °", "bright enough", "detected", "enough, %"],
         rows: rows.collect(),
     });
     if !report.exposure_window.is_empty() {

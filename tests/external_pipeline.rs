@@ -170,7 +170,7 @@ fn check_fails_at_once(bench: &Bench, answer: Answer, part: &str) {
 }
 
 #[test]
-fn a_program_that_does_not_exist_is_a_failure_of_every_frame() {
+fn a_program_that_does_not_exist_is_refused_before_anything_is_written() {
     let bench = Bench::new();
     let words = [
         "run",
@@ -182,8 +182,8 @@ fn a_program_that_does_not_exist_is_a_failure_of_every_frame() {
         "--pipeline",
         "exec:no-such-program -x",
     ];
-    let answer = bench.boresight_words(&words);
-    check_fails_at_once(&bench, answer, "`no-such-program` does not start");
+    bench.boresight_words(&words).refused(&["there is no program `no-such-program`", "search path"]);
+    assert!(!bench.path("run").exists());
 }
 
 #[test]

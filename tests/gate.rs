@@ -195,7 +195,18 @@ fn the_same_run_is_no_worse_and_a_worse_one_shuts_the_gate() {
     let junit = quick_junit::Report::deserialize_from_str(&bench.read("junit.xml")).unwrap();
     assert_eq!(junit.tests, report["figures"].as_object().unwrap().len());
     assert!(junit.failures >= 2, "{}", bench.read("junit.xml"));
-    bench.boresight("gate base worse --junit junit.xml").refused(&["junit.xml", "exists"]);
+    bench.boresight("gate base worse --junit junit.xml").refused(&["--junit is junit.xml", "exists"]);
+
+    // What cannot be compared is an error to whoever reads the XML, too.
+    bench.boresight("gate base nowhere --junit error.xml").refused(&["nowhere"]);
+    let junit = quick_junit::Report::deserialize_from_str(&bench.read("error.xml")).unwrap();
+    assert_eq!((junit.tests, junit.errors), (1, 1), "{}", bench.read("error.xml"));
+
+    // A result of which a third is missing is not a result that is no worse.
+    let lines = bench.read("worse/measurements.csv");
+    let some = lines.lines().enumerate().filter(|(i, _)| *i == 0 || i % 3 != 0).map(|(_, line)| line);
+    bench.write("worse/measurements.csv", some.collect::<Vec<_>>().join("\n") + "\n");
+    bench.boresight("gate base worse").refused(&["cannot compare", "no measurement of 20 of 60 frames"]);
 }
 
 #[test]

@@ -116,6 +116,8 @@ fn two_studies_never_mix() {
     bench.boresight("study run other.toml --out out").refused(&["plan.json", "`hash`", "another study"]);
     bench.boresight("study run study.toml --out out --shards 3").refused(&["`shards`", "`2`", "`3`"]);
     bench.boresight("study run study.toml --out out --pipeline exec:true").refused(&["`hash`"]);
+    // The built-in pipeline by its name is the built-in pipeline.
+    bench.boresight("study run study.toml --out out --pipeline far_range").done();
     support::check_same_files(&tree, &bench.tree("out"));
 
     // A shard of another study under the right name is no shard of this one.
@@ -148,6 +150,36 @@ fn a_replayed_case_is_the_case() {
     assert!(case < 6);
 }
 
+/// A program is known by the files among its words; a study says of which cases it failed, and each replays with it.
+#[test]
+fn programs_are_part_of_a_study() {
+    let bench = bench();
+    let run = |pipeline: &str, out: &str| {
+        bench.boresight_words(&["study", "run", "study.toml", "--out", out, "--json", "--pipeline", pipeline])
+    };
+    run("exec:no-such-program", "nothing").refused(&["there is no program `no-such-program`"]);
+    assert!(!bench.path("nothing").exists(), "nothing is begun for a program that is not there");
+
+    bench.write("my pipeline.py", "import sys\nsys.exit('it is broken')\n");
+    let words = "exec:python3 'my pipeline.py'";
+    let answer = run(words, "out");
+    assert!(
+        answer.stderr.contains("the pipeline failed, first in case 0 at frame 2000"),
+        "{}",
+        answer.stderr
+    );
+    let summary = answer.done().json();
+    assert_eq!(summary["failed_cases"], 6);
+    let replay = shlex::split(summary["worst"][0]["replay"].as_str().unwrap()).unwrap();
+    assert!(replay.contains(&words.to_owned()), "{replay:?}");
+    let replay: Vec<&str> = replay[1..].iter().map(String::as_str).chain(["--out", "again"]).collect();
+    bench.boresight_words(&replay).done();
+    assert!(bench.read("again/measurements.csv").contains("failed: "));
+
+    bench.write("my pipeline.py", "import sys\nsys.exit('it is broken in another way')\n");
+    run(words, "out").refused(&["`hash`", "another study"]);
+}
+
 #[test]
 fn a_sweep_has_the_same_draws_at_each_of_its_points() {
     let bench = bench();
@@ -174,18 +206,25 @@ fn a_sweep_has_the_same_draws_at_each_of_its_points() {
 fn a_study_stops_when_its_figure_is_known_well_enough() {
     let bench = bench();
     let until = |half_width: &str| {
-        let until = format!("cases = 6\nuntil = {{ figure = \"hit_rate\", half_width = {half_width} }}");
+        let until = format!("cases = 12\nuntil = {{ figure = \"hit_rate\", half_width = {half_width} }}");
         STUDY.replace("cases = 6", &until)
     };
     bench.write("wide.toml", until("0.5"));
     bench.write("narrow.toml", until("0.001"));
-    let cases = |name: &str| {
-        let words = format!("study run {name}.toml --out {name} --shards 3 --json");
+    let cases = |name: &str, shards: u32| {
+        let words = format!("study run {name}.toml --out {name}-{shards} --shards {shards} --json");
         let summary = bench.boresight(&words).done().json();
         (summary["cases"].as_u64().unwrap(), summary["is_narrow_enough"].as_bool().unwrap())
     };
-    assert_eq!(cases("wide"), (2, true));
-    assert_eq!(cases("narrow"), (6, false));
+    // Where it stops does not depend on how it is cut, and what was not needed is not missing.
+    assert_eq!(cases("wide", 4), (8, true));
+    assert_eq!(cases("wide", 5), (8, true));
+    bench.check_same("wide-4/cases.parquet", "wide-5/cases.parquet");
+    bench.check_same("wide-4/summary.json", "wide-5/summary.json");
+    assert!(!bench.path("wide-4/shards/4-of-4.parquet").exists());
+    bench.boresight("study merge wide.toml --out wide-4").done();
+    bench.check_same("wide-4/cases.parquet", "wide-5/cases.parquet");
+    assert_eq!(cases("narrow", 3), (12, false));
     bench.boresight("study run wide.toml --out x --shard 1/3").refused(&["--shard", "stop.until"]);
     bench.boresight("study plan wide.toml").refused(&["stop.until"]);
 }

@@ -1,14 +1,17 @@
 //! `boresight gate`: whether a result is worse than a baseline.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
 use super::Answer;
 use super::output::Output;
 use crate::failure::Failure;
-use crate::files::{FileError, PartialFiles};
-use crate::gate::{Baseline, CompareOptions, FigureVerdict, Replace, compare, junit, read_result};
+use crate::files::WholeFile;
+use crate::gate::{
+    Baseline, CompareOptions, FigureVerdict, GateReport, Replace, compare, junit, junit_of_failure,
+    read_result,
+};
 use crate::gate_table::{baseline_text, gate_table};
 
 #[derive(Debug, Args)]
@@ -42,7 +45,7 @@ struct CompareArguments {
     /// rates nothing
     #[arg(long, value_name = "FIGURE=SIZE")]
     tolerance: Vec<Tolerance>,
-    /// Write the report as JUnit XML too
+    /// Write the report as JUnit XML too, or why nothing could be compared; a new file
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
 }
@@ -107,20 +110,30 @@ fn make_baseline(arguments: &BaselineArguments, output: &Output) -> Result<Answe
 }
 
 fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Failure> {
-    let baseline = Baseline::read(&arguments.baseline)?;
-    let result = read_result(&arguments.result)?;
-    let tolerances = arguments.tolerance.iter().map(|told| (told.figure.clone(), told.size)).collect();
-    let options = CompareOptions { alpha: arguments.alpha, figures: arguments.figures.clone(), tolerances };
-    let report = compare(&baseline, &result, &options)?;
-    if let Some(path) = &arguments.junit {
-        write_junit(path, &junit(&report)?)?;
+    // Now, before minutes are spent on what could not be written.
+    if let Some(path) = arguments.junit.as_ref().filter(|path| path.exists()) {
+        return Err(Failure::Usage(format!(
+            "--junit is {}, which exists and is not overwritten; expected the name of a new file",
+            path.display()
+        )));
     }
+    let compared = compared(arguments);
+    if let Some(path) = &arguments.junit {
+        let xml = match &compared {
+            Ok(report) => junit(report)?,
+            Err(failure) => junit_of_failure(failure)?,
+        };
+        WholeFile::with_text(path, &xml)?.commit_new()?;
+    }
+    let report = compared?;
     output.answer(&report, gate_table(&report, output.is_terminal()))?;
     Ok(if report.verdict == FigureVerdict::Worse { Answer::No } else { Answer::Yes })
 }
 
-fn write_junit(path: &Path, xml: &str) -> Result<(), Failure> {
-    let partial = PartialFiles::of(&[path])?;
-    std::fs::write(partial.path(0), xml).map_err(|source| FileError::io(partial.path(0), "write", source))?;
-    Ok(partial.complete()?)
+fn compared(arguments: &CompareArguments) -> Result<GateReport, Failure> {
+    let baseline = Baseline::read(&arguments.baseline)?;
+    let result = read_result(&arguments.result)?;
+    let tolerances = arguments.tolerance.iter().map(|told| (told.figure.clone(), told.size)).collect();
+    let options = CompareOptions { alpha: arguments.alpha, figures: arguments.figures.clone(), tolerances };
+    compare(&baseline, &result, &options)
 }

@@ -16,14 +16,13 @@ use crate::docking_writer::FieldImages;
 use crate::failure::Failure;
 use crate::files::RunDirectory;
 use crate::pipeline_choice::PipelineChoice;
-use crate::run::{Expectation, Flight, Prepared};
+use crate::run::{Expectation, FirstFailure, Flight, Prepared};
 use crate::scenario::Scenario;
 use crate::study::{
-    CaseRow, CaseTable, Plan, ShardManifest, ShardStore, Study, StudyFile, StudyRecord, Summary,
-    is_narrow_enough, run_cases,
+    Campaign, CaseTable, Evaluated, Known, Plan, ShardManifest, Study, StudyFile, Workers, command_line,
 };
-use crate::study_engine::{Engine, run_on_dask};
-use crate::study_table::{live, study_table};
+use crate::study_engine::{Engine, check_dask, run_on_dask};
+use crate::study_table::{LiveFigure, study_table};
 use crate::table::{TableStyle, far_range};
 
 #[derive(Debug, Subcommand)]
@@ -149,11 +148,6 @@ pub(super) fn study(command: &StudyCommand, output: &Output) -> Result<Answer, F
 fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
     let choice = arguments.pipeline.choice();
-    let hash = study.hash_with(&choice);
-    let shards = match arguments.shard {
-        Some(shard) => Some(shard.of),
-        None => arguments.shards.or_else(|| ShardStore::planned_shards(&arguments.out)),
-    };
     if arguments.shard.is_some() && study.file.stop.until.is_some() {
         return Err(Failure::Usage(format!(
             "--shard is given, expected with a study of a fixed number of cases: `{}` stops by a figure (stop.until), which no shard \
@@ -161,70 +155,62 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
             study.name
         )));
     }
-    let store = ShardStore::open(&arguments.out, Plan::new(&study, hash.clone(), shards)?)?;
+    if let Engine::Dask(_) = &arguments.engine {
+        refuse_until(&study)?;
+        check_dask()?;
+    }
+    let shards = arguments.shard.map(|shard| shard.of).or(arguments.shards);
+    let campaign = Campaign::open(&study, &choice, &arguments.out, shards)?;
     let jobs = arguments.jobs.map_or_else(default_jobs, usize::from);
-    let empty = study.table();
+    let plan = campaign.store().plan();
     if let Engine::Dask(address) = &arguments.engine {
-        let planned = planned(&study, store.plan(), &arguments.study, &choice)?;
-        let progress = output.progress_of(store.plan().cases, "cases", &study.name);
+        let planned = planned(&study, plan, &arguments.study, &choice)?;
+        let progress = output.progress_of(plan.cases, "cases", &study.name);
         let done = |shard: u64| {
-            let cases = store.plan().cases_of(shard);
+            let cases = plan.cases_of(shard);
             progress.inc(cases.end - cases.start);
         };
         let ran = run_on_dask(&to_json(&planned)?, &arguments.out, address.as_deref(), jobs, done);
         progress.finish_and_clear();
         ran?;
-        return merged(&study, &store, &hash, &arguments.study, output);
+        return finish(&campaign, &arguments.study, &campaign.merge()?, output);
     }
-    let scratch = super::scratch_directory()?;
-    let todo: Vec<u64> = match arguments.shard {
-        Some(shard) => vec![shard.shard],
-        None => (1..=store.plan().shards).collect(),
-    };
-    let cases: u64 = todo.iter().map(|shard| store.plan().cases_of(*shard)).map(|r| r.end - r.start).sum();
-    let progress = output.progress_of(cases, "cases", &study.name);
-
-    let figure =
-        study.file.stop.until.as_ref().map_or_else(|| study.worst_by(), |until| until.figure.clone());
-    let known = Mutex::new(empty.clone());
-    let mut manifests = Vec::new();
-    for shard in todo {
-        let made = match store.read(shard, &empty) {
-            Some((table, manifest)) => {
-                progress.inc(table.rows.len() as u64);
-                lock(&known).rows.extend(table.rows);
-                manifest
-            }
-            None => {
-                store.clear(shard)?;
-                let done = |row: &CaseRow| {
-                    progress.inc(1);
-                    let mut known = lock(&known);
-                    known.rows.push(row.clone());
-                    progress.set_message(format!(
-                        "{}, {}",
-                        study.name,
-                        live(&known, &figure, study.file.seed)
-                    ));
-                };
-                let cases = store.plan().cases_of(shard);
-                let rows = run_cases(&study, cases, &choice, jobs, scratch.path(), done)?;
-                store.write(shard, &empty.with_rows(rows))?
-            }
-        };
-        manifests.push(made);
-        let mut known = lock(&known);
-        known.rows.sort_by_key(|row| row.case);
-        if is_narrow_enough(&study, &known) {
-            break;
+    let cases = arguments.shard.map_or(0..plan.cases, |shard| plan.cases_of(shard.shard));
+    let progress = output.progress_of(cases.end - cases.start, "cases", &study.name);
+    let until = study.file.stop.until.as_ref().map(|until| until.figure.clone());
+    let live = Mutex::new(LiveFigure::new(&study, until.unwrap_or_else(|| study.worst_by())));
+    let failure = Mutex::new(None);
+    let done = |case: Known<'_>| {
+        progress.inc(1);
+        if let Some(text) = lock(&live).add(case.row()) {
+            progress.set_message(format!("{}, {text}", study.name));
         }
+        if let Known::Run(Evaluated { row, first_failure: Some(first) }) = case {
+            let mut known = lock(&failure);
+            if known.as_ref().is_none_or(|(case, _)| row.case < *case) {
+                *known = Some((row.case, first.clone()));
+            }
+        }
+    };
+    let scratch = super::scratch_directory()?;
+    let workers = Workers { jobs, scratch: scratch.path() };
+    let answer = match arguments.shard {
+        Some(shard) => {
+            let made = campaign.shard(shard.shard, workers, done);
+            progress.finish_and_clear();
+            shard_made(&campaign, &made?.1, output)?;
+            Answer::Yes
+        }
+        None => {
+            let table = campaign.run(workers, done);
+            progress.finish_and_clear();
+            finish(&campaign, &arguments.study, &table?, output)?
+        }
+    };
+    if let Some((case, FirstFailure { frame, reason })) = lock(&failure).as_ref() {
+        output.note(format!("the pipeline failed, first in case {case} at frame {frame}: {reason}"));
     }
-    progress.finish_and_clear();
-    if arguments.shard.is_some() {
-        return shard_made(&store, &manifests, output);
-    }
-    let table = known.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    finish(&study, &store, &hash, &arguments.study, &table, output)
+    Ok(answer)
 }
 
 fn to_json(value: &impl Serialize) -> Result<String, Failure> {
@@ -232,42 +218,33 @@ fn to_json(value: &impl Serialize) -> Result<String, Failure> {
         .map_err(|error| Failure::Usage(format!("the plan cannot be written as JSON: {error}")))
 }
 
-/// A thread that panicked while it held the rows cannot have left half a row in them.
-fn lock(table: &Mutex<CaseTable>) -> std::sync::MutexGuard<'_, CaseTable> {
-    table.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+/// A thread that panicked while it held what is known cannot have left half of it.
+fn lock<T>(known: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    known.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-fn shard_made(store: &ShardStore, manifests: &[ShardManifest], output: &Output) -> Result<Answer, Failure> {
-    for manifest in manifests {
-        let path = store.path(manifest.shard);
-        let text = format!(
-            "shard {} of {}: cases {} to {} in {}",
-            manifest.shard,
-            manifest.of,
-            manifest.first_case,
-            manifest.first_case + manifest.rows - 1,
-            path.display()
-        );
-        output.answer(manifest, text)?;
-    }
-    Ok(Answer::Yes)
+fn shard_made(campaign: &Campaign<'_>, manifest: &ShardManifest, output: &Output) -> Result<(), Failure> {
+    let text = format!(
+        "shard {} of {}: cases {} to {} in {}",
+        manifest.shard,
+        manifest.of,
+        manifest.first_case,
+        manifest.first_case + manifest.rows - 1,
+        campaign.store().path(manifest.shard).display()
+    );
+    output.answer(manifest, text)
 }
 
 fn finish(
-    study: &Study,
-    store: &ShardStore,
-    hash: &str,
+    campaign: &Campaign<'_>,
     path: &Path,
     table: &CaseTable,
     output: &Output,
 ) -> Result<Answer, Failure> {
-    let summary = Summary::new(study, hash, &path.display().to_string(), table);
-    store.write_record(&StudyRecord::new(study)?)?;
-    let cases = store.write_cases(table)?;
-    let written = store.write_summary(&summary)?;
+    let summary = campaign.finish(path, table)?;
     let text = study_table(&summary, output.is_terminal());
-    output
-        .answer(&summary, format!("{text}\nrows in {}, summary in {}", cases.display(), written.display()))?;
+    let folder = campaign.store().folder().display();
+    output.answer(&summary, format!("{text}\nrows and summary in {folder}: cases.parquet, summary.json"))?;
     Ok(Answer::Yes)
 }
 
@@ -290,30 +267,44 @@ struct Piece {
 
 fn plan(arguments: &PlanArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
+    refuse_until(&study)?;
     let choice = arguments.pipeline.choice();
+    choice.check(study.scenario())?;
     let plan = Plan::new(&study, study.hash_with(&choice), arguments.shards)?;
     let planned = planned(&study, &plan, &arguments.study, &choice)?;
-    let path = arguments.study.display();
+    let command = |verb: &str| {
+        let mut words = ["boresight", "study", verb].map(str::to_owned).to_vec();
+        words.push(arguments.study.display().to_string());
+        words.extend(choice.arguments(study.scenario().world()));
+        command_line(&words)
+    };
     let text = format!(
-        "{}: {} cases in {shards} shards of about {}\nboresight study run {path} --out DIR --shard I/{shards}, for I from 1 to {shards}\n\
-         boresight study merge {path} --out DIR",
+        "{}: {} cases in {shards} shards of about {}\n{} --out DIR --shard I/{shards}, for I from 1 to {shards}\n{} --out DIR",
         study.name,
         plan.cases,
         plan.cases.div_ceil(plan.shards),
+        command("run"),
+        command("merge"),
         shards = plan.shards,
     );
     output.answer(&planned, text)?;
     Ok(Answer::Yes)
 }
 
-fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> Result<Planned, Failure> {
-    if study.file.stop.until.is_some() {
-        return Err(Failure::Usage(format!(
+/// Refuses a study that no shard knows the end of.
+fn refuse_until(study: &Study) -> Result<(), Failure> {
+    match study.file.stop.until {
+        None => Ok(()),
+        Some(_) => Err(Failure::Usage(format!(
             "`{}` stops by a figure (stop.until), expected a study of a fixed number of cases: no shard knows the figure alone",
             study.name
-        )));
+        ))),
     }
-    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+}
+
+fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> Result<Planned, Failure> {
+    let path =
+        std::path::absolute(path).map_err(|error| Failure::Usage(format!("{}: {error}", path.display())))?;
     let piece = |shard: u64| {
         let cases = plan.cases_of(shard);
         let mut arguments = ["study", "run"].map(str::to_owned).to_vec();
@@ -322,10 +313,7 @@ fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> 
             "--shard".to_owned(),
             format!("{shard}/{}", plan.shards),
         ]);
-        if let Some(word) = &choice.word {
-            let timeout = choice.timeout_s.to_string();
-            arguments.extend(["--pipeline", word, "--timeout-s", &timeout].map(str::to_owned));
-        }
+        arguments.extend(choice.arguments(study.scenario().world()));
         Piece { shard, first_case: cases.start, cases: cases.end - cases.start, arguments }
     };
     Ok(Planned { pieces: (1..=plan.shards).map(piece).collect(), plan: plan.clone() })
@@ -333,43 +321,9 @@ fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> 
 
 fn merge(arguments: &MergeArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
-    let hash = study.hash_with(&arguments.pipeline.choice());
-    let Some(shards) = ShardStore::planned_shards(&arguments.out) else {
-        return Err(Failure::Usage(format!(
-            "{}: there is no plan.json that can be read, expected the directory of a study's shards",
-            arguments.out.display()
-        )));
-    };
-    let store = ShardStore::open(&arguments.out, Plan::new(&study, hash.clone(), Some(shards))?)?;
-    merged(&study, &store, &hash, &arguments.study, output)
-}
-
-/// Puts the shards together; none may be missing, none be another study's.
-fn merged(
-    study: &Study,
-    store: &ShardStore,
-    hash: &str,
-    path: &Path,
-    output: &Output,
-) -> Result<Answer, Failure> {
-    store.check_foreign()?;
-    let empty = study.table();
-    let mut table = empty.clone();
-    let mut missing = Vec::new();
-    for shard in 1..=store.plan().shards {
-        match store.read(shard, &empty) {
-            Some((rows, _)) => table.rows.extend(rows.rows),
-            None => missing.push(shard.to_string()),
-        }
-    }
-    if !missing.is_empty() {
-        return Err(Failure::Usage(format!(
-            "shards {} of {} are missing or were damaged; `boresight study run` makes them",
-            missing.join(", "),
-            store.plan().shards
-        )));
-    }
-    finish(study, store, hash, path, &table, output)
+    let choice = arguments.pipeline.choice();
+    let campaign = Campaign::reopen(&study, &choice, &arguments.out)?;
+    finish(&campaign, &arguments.study, &campaign.merge()?, output)
 }
 
 fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failure> {

@@ -29,6 +29,7 @@ mod truth;
 mod unit;
 mod video;
 mod wcs;
+mod whole_file;
 mod windows;
 
 pub use self::exr::{Expected, read_expected, read_radiance, write_expected, write_radiance};
@@ -50,3 +51,4 @@ pub use video::{
     AviCoding, AviWriter, FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions, Y4mWriter, write_field,
 };
 pub use wcs::{SipTerm, TanSip, WcsError};
+pub use whole_file::WholeFile;

@@ -3,13 +3,11 @@
 //! A folder with two files: `baseline.toml`, readable in a diff, says what was run, by which pipeline, why this is the baseline, how it is
 //! cut into blocks, and the figures; `rows.parquet` has a row a unit. The one holds the SHA-256 of the other.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use tempfile::NamedTempFile;
 
 use super::blocks::{Blocks, LEAST_BLOCKS, Memory, length_for, memory};
 use super::effects::value;
@@ -17,8 +15,8 @@ use super::identity::Identity;
 use super::read::Sample;
 use super::rows;
 use crate::failure::Failure;
-use crate::files::FileError;
-use crate::score::Reduction;
+use crate::files::{FileError, WholeFile};
+use crate::score::{FigureTerms, Reduction};
 use crate::toml_file;
 
 /// Version of the form of these files.
@@ -121,14 +119,7 @@ impl Baseline {
                 blocks.count()
             )));
         }
-        let figures = sample.table.figures.iter().map(|figure| {
-            let told = BaselineFigure {
-                by: figure.reduction.code().to_owned(),
-                value: value(figure.reduction, &figure.terms),
-                of: figure.terms.iter().map(|term| u64::from(term.of)).sum(),
-            };
-            (figure.name.clone(), told)
-        });
+        let figures = sample.table.figures.iter().map(|figure| (figure.name.clone(), told_of(figure)));
         let header = BaselineHeader {
             format: FORMAT,
             reason: reason.to_owned(),
@@ -161,19 +152,16 @@ impl Baseline {
             }
         }
         std::fs::create_dir_all(folder).map_err(|source| FileError::io(folder, "create", source))?;
-        let new_rows = partial(folder)?;
-        rows::write(new_rows.as_file(), &rows, &self.sample.table, |unit| self.blocks.of(unit))?;
-        self.header.rows_sha256 = file_sha256(new_rows.path())?;
+        let new_rows = WholeFile::create(&rows)?;
+        rows::write(new_rows.file(), &rows, &self.sample.table, |unit| self.blocks.of(unit))?;
+        self.header.rows_sha256 = file_sha256(new_rows.place())?;
         let text = toml::to_string(&self.header)
             .map_err(|error| Failure::Usage(format!("the baseline cannot be written: {error}")))?;
-        let mut new_header = partial(folder)?;
-        new_header.write_all(text.as_bytes()).map_err(|source| FileError::io(&header, "write", source))?;
-        for (file, path) in [(new_rows, &rows), (new_header, &header)] {
-            let named = match replace {
-                Replace::Allow => file.persist(path),
-                Replace::Refuse => file.persist_noclobber(path),
-            };
-            named.map_err(|error| FileError::io(path, "create", error.error))?;
+        for file in [new_rows, WholeFile::with_text(&header, &text)?] {
+            match replace {
+                Replace::Allow => file.replace()?,
+                Replace::Refuse => file.commit_new()?,
+            }
         }
         Ok(())
     }
@@ -212,19 +200,42 @@ impl Baseline {
             return Err(refuse("rows_sha256", message));
         }
         let (table, numbers) = rows::read(&rows_path, &figures)?;
+        let (told, units) = (header.units, table.units.len());
+        if told != units as u64 {
+            return Err(refuse(
+                "units",
+                format!("is {told}, expected {units}, the rows of {}", rows_path.display()),
+            ));
+        }
+        let blocks = Blocks::from_numbers(numbers);
+        let (told, count) = (header.blocks.count, blocks.count());
+        if told != count as u64 || count < LEAST_BLOCKS {
+            let expected =
+                format!("the blocks of {} ({count}), at least {LEAST_BLOCKS}", rows_path.display());
+            return Err(refuse("blocks.count", format!("is {told}, expected {expected}")));
+        }
+        for figure in &table.figures {
+            let (told, known) = (header.figures.get(&figure.name), told_of(figure));
+            if told != Some(&known) {
+                let value = known.value.map_or_else(|| "none".to_owned(), |value| value.to_string());
+                return Err(refuse(
+                    &format!("figures.{}", figure.name),
+                    format!("is not what the rows give, expected {value} of {}", known.of),
+                ));
+            }
+        }
         let sample = Sample { identity: header.run.clone(), table };
-        Ok(Self { header, sample, blocks: Blocks::from_numbers(numbers) })
+        Ok(Self { header, sample, blocks })
     }
 }
 
-/// A file in a folder that is gone unless it is given a name.
-fn partial(folder: &Path) -> Result<NamedTempFile, FileError> {
-    let mut builder = tempfile::Builder::new();
-    // Readable by everybody, as a file of a repository is.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
-    let made = builder.prefix(".partial-").tempfile_in(folder);
-    made.map_err(|source| FileError::io(folder, "create", source))
+/// What is told of a figure.
+fn told_of(figure: &FigureTerms) -> BaselineFigure {
+    BaselineFigure {
+        by: figure.reduction.code().to_owned(),
+        value: value(figure.reduction, &figure.terms),
+        of: figure.terms.iter().map(|term| u64::from(term.of)).sum(),
+    }
 }
 
 fn paths(folder: &Path) -> [PathBuf; 2] {

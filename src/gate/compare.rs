@@ -9,7 +9,7 @@ use super::identity::Pairing;
 use super::read::Sample;
 use super::report::{FigureReport, FigureVerdict, GateReport};
 use crate::failure::Failure;
-use crate::score::{Better, FigureTerms, Kind, Sense, sense};
+use crate::score::{Better, FigureTerms, Kind, Sense, UnitVerdict, sense};
 use crate::statistics::{BlockEffects, Exchanges, JointTest, joint_test, normal_quantile};
 use crate::toml_file;
 
@@ -17,6 +17,9 @@ use crate::toml_file;
 const Z_POWER: f64 = 1.644_853_626_951_472_2;
 /// A figure that the result lacks is gone when that would be chance with no more than this probability.
 const GONE_BY_CHANCE: f64 = 1e-3;
+/// The cause, in either world, of a unit without a row.
+const NOT_REPORTED: &str = "not_reported";
+
 /// What a comparison is asked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CompareOptions {
@@ -52,6 +55,7 @@ pub fn compare(
     let pairing = identity.pairing(&result.identity)?;
     let units = identity.kind.units(&identity.world);
     check_units(baseline, result, units)?;
+    check_reported(baseline, result, units)?;
     let pairs = pairs(baseline, result, options)?;
 
     let blocks = &baseline.blocks;
@@ -118,6 +122,23 @@ fn check_units(baseline: &Baseline, result: &Sample, what: &str) -> Result<(), F
     Err(Failure::Usage(format!(
         "cannot compare: `{what}` is `{of_baseline}` in the baseline and `{of_result}` in the result, expected the same {what}"
     )))
+}
+
+/// A result that is silent about units of which the baseline is not is not complete: no solution is a row, too.
+fn check_reported(baseline: &Baseline, result: &Sample, what: &str) -> Result<(), Failure> {
+    let silent = |units: &[UnitVerdict]| {
+        let is_silent = |unit: &&UnitVerdict| unit.cause.as_deref() == Some(NOT_REPORTED);
+        (units.iter().filter(is_silent).count(), units.iter().find(is_silent).map(|unit| unit.number))
+    };
+    let (before, _) = silent(&baseline.sample.table.units);
+    match silent(&result.table.units) {
+        (after, Some(first)) if after > before => Err(Failure::Usage(format!(
+            "cannot compare: the result has no measurement of {after} of {} {what} (the first is number {first}), the baseline of {before}; \
+             expected a row of each, `no solution` included",
+            result.table.units.len()
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// The figures to compare, of either sample.

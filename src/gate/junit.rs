@@ -27,6 +27,25 @@ pub fn junit(report: &GateReport) -> Result<String, Failure> {
         case.set_system_out(message(name, figure));
         suite.add_test_case(case);
     }
+    written(suite)
+}
+
+/// A comparison that could not be made, as a JUnit document: one test case, which is an error.
+///
+/// # Errors
+/// [`Failure::Usage`] when it cannot be written as XML.
+pub fn junit_of_failure(failure: &Failure) -> Result<String, Failure> {
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+    status.set_message(failure.to_string());
+    status.set_type("cannot compare");
+    let mut case = TestCase::new("comparison", status);
+    case.set_classname("boresight.gate");
+    let mut suite = TestSuite::new("gate");
+    suite.add_test_case(case);
+    written(suite)
+}
+
+fn written(suite: TestSuite) -> Result<String, Failure> {
     let mut document = Report::new("boresight gate");
     document.add_test_suite(suite);
     document

@@ -25,6 +25,6 @@ pub use blocks::{Blocks, LEAST_BLOCKS};
 pub use compare::{CompareOptions, compare};
 pub use flips::{Flip, FlipKind, Flips};
 pub use identity::{Identity, Pairing, SourceKind};
-pub use junit::junit;
+pub use junit::{junit, junit_of_failure};
 pub use read::{Sample, read_result};
 pub use report::{FigureReport, FigureVerdict, GateReport};

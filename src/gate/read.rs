@@ -249,12 +249,14 @@ mod tests {
                 crate::study::CaseRow {
                     case: 0,
                     seed: 3,
+                    has_failed: false,
                     drawn: Vec::new(),
                     figures: vec![figure(Some(0.75), 30, 40), figure(Some(0.5), 30, 30)],
                 },
                 crate::study::CaseRow {
                     case: 1,
                     seed: 4,
+                    has_failed: false,
                     drawn: Vec::new(),
                     figures: vec![figure(Some(0.0), 0, 40), figure(None, 0, 0)],
                 },

@@ -30,6 +30,14 @@ pub enum Scenario {
 }
 
 impl Scenario {
+    /// Its world.
+    pub fn world(&self) -> World {
+        match self {
+            Self::FarRange(_) => World::FarRange,
+            Self::Docking(_) => World::Docking,
+        }
+    }
+
     /// What it is, in one line.
     pub fn title(&self) -> &str {
         match self {

@@ -1,10 +1,11 @@
 //! The rows of a study: a case each, with what was drawn and what came of it.
 
 use std::fs::File;
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
-use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, StringArray, UInt64Array};
+use arrow_array::{Array, ArrayRef, BooleanArray, Float64Array, RecordBatch, StringArray, UInt64Array};
 use arrow_schema::{DataType, Field, Schema};
 use indexmap::IndexMap;
 use parquet::arrow::ArrowWriter;
@@ -53,6 +54,8 @@ pub struct CaseRow {
     pub case: u64,
     /// Seed of its scenario.
     pub seed: u64,
+    /// Whether the pipeline itself failed, at one frame or more: it crashed, gave no answer in time, or none that can be read.
+    pub has_failed: bool,
     /// Drawn values, in the order of the table's columns.
     pub drawn: Vec<Drawn>,
     /// Figures, in the order of the table's columns.
@@ -86,6 +89,7 @@ impl CaseTable {
         for row in &self.rows {
             hash.update(row.case.to_le_bytes());
             hash.update(row.seed.to_le_bytes());
+            hash.update([u8::from(row.has_failed)]);
             for drawn in &row.drawn {
                 match drawn {
                     Drawn::Number(number) => hash.update(number.to_bits().to_le_bytes()),
@@ -105,11 +109,16 @@ impl CaseTable {
         hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
-    /// Writes the rows as Parquet: `case`, `seed`, `set.PATH` for what was drawn, and NAME, NAME.count, NAME.of for each figure.
+    /// Writes the rows as Parquet: `case`, `seed`, `has_failed`, `set.PATH` for what was drawn, and NAME, NAME.count, NAME.of for each figure.
     ///
     /// # Errors
     /// [`FileError`], of `path`, when the file cannot be written.
-    pub fn write(&self, file: &File, path: &Path, metadata: &[(&str, String)]) -> Result<(), FileError> {
+    pub fn write(
+        &self,
+        file: impl Write + Send,
+        path: &Path,
+        metadata: &[(&str, String)],
+    ) -> Result<(), FileError> {
         let (schema, columns) = self.columns();
         let schema = Arc::new(schema);
         let metadata = metadata.iter().map(|(key, value)| KeyValue::new((*key).to_owned(), value.clone()));
@@ -122,8 +131,7 @@ impl CaseTable {
         let mut writer =
             ArrowWriter::try_new(file, schema, Some(properties)).map_err(|error| format(&error))?;
         writer.write(&batch).map_err(|error| format(&error))?;
-        writer.close().map_err(|error| format(&error))?;
-        file.sync_all().map_err(|source| FileError::io(path, "write", source))
+        writer.close().map(drop).map_err(|error| format(&error))
     }
 
     fn columns(&self) -> (Schema, Vec<ArrayRef>) {
@@ -137,6 +145,8 @@ impl CaseTable {
             |of: &dyn Fn(&CaseRow) -> u64| Arc::new(UInt64Array::from_iter_values(self.rows.iter().map(of)));
         add("case".to_owned(), false, whole(&|row| row.case));
         add("seed".to_owned(), false, whole(&|row| row.seed));
+        let has_failed = self.rows.iter().map(|row| Some(row.has_failed));
+        add("has_failed".to_owned(), false, Arc::new(BooleanArray::from_iter(has_failed)));
         for (index, (name, is_number)) in self.drawn.iter().enumerate() {
             let cells = self.rows.iter().map(|row| &row.drawn[index]);
             let column: ArrayRef = if *is_number {
@@ -222,10 +232,12 @@ impl CaseTable {
         let number = |name: &str| column::<Float64Array>(path, batch, name, &DataType::Float64);
         let text = |name: &str| column::<StringArray>(path, batch, name, &DataType::Utf8);
         let (cases, seeds) = (whole("case")?, whole("seed")?);
+        let failed: &BooleanArray = column(path, batch, "has_failed", &DataType::Boolean)?;
         let mut rows: Vec<CaseRow> = (0..batch.num_rows())
             .map(|row| CaseRow {
                 case: cases.value(row),
                 seed: seeds.value(row),
+                has_failed: failed.value(row),
                 drawn: Vec::with_capacity(self.drawn.len()),
                 figures: Vec::with_capacity(self.figures.len()),
             })

@@ -182,8 +182,8 @@ impl Study {
 
     /// The hash of rows by a pipeline.
     pub fn hash_with(&self, choice: &PipelineChoice) -> String {
-        match &choice.word {
-            Some(word) => hex(Sha256::digest(format!("{} {word}", self.hash))),
+        match choice.hash(self.scenario().world()) {
+            Some(pipeline) => hex(Sha256::digest(format!("{} {}", self.hash, hex(pipeline)))),
             None => self.hash.clone(),
         }
     }

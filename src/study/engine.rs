@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::cases::CaseRow;
 use super::definition::Study;
-use super::evaluate::evaluate;
+use super::evaluate::{Evaluated, evaluate};
 use crate::failure::Failure;
 use crate::pipeline_choice::PipelineChoice;
 
@@ -17,13 +17,13 @@ use crate::pipeline_choice::PipelineChoice;
 ///
 /// # Errors
 /// The failure of the first case, in order, that has one.
-pub fn run_cases(
+pub(super) fn run_cases(
     study: &Study,
     cases: Range<u64>,
     choice: &PipelineChoice,
     jobs: usize,
     scratch: &Path,
-    done: impl Fn(&CaseRow) + Sync,
+    done: impl Fn(&Evaluated) + Sync,
 ) -> Result<Vec<CaseRow>, Failure> {
     let pool = ThreadPoolBuilder::new()
         .num_threads(jobs)
@@ -32,9 +32,9 @@ pub fn run_cases(
     let one = |case: u64| {
         let own = tempfile::tempdir_in(scratch)
             .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))?;
-        let row = evaluate(study, case, choice, own.path())?;
-        done(&row);
-        Ok(row)
+        let evaluated = evaluate(study, case, choice, own.path())?;
+        done(&evaluated);
+        Ok(evaluated.row)
     };
     let rows: Vec<Result<CaseRow, Failure>> = pool.install(|| cases.into_par_iter().map(one).collect());
     rows.into_iter().collect()

@@ -10,9 +10,18 @@ use crate::docking_renderer::DockingRenderer;
 use crate::docking_run::PreparedDocking;
 use crate::failure::Failure;
 use crate::pipeline_choice::PipelineChoice;
-use crate::run::Prepared;
+use crate::run::{FirstFailure, Prepared};
 use crate::scenario::Scenario;
 use crate::score::{self, Figure};
+
+/// What came of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evaluated {
+    /// Its row.
+    pub row: CaseRow,
+    /// The first failure of the pipeline, if it failed at all.
+    pub first_failure: Option<FirstFailure>,
+}
 
 /// Simulates, processes and scores a case on this thread; nothing is written. A program finds its images in `scratch`.
 ///
@@ -23,9 +32,9 @@ pub fn evaluate(
     number: u64,
     choice: &PipelineChoice,
     scratch: &Path,
-) -> Result<CaseRow, Failure> {
+) -> Result<Evaluated, Failure> {
     let case = study.case(number)?;
-    let figures = figures_of(study, &case, choice, scratch)?;
+    let (figures, first_failure) = figures_of(study, &case, choice, scratch)?;
     let figure = |name: &String| {
         figures.get(name).map_or(CaseFigure { value: None, count: 0, of: 0 }, |figure| CaseFigure {
             value: figure.value,
@@ -34,7 +43,9 @@ pub fn evaluate(
         })
     };
     let figures = study.figures().iter().map(figure).collect();
-    Ok(CaseRow { case: number, seed: case.seed, drawn: case.drawn, figures })
+    let has_failed = first_failure.is_some();
+    let row = CaseRow { case: number, seed: case.seed, has_failed, drawn: case.drawn, figures };
+    Ok(Evaluated { row, first_failure })
 }
 
 fn figures_of(
@@ -42,19 +53,21 @@ fn figures_of(
     case: &Case,
     choice: &PipelineChoice,
     scratch: &Path,
-) -> Result<IndexMap<String, Figure>, Failure> {
+) -> Result<(IndexMap<String, Figure>, Option<FirstFailure>), Failure> {
     match &case.source.scenario {
         Scenario::FarRange(_) => {
             let prepared = Prepared::new(&case.source)?;
             let factory = choice.factory(&prepared.scenario().far_range, scratch)?;
             let frames = study.frames(prepared.frame_count())?;
-            Ok(prepared.score(frames, factory.as_ref())?.score.figures)
+            let ran = prepared.score(frames, factory.as_ref())?;
+            Ok((ran.scored.score.figures, ran.first_failure))
         }
         Scenario::Docking(_) => {
             let prepared = PreparedDocking::new(&case.source, DockingRenderer::Fast)?;
             let factory = choice.docking_factory(&prepared.scenario().docking, scratch)?;
             let fields = study.frames(prepared.field_count())?;
-            Ok(prepared.score(fields, factory.as_ref())?.finish().figures)
+            let (scorer, first_failure) = prepared.score(fields, factory.as_ref())?;
+            Ok((scorer.finish().figures, first_failure))
         }
     }
 }

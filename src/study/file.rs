@@ -72,8 +72,8 @@ pub struct Stop {
 pub struct Until {
     /// Name of a figure of the score, as in `hit_rate`.
     pub figure: String,
-    /// Half the width of its 95 % interval, in its own unit, > 0. Looked at after each shard, so that the last shard may narrow
-    /// it further than that.
+    /// Half the width of its 95 % interval, in its own unit, > 0. Looked at after 8 cases, 16, 24, from 128 on after a
+    /// sixteenth more each time, and after all, however the study is cut.
     pub half_width: f64,
 }
 

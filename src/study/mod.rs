@@ -7,9 +7,11 @@
 //! - [`StudyFile`], [`Law`], [`DesignKind`]: what is asked for.
 //! - [`Study`]: what was asked for, checked; makes the scenario of a case.
 //! - [`evaluate`]: simulates, processes and scores a case.
+//! - [`Campaign`]: a study in a folder; makes what is missing of it.
 //! - [`ShardStore`]: shards as files, each written at once or not at all; what is missing, what is whole.
 //! - [`Summary`]: figures with intervals, sensitivities, the worst cases.
 
+mod campaign;
 mod cases;
 mod definition;
 mod design;
@@ -21,16 +23,17 @@ mod overlay;
 mod record;
 mod sensitivity;
 mod shard;
+mod stopping;
 mod summary;
 
+pub use campaign::{Campaign, Known, Workers};
 pub use cases::{CaseFigure, CaseRow, CaseTable, Drawn};
 pub use definition::{Case, Study};
 pub use design::DesignKind;
-pub use engine::run_cases;
-pub use evaluate::evaluate;
+pub use evaluate::{Evaluated, evaluate};
 pub use file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};
 pub use law::Law;
 pub use record::StudyRecord;
 pub use sensitivity::{RankCorrelation, SobolIndex};
 pub use shard::{Plan, ShardManifest, ShardStore};
-pub use summary::{Estimate, FigureSummary, Summary, SweepPoint, WorstCase, is_narrow_enough, overall};
+pub use summary::{Estimate, FigureSummary, Summary, SweepPoint, WorstCase, command_line, overall};

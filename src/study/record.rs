@@ -9,7 +9,6 @@ use toml::Table;
 use super::definition::Study;
 use crate::failure::Failure;
 use crate::files::FileError;
-use crate::scenario::Scenario;
 
 /// A study that was run: resolved, so that nothing else is needed to tell what it is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -40,13 +39,9 @@ impl StudyRecord {
         for key in ["title", "seed", "scenario", "record"] {
             definition.remove(key);
         }
-        let world = match study.scenario() {
-            Scenario::FarRange(_) => "far_range",
-            Scenario::Docking(_) => "docking",
-        };
         Ok(Self {
             name: study.name.clone(),
-            world: world.to_owned(),
+            world: study.scenario().world().code().to_owned(),
             seed: study.file.seed,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             study: definition,

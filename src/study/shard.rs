@@ -1,31 +1,27 @@
 //! Shards: a study in pieces, each a file that is whole or not there.
 //!
 //! Shard i of n has the cases from ⌊i N/n⌋ on. Its file is written under another name, synced, and linked to its own, which never
-//! replaces a file; in it stand the study's hash, the version, which shard it is, and the hash of its rows. What is not exactly so
-//! is no shard: it is removed and made again. So any number of processes may work on the same folder, be killed at any moment,
+//! replaces a file; in it stand the study's hash, the version, which shard it is, and the hash of its rows. What is not exactly so,
+//! to the byte, is no shard: it is made again. So any number of processes may work on the same folder, be killed at any moment,
 //! and be started again.
 
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
-use tempfile::NamedTempFile;
 
 use super::cases::CaseTable;
 use super::definition::Study;
 use super::record::StudyRecord;
 use crate::failure::Failure;
-use crate::files::FileError;
+use crate::files::{FileError, WholeFile};
 
 /// Cases of a shard, about, when their number is not given.
 const CASES_PER_SHARD: u64 = 32;
 /// Most shards of a study, when their number is not given.
 const MOST_SHARDS: u64 = 1000;
-
-/// How the names of files begin that are being written, or were left by a process that was killed.
-const PARTIAL: &str = ".partial-";
 
 /// How a study is cut.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -110,7 +106,7 @@ impl ShardStore {
         let text = to_json(&store.plan)?;
         if !path.exists() {
             // Several processes may come to this at once: all write the same, and the first one's stays.
-            commit(partial_with(&path, &text)?, &path)?;
+            WholeFile::with_text(&path, &text)?.commit()?;
         }
         store.check_plan(&path)?;
         Ok(store)
@@ -139,6 +135,11 @@ impl ShardStore {
         }
     }
 
+    /// The folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// How the study is cut.
     pub fn plan(&self) -> &Plan {
         &self.plan
@@ -160,8 +161,7 @@ impl ShardStore {
         let io = |source| FileError::io(&folder, "read", source);
         for entry in std::fs::read_dir(&folder).map_err(io)? {
             let path = entry.map_err(io)?.path();
-            let is_partial = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PARTIAL));
-            if !is_partial && !known.contains(&path) {
+            if !WholeFile::is_partial(&path) && !known.contains(&path) {
                 return Err(Failure::Usage(format!(
                     "{}: is none of the {} shards of `{}`, expected nothing else there",
                     path.display(),
@@ -184,23 +184,27 @@ impl ShardStore {
     }
 
     /// The rows of a shard when its file is there, whole, and of this study.
-    pub fn read(&self, shard: u64, empty: &CaseTable) -> Option<(CaseTable, ShardManifest)> {
-        let (table, metadata) = empty.read(&self.path(shard)).ok()?;
-        let manifest = self.manifest_of(shard, &table, &metadata)?;
-        Some((table, manifest))
-    }
-
-    /// Makes room for a shard that [`ShardStore::read`] does not find: removes the file that stands in its place, if one does.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be removed.
-    pub fn clear(&self, shard: u64) -> Result<(), FileError> {
+    /// [`FileError::Io`] when there is a file that cannot be opened: it may be whole.
+    pub fn read(
+        &self,
+        shard: u64,
+        empty: &CaseTable,
+    ) -> Result<Option<(CaseTable, ShardManifest)>, FileError> {
         let path = self.path(shard);
-        match std::fs::remove_file(&path) {
-            Err(source) if source.kind() != ErrorKind::NotFound => {
-                Err(FileError::io(&path, "remove", source))
+        match empty.read(&path) {
+            Ok((table, metadata)) => {
+                let manifest = self.manifest_of(shard, &table, &metadata);
+                let is_whole = match &manifest {
+                    Some(manifest) => is_just(&table, manifest, &path)?,
+                    None => false,
+                };
+                Ok(manifest.filter(|_| is_whole).map(|manifest| (table, manifest)))
             }
-            _ => Ok(()),
+            Err(FileError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error @ FileError::Io { .. }) => Err(error),
+            Err(_) => Ok(None),
         }
     }
 
@@ -230,16 +234,21 @@ impl ShardStore {
         }
     }
 
-    /// Writes a shard, at once or not at all. When another process has written it meanwhile, its file stays: it says the same.
+    /// Writes a shard, at once or not at all. When another process has written it meanwhile, its file stays: it says the same. A
+    /// damaged one gives way.
     ///
     /// # Errors
     /// [`FileError`] when it cannot be written.
     pub fn write(&self, shard: u64, table: &CaseTable) -> Result<ShardManifest, FileError> {
         let manifest = self.manifest(shard, table);
         let path = self.path(shard);
-        let file = partial(&path)?;
-        table.write(file.as_file(), &path, &manifest.pairs())?;
-        commit(file, &path)?;
+        let file = WholeFile::create(&path)?;
+        table.write(file.file(), &path, &manifest.pairs())?;
+        if let Some(file) = file.commit()?
+            && self.read(shard, &table.with_rows(Vec::new()))?.is_none()
+        {
+            file.replace()?;
+        }
         Ok(manifest)
     }
 
@@ -249,10 +258,10 @@ impl ShardStore {
     /// [`FileError`] when it cannot be written.
     pub fn write_cases(&self, table: &CaseTable) -> Result<PathBuf, FileError> {
         let path = self.folder.join("cases.parquet");
-        let file = partial(&path)?;
+        let file = WholeFile::create(&path)?;
         let of = [("study_hash", self.plan.hash.clone()), ("version", self.plan.version.clone())];
-        table.write(file.as_file(), &path, &of)?;
-        replace(file, &path)?;
+        table.write(file.file(), &path, &of)?;
+        file.replace()?;
         Ok(path)
     }
 
@@ -262,7 +271,7 @@ impl ShardStore {
     /// [`Failure`] when it cannot be written.
     pub fn write_record(&self, record: &StudyRecord) -> Result<PathBuf, Failure> {
         let path = self.folder.join("study.json");
-        replace(partial_with(&path, &to_json(record)?)?, &path)?;
+        WholeFile::with_text(&path, &to_json(record)?)?.replace()?;
         Ok(path)
     }
 
@@ -272,9 +281,16 @@ impl ShardStore {
     /// [`Failure`] when it cannot be written.
     pub fn write_summary(&self, summary: &impl Serialize) -> Result<PathBuf, Failure> {
         let path = self.folder.join("summary.json");
-        replace(partial_with(&path, &to_json(summary)?)?, &path)?;
+        WholeFile::with_text(&path, &to_json(summary)?)?.replace()?;
         Ok(path)
     }
+}
+
+/// Whether a file holds these rows and nothing else: a byte that was changed where no row shows it may be one that matters tomorrow.
+fn is_just(table: &CaseTable, manifest: &ShardManifest, path: &Path) -> Result<bool, FileError> {
+    let mut bytes = Vec::new();
+    table.write(&mut bytes, path, &manifest.pairs())?;
+    Ok(std::fs::read(path).map_err(|source| FileError::io(path, "read", source))? == bytes)
 }
 
 impl ShardManifest {
@@ -289,37 +305,6 @@ impl ShardManifest {
             ("rows_sha256", self.rows_sha256.clone()),
         ]
     }
-}
-
-/// A file beside `path` that is gone unless it is given a name.
-fn partial(path: &Path) -> Result<NamedTempFile, FileError> {
-    let folder = path.parent().unwrap_or(Path::new("."));
-    tempfile::Builder::new()
-        .prefix(PARTIAL)
-        .tempfile_in(folder)
-        .map_err(|source| FileError::io(path, "create", source))
-}
-
-fn partial_with(path: &Path, text: &str) -> Result<NamedTempFile, FileError> {
-    let io = |source| FileError::io(path, "write", source);
-    let mut file = partial(path)?;
-    file.write_all(text.as_bytes()).map_err(io)?;
-    file.as_file().sync_all().map_err(io)?;
-    Ok(file)
-}
-
-/// Gives a file its name, unless there is one of that name already, which says the same.
-fn commit(file: NamedTempFile, path: &Path) -> Result<(), FileError> {
-    match file.persist_noclobber(path) {
-        Err(error) if error.error.kind() == ErrorKind::AlreadyExists => Ok(()),
-        Err(error) => Err(FileError::io(path, "create", error.error)),
-        Ok(_) => Ok(()),
-    }
-}
-
-/// Gives a file its name, in the place of an earlier one.
-fn replace(file: NamedTempFile, path: &Path) -> Result<(), FileError> {
-    file.persist(path).map(drop).map_err(|error| FileError::io(path, "create", error.error))
 }
 
 fn to_json(value: &impl Serialize) -> Result<String, Failure> {

@@ -1,5 +1,7 @@
 //! What a study found: figures with intervals, sensitivities, the worst cases.
 
+use std::path::Path;
+
 use indexmap::IndexMap;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
@@ -9,6 +11,8 @@ use super::cases::{CaseFigure, CaseRow, CaseTable, Drawn};
 use super::definition::Study;
 use super::design::DesignKind;
 use super::sensitivity::{RankCorrelation, SobolIndex, rank_correlation, sobol_index};
+use super::stopping::is_narrow_enough;
+use crate::pipeline_choice::PipelineChoice;
 use crate::score::{Better, Kind, sense};
 use crate::statistics::wilson;
 
@@ -83,7 +87,9 @@ pub struct Summary {
     pub cases: u64,
     /// Cases that were asked for, the most there are.
     pub of: u64,
-    /// Whether a figure was known well enough before all cases were run.
+    /// Cases in which the pipeline itself failed: it crashed, gave no answer in time, or none that can be read.
+    pub failed_cases: u64,
+    /// Whether the figure of the stopping rule is known well enough.
     pub is_narrow_enough: bool,
     /// Figures by name.
     pub figures: IndexMap<String, FigureSummary>,
@@ -100,17 +106,18 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// The summary of some cases of a study; `path` is the study's file, for the commands.
-    pub fn new(study: &Study, hash: &str, path: &str, table: &CaseTable) -> Self {
+    /// The summary of some cases of a study by a pipeline; `path` is the study's file, for the commands.
+    pub fn new(study: &Study, choice: &PipelineChoice, path: &Path, table: &CaseTable) -> Self {
         let seed = study.file.seed;
         let worst_by = study.worst_by();
         Self {
             study: study.name.clone(),
-            hash: hash.to_owned(),
+            hash: study.hash_with(choice),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             cases: table.rows.len() as u64,
             of: study.cases(),
-            is_narrow_enough: is_narrow_enough(study, table),
+            failed_cases: table.rows.iter().filter(|row| row.has_failed).count() as u64,
+            is_narrow_enough: is_narrow_enough(study, table, table.rows.len() as u64),
             figures: figures(table, seed),
             sweep: sweep(study, table, seed),
             correlations: correlations(table),
@@ -119,19 +126,10 @@ impl Summary {
             } else {
                 Vec::new()
             },
-            worst: worst(table, &worst_by, path),
+            worst: worst(table, &worst_by, |case| replay(study, choice, path, case)),
             worst_by,
         }
     }
-}
-
-/// Whether the figure of the stopping rule is known well enough.
-pub fn is_narrow_enough(study: &Study, table: &CaseTable) -> bool {
-    let Some(until) = &study.file.stop.until else { return false };
-    let Some(cases) = table.figure(&until.figure) else { return false };
-    let estimate = overall(&until.figure, &cases, study.file.seed, 0);
-    let width = estimate.and_then(|estimate| Some(estimate.high? - estimate.low?));
-    width.is_some_and(|width| width <= 2.0 * until.half_width)
 }
 
 fn figures(table: &CaseTable, seed: u64) -> IndexMap<String, FigureSummary> {
@@ -352,7 +350,7 @@ fn indices(table: &CaseTable, seed: u64) -> Vec<SobolIndex> {
     all
 }
 
-fn worst(table: &CaseTable, by: &str, path: &str) -> Vec<WorstCase> {
+fn worst(table: &CaseTable, by: &str, replay: impl Fn(u64) -> String) -> Vec<WorstCase> {
     let badness = |value: f64| match sense(by).better {
         Better::More => -value,
         Better::Less => value,
@@ -367,9 +365,25 @@ fn worst(table: &CaseTable, by: &str, path: &str) -> Vec<WorstCase> {
         case: row.case,
         value,
         drawn: table.drawn.keys().cloned().zip(row.drawn.iter().map(Drawn::shown)).collect(),
-        replay: format!("boresight study replay {path} --case {} --save-frames png", row.case),
+        replay: replay(row.case),
     };
     cases.into_iter().map(named).collect()
+}
+
+/// The command that runs a case again and keeps its frames, as a shell takes it.
+fn replay(study: &Study, choice: &PipelineChoice, path: &Path, case: u64) -> String {
+    let mut words = ["boresight", "study", "replay"].map(str::to_owned).to_vec();
+    words.push(path.display().to_string());
+    words.extend(["--case".to_owned(), case.to_string()]);
+    words.extend(choice.arguments(study.scenario().world()));
+    words.extend(["--save-frames", "png"].map(str::to_owned));
+    command_line(&words)
+}
+
+/// Words as a shell takes them.
+pub fn command_line(words: &[String]) -> String {
+    // A word of a command line has no zero byte.
+    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
 }
 
 #[cfg(test)]

@@ -33,6 +33,14 @@ pub fn assess(requirements: &Requirements, progress: impl Fn(&str)) -> Result<Vi
     let design = Design::new(requirements, &requirements.camera, pointings, longest_s)?;
     progress("the sky");
     let sky = curves::sky(requirements, &design)?;
+    if sky.counted == 0 {
+        let [sun, moon, earth] = sky.excluded;
+        return Err(Failure::Usage(format!(
+            "`{}`: the exclusion angles of [sky] leave none of {} pointings (Sun {sun}, Moon {moon}, limb of the Earth {earth}), expected \
+             angles that leave some: of no sky nothing can be verified",
+            requirements.name, sky.pointings
+        )));
+    }
     let assessment = Assessment::new(requirements, &design);
     let mut verdicts = Vec::new();
     for requirement in &file.requirements {
@@ -69,19 +77,20 @@ struct Assessment<'a> {
     frames: RefCell<Vec<(f64, Rc<Vec<StarFrame>>)>>,
 }
 
-/// How a simulated rate stands to the probability that is asked for, in words.
-fn told(simulated: Option<&Simulated>) -> String {
-    simulated.map_or_else(
-        || "not simulated".to_owned(),
-        |s| {
-            format!(
-                "simulated {} of {} frames ({:.1} to {:.1} %)",
-                s.count,
-                s.of,
-                100.0 * s.low,
-                100.0 * s.high
-            )
-        },
+/// A rate as far from the law's as chance brings it in one of five hundred results is not of that law.
+const DISAGREEMENT: f64 = 0.999;
+
+/// What was simulated where the law says `law`, in words; whether the two disagree, too.
+fn told(simulated: Option<&Simulated>, law: f64) -> String {
+    let Some(s) = simulated else { return "not simulated".to_owned() };
+    let (low, high) = clopper_pearson(s.count, s.of, DISAGREEMENT);
+    let remark = if (low..=high).contains(&law) { "" } else { ", which DISAGREES with the law" };
+    format!(
+        "simulated {} of {} frames ({:.1} to {:.1} %){remark}",
+        s.count,
+        s.of,
+        100.0 * s.low,
+        100.0 * s.high
     )
 }
 
@@ -119,7 +128,7 @@ impl<'a> Assessment<'a> {
             evidence: format!(
                 "{}; {}",
                 self.reached_in_words(demand, &reached, asked),
-                told(simulated.as_ref())
+                told(simulated.as_ref(), reached.probability)
             ),
             simulated,
             found: None,
@@ -184,10 +193,10 @@ impl<'a> Assessment<'a> {
             "{parameter} {} {unit}: {:.1} %, {}",
             digits(value),
             100.0 * reached.probability,
-            told(simulated.as_ref())
+            told(simulated.as_ref(), reached.probability)
         );
         if let (Some(value), Some(probability)) = (failing_value, failing) {
-            let told = told(failing_simulated.as_ref());
+            let told = told(failing_simulated.as_ref(), probability);
             evidence.push_str(&format!("; {} {unit}: {:.1} %, {told}", digits(value), 100.0 * probability));
         }
         if !is_monotone {

@@ -158,7 +158,10 @@ impl Source<'_> {
             Err(Failure::Usage(message)) => return Err(self.refuse("camera.scenario", message)),
             other => other?,
         };
-        source.far_range("camera.scenario").cloned()
+        match source.far_range("camera.scenario") {
+            Err(Failure::Usage(message)) => Err(self.refuse("camera.scenario", message)),
+            other => other.cloned(),
+        }
     }
 
     fn camera(

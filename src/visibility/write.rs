@@ -1,13 +1,10 @@
 //! The files of a report: `visibility.json`, `visibility.md`, and a CSV a curve.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
-
-use tempfile::NamedTempFile;
 
 use super::report::VisibilityReport;
 use crate::failure::Failure;
-use crate::files::FileError;
+use crate::files::{FileError, WholeFile};
 
 /// Files that a report has, in the order in which they are written.
 const NAMES: [&str; 7] = [
@@ -45,7 +42,7 @@ pub fn write_report(
     let mut paths = Vec::new();
     for (name, text) in NAMES.iter().zip(texts) {
         let path = folder.join(name);
-        write_at_once(folder, &path, &text)?;
+        WholeFile::with_text(&path, &text)?.commit_new()?;
         paths.push(path);
     }
     Ok(paths)
@@ -62,14 +59,6 @@ fn prepare(folder: &Path) -> Result<(), FileError> {
         let reason = "exists and is not empty; nothing is overwritten";
         return Err(FileError::OutputTaken { path: folder.to_owned(), reason });
     }
-    Ok(())
-}
-
-fn write_at_once(folder: &Path, path: &Path, text: &str) -> Result<(), FileError> {
-    let mut file = NamedTempFile::new_in(folder).map_err(io(path, "create"))?;
-    file.write_all(text.as_bytes()).map_err(io(path, "write"))?;
-    file.as_file().sync_all().map_err(io(path, "write"))?;
-    file.persist_noclobber(path).map_err(|error| io(path, "create")(error.error))?;
     Ok(())
 }
 

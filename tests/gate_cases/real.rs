@@ -34,7 +34,7 @@ pub(crate) fn runs(seeds: Range<u64>, stretches: usize, frames: u64) -> Vec<Vec<
         scenario.schedule.iter_mut().for_each(|stretch| stretch.count = frames);
         let prepared = Prepared::new(&source).unwrap();
         let factory = PIPELINE.factory(&prepared.scenario().far_range, &std::env::temp_dir()).unwrap();
-        prepared.score(0..prepared.frame_count(), factory.as_ref()).unwrap().verdicts
+        prepared.score(0..prepared.frame_count(), factory.as_ref()).unwrap().scored.verdicts
     };
     seeds.into_par_iter().map(run).collect()
 }
@@ -44,8 +44,8 @@ pub(crate) fn docking_runs(seeds: Range<u64>, fields: Range<u64>) -> Vec<(UnitTa
     let run = |seed: u64| {
         let prepared = PreparedDocking::new(&source("docking", seed), DockingRenderer::Fast).unwrap();
         let factory = PIPELINE.docking_factory(&prepared.scenario().docking, &std::env::temp_dir()).unwrap();
-        let own = prepared.score(fields.clone(), factory.as_ref()).unwrap().units();
-        let scaled = prepared.score(fields.clone(), &Scaled(factory.as_ref())).unwrap().units();
+        let own = prepared.score(fields.clone(), factory.as_ref()).unwrap().0.units();
+        let scaled = prepared.score(fields.clone(), &Scaled(factory.as_ref())).unwrap().0.units();
         (own, scaled)
     };
     seeds.into_par_iter().map(run).collect()

@@ -39,10 +39,10 @@ impl ExternalDockingFactory {
     /// Checks the command and the limits, before anything is started.
     ///
     /// # Errors
-    /// [`ContractError::CannotBuild`] for a command that is empty or ends inside a quotation, or a limit outside its
-    /// range.
+    /// [`ContractError::CannotBuild`] for a command that is empty or ends inside a quotation, a program that is not there, or a limit
+    /// outside its range.
     pub fn check(&self) -> Result<(), ContractError> {
-        self.plan().map(|_| ())
+        self.plan()?.check_program()
     }
 
     fn plan(&self) -> Result<Plan, ContractError> {

@@ -70,10 +70,10 @@ impl ExternalFactory {
     /// Checks the command and the limits, before anything is started.
     ///
     /// # Errors
-    /// [`ContractError::CannotBuild`] for a command that is empty or ends inside a quotation, or a limit outside its
-    /// range.
+    /// [`ContractError::CannotBuild`] for a command that is empty or ends inside a quotation, a program that is not there, or a limit
+    /// outside its range.
     pub fn check(&self) -> Result<(), ContractError> {
-        self.plan().map(|_| ())
+        self.plan()?.check_program()
     }
 
     fn plan(&self) -> Result<Plan, ContractError> {
@@ -120,6 +120,22 @@ impl Plan {
             start_limit: limit("start_timeout_s", start_timeout_s)?,
             frame_limit: limit("timeout_s", timeout_s)?,
         })
+    }
+
+    /// Refuses a program that is not there.
+    fn check_program(&self) -> Result<(), ContractError> {
+        match which::which(&self.program) {
+            Ok(_) => Ok(()),
+            Err(_) => Err(ContractError::CannotBuild {
+                pipeline: name(
+                    &shlex::try_quote(&self.program).unwrap_or_else(|_| self.program.as_str().into()),
+                ),
+                reason: format!(
+                    "there is no program `{}`, expected one of the search path or the path of an executable file",
+                    self.program
+                ),
+            }),
+        }
     }
 
     /// Starts the process and greets it; the reason when either does not succeed.

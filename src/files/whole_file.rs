@@ -1,0 +1,137 @@
+//! Files that appear whole or not at all: written under a name of their own, synced, and then given theirs.
+
+use std::fs::File;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use super::FileError;
+
+/// How the names of files begin that are being written, or were left by a process that was killed.
+const PARTIAL: &str = ".partial-";
+
+/// A file that is being written; gone unless it is given its name.
+#[derive(Debug)]
+pub struct WholeFile {
+    file: NamedTempFile,
+    path: PathBuf,
+}
+
+impl WholeFile {
+    /// A file that will be `path`, empty so far, which all may read.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when it cannot be made in the folder of `path`.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut builder = tempfile::Builder::new();
+        // As any other file of a folder, and not for its owner alone.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = builder.prefix(PARTIAL).tempfile_in(folder);
+        let file = file.map_err(|source| FileError::io(path, "create", source))?;
+        Ok(Self { file, path: path.to_owned() })
+    }
+
+    /// A file that will be `path`, with this in it.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when it cannot be written.
+    pub fn with_text(path: &Path, text: &str) -> Result<Self, FileError> {
+        let mut file = Self::create(path)?;
+        file.file.write_all(text.as_bytes()).map_err(|source| FileError::io(path, "write", source))?;
+        Ok(file)
+    }
+
+    /// What is to be written to.
+    pub fn file(&self) -> &File {
+        self.file.as_file()
+    }
+
+    /// Where it is meanwhile.
+    pub fn place(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// Whether a file of this name is one that has none yet.
+    pub fn is_partial(path: &Path) -> bool {
+        path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PARTIAL))
+    }
+
+    /// Gives the file its name, unless there is a file of that name: then this one is given back.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when it cannot be synced or named.
+    pub fn commit(self) -> Result<Option<Self>, FileError> {
+        self.sync()?;
+        let Self { file, path } = self;
+        match file.persist_noclobber(&path) {
+            Ok(_) => Ok(None),
+            Err(error) if error.error.kind() == ErrorKind::AlreadyExists => {
+                Ok(Some(Self { file: error.file, path }))
+            }
+            Err(error) => Err(FileError::io(&path, "create", error.error)),
+        }
+    }
+
+    /// Gives the file its name, which no other may have.
+    ///
+    /// # Errors
+    /// [`FileError::OutputTaken`] when one has, [`FileError::Io`] when it cannot be synced or named.
+    pub fn commit_new(self) -> Result<(), FileError> {
+        match self.commit()? {
+            None => Ok(()),
+            Some(Self { path, .. }) => {
+                Err(FileError::OutputTaken { path, reason: "exists; nothing is overwritten" })
+            }
+        }
+    }
+
+    /// Gives the file its name, in the place of an earlier one.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when it cannot be synced or named.
+    pub fn replace(self) -> Result<(), FileError> {
+        self.sync()?;
+        let Self { file, path } = self;
+        file.persist(&path).map(drop).map_err(|error| FileError::io(&path, "create", error.error))
+    }
+
+    fn sync(&self) -> Result<(), FileError> {
+        self.file.as_file().sync_all().map_err(|source| FileError::io(&self.path, "write", source))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_there_when_it_is_committed_and_replaces_none_unasked() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        drop(WholeFile::with_text(&path, "lost").unwrap());
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+        assert!(WholeFile::with_text(&path, "first").unwrap().commit().unwrap().is_none());
+        let second = WholeFile::with_text(&path, "second").unwrap().commit().unwrap().unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "first");
+        second.replace().unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "second");
+        let taken = WholeFile::with_text(&path, "third").unwrap().commit_new().unwrap_err();
+        assert!(taken.to_string().contains("nothing is overwritten"), "{taken}");
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn others_may_read_it_as_any_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let [whole, plain] = ["whole", "plain"].map(|name| folder.path().join(name));
+        WholeFile::with_text(&whole, "").unwrap().commit_new().unwrap();
+        std::fs::write(&plain, "").unwrap();
+        let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&whole), mode(&plain));
+    }
+}
