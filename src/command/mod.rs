@@ -7,6 +7,7 @@ mod output;
 mod run;
 mod scenario;
 mod score;
+mod shell;
 mod study;
 mod visibility;
 
@@ -49,6 +50,10 @@ enum Command {
     /// List, check and start scenarios
     #[command(subcommand)]
     Scenario(scenario::ScenarioCommand),
+    /// Print completions for a shell
+    Completions(shell::CompletionsArguments),
+    /// Write manual pages
+    Man(shell::ManArguments),
 }
 
 /// The answer of a command that ran: exit status 0 or 1.
@@ -78,6 +83,8 @@ pub fn main() -> ExitCode {
         Command::Visibility(arguments) => visibility::visibility(&arguments, &output),
         Command::Gate(arguments) => gate::gate(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
+        Command::Completions(arguments) => shell::completions(&arguments, &output),
+        Command::Man(arguments) => shell::man(&arguments, &output),
     };
     match answer {
         Ok(Answer::Yes) => ExitCode::SUCCESS,

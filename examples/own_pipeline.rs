@@ -1,0 +1,46 @@
+//! The smallest pipeline there is, scored: it calls the brightest pixel the target.
+
+use boresight::failure::Failure;
+use boresight::run::Prepared;
+use boresight::scenario::ScenarioSource;
+use boresight::table::{TableStyle, far_range};
+use contract::{
+    ContractError, Frame, Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, PixelPoint, Setup,
+    Solution, Telemetry,
+};
+
+struct Brightest;
+
+impl Pipeline for Brightest {
+    fn process(&mut self, frame: &Frame, _: &Telemetry) -> Outcome {
+        let brightest = frame.dn().iter().enumerate().max_by_key(|(_, dn)| **dn);
+        match brightest.filter(|(_, dn)| **dn > 0) {
+            None => Outcome::none(NoSolution::EmptyFrame),
+            Some((index, _)) => {
+                let (x, y) = (index % frame.columns(), index / frame.columns());
+                let position = PixelPoint::new(x as f64, y as f64);
+                let measurement = Measurement { position, line_of_sight: None };
+                Outcome { solution: Solution::Detected(measurement), ..Outcome::none(NoSolution::NoTarget) }
+            }
+        }
+    }
+}
+
+struct BrightestFactory;
+
+impl PipelineFactory for BrightestFactory {
+    fn name(&self) -> String {
+        "brightest".to_owned()
+    }
+
+    fn build(&self, _: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
+        Ok(Box::new(Brightest))
+    }
+}
+
+fn main() -> Result<(), Failure> {
+    let prepared = Prepared::new(&ScenarioSource::read("argon")?)?;
+    let ran = prepared.score(8000..8200, &BrightestFactory)?;
+    println!("{}", far_range(&ran.scored.score, TableStyle::default()));
+    Ok(())
+}

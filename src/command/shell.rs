@@ -1,0 +1,72 @@
+//! `boresight completions` and `boresight man`: what a shell and its manual need, from the command's own definition.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Command, CommandFactory};
+use clap_complete::Shell;
+
+use super::output::Output;
+use super::{Answer, Arguments};
+use crate::failure::Failure;
+use crate::files::{FileError, WholeFile};
+
+#[derive(Debug, Args)]
+pub(super) struct CompletionsArguments {
+    /// The shell
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ManArguments {
+    /// Directory of the pages, made when it is not there; pages that are there are replaced
+    #[arg(short, long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Prints the completions of a shell, for it to source.
+pub(super) fn completions(arguments: &CompletionsArguments, output: &Output) -> Result<Answer, Failure> {
+    output.check_free("completions")?;
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut Arguments::command(), "boresight", &mut script);
+    match std::io::stdout().write_all(&script) {
+        // A reader that has gone away is not an error.
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Usage(format!("stdout cannot be written: {error}")))
+        }
+        _ => Ok(Answer::Yes),
+    }
+}
+
+/// Writes a manual page for the command and each of its commands.
+pub(super) fn man(arguments: &ManArguments, output: &Output) -> Result<Answer, Failure> {
+    let folder = &arguments.out;
+    std::fs::create_dir_all(folder).map_err(|source| FileError::io(folder, "create", source))?;
+    let mut root = Arguments::command().disable_help_subcommand(true);
+    root.build();
+    let mut pages = Vec::new();
+    write_pages(&root, "boresight", folder, &mut pages)?;
+    output.answer(&pages, format!("{} pages in {}", pages.len(), folder.display()))?;
+    Ok(Answer::Yes)
+}
+
+fn write_pages(
+    command: &Command,
+    name: &str,
+    folder: &Path,
+    pages: &mut Vec<PathBuf>,
+) -> Result<(), Failure> {
+    let path = folder.join(format!("{name}.1"));
+    let io = |source| FileError::io(&path, "write", source);
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command.clone()).title(name).render(&mut page).map_err(io)?;
+    let file = WholeFile::create(&path)?;
+    file.file().write_all(&page).map_err(io)?;
+    file.replace()?;
+    pages.push(path);
+    for below in command.get_subcommands().filter(|below| !below.is_hide_set()) {
+        write_pages(below, &format!("{name}-{}", below.get_name()), folder, pages)?;
+    }
+    Ok(())
+}
