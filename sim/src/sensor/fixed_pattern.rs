@@ -1,5 +1,7 @@
 //! What is different from pixel to pixel and the same in every frame: response, dark current, defects.
 
+use std::sync::{Mutex, PoisonError};
+
 use rand::Rng;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -64,7 +66,31 @@ pub(super) struct FixedPattern {
     pub(super) dead: Vec<(usize, usize)>,
 }
 
+/// The pattern made last, with what it was made of. A piece of hardware is the same in all cases of a study, and making it takes longer than
+/// many frames.
+static LAST: Mutex<Option<(FixedPatternConfig, [usize; 2], FixedPattern)>> = Mutex::new(None);
+/// Patterns of more pixels are not kept.
+const MOST_PIXELS: usize = 1 << 22;
+
 impl FixedPattern {
+    /// The pattern of a detector; one that was made last is not made again.
+    ///
+    /// # Errors
+    /// As [`FixedPattern::new`].
+    pub(super) fn of(config: &FixedPatternConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
+        // A thread that panicked while it held the pattern cannot have left half of one.
+        let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+        let size = [columns, rows];
+        if let Some((_, _, pattern)) = last().as_ref().filter(|(of, at, _)| (of, *at) == (config, size)) {
+            return Ok(pattern.clone());
+        }
+        let pattern = Self::new(config, columns, rows)?;
+        if columns * rows <= MOST_PIXELS {
+            *last() = Some((config.clone(), size, pattern.clone()));
+        }
+        Ok(pattern)
+    }
+
     /// # Errors
     /// [`SimError::Parameter`] when more than a tenth of all pixels or columns would be dead.
     pub(super) fn new(config: &FixedPatternConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
@@ -148,6 +174,16 @@ fn distinct(count: usize, of: usize, streams: Streams) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_pattern_that_is_kept_is_the_pattern() {
+        let config =
+            |seed| FixedPatternConfig { seed, prnu_fraction: 0.1, dead_pixels: 3, ..Default::default() };
+        for (seed, columns) in [(1, 40), (1, 40), (2, 40), (1, 41), (1, 40)] {
+            let made = FixedPattern::new(&config(seed), columns, 30).unwrap();
+            assert_eq!(FixedPattern::of(&config(seed), columns, 30).unwrap(), made);
+        }
+    }
     use statrs::distribution::{ContinuousCDF, LogNormal, Normal};
 
     /// The distance of Kolmogorov and Smirnov, times √n: above 2.23 once in 10,000.

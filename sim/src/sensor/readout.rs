@@ -38,7 +38,7 @@ impl Sensor {
             law: PixelLaw::new(config),
             warmth,
             hot_pixels: hot_pixels(&config.hot_pixels, columns, rows, warmth)?,
-            pattern: FixedPattern::new(&config.fixed_pattern, columns, rows)?,
+            pattern: FixedPattern::of(&config.fixed_pattern, columns, rows)?,
             config: config.clone(),
             columns,
             rows,
