@@ -285,6 +285,7 @@ fn a_study_that_is_wrong_says_where() {
     refused("\"argon\"", "\"argom\"", &["scenario", "did you mean `argon`"]);
     refused("psf.sigma_px", "psf.sigma", &["case 0", "psf", "sigma"]);
     refused("psf.sigma_px", "psff.sigma_px", &["vary[0].path", "no `psff`"]);
+    refused("\"psf.sigma_px\"", "\"title\"", &["vary[0].path", "is `title`", "seed of its own"]);
     refused("psf.sigma_px", "schedule[9].count", &["vary[0].path", "has 5 of these"]);
     refused("psf.sigma_px", "sensor.hot_pixels", &["vary[1].path", "sensor.hot_pixels"]);
     refused("sigma = 0.1", "sigma = -0.1", &["vary[0].law.sigma", "-0.1", "> 0"]);

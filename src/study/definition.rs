@@ -22,6 +22,9 @@ use crate::toml_file;
 /// Most cases of a study.
 const MOST_CASES: u64 = 1 << 40;
 
+/// What is no parameter.
+const NOT_VARIED: [&str; 3] = ["title", "world", "seed"];
+
 /// Names of the angles of an attitude: of a boresight, or of Euler's.
 const BORESIGHT: [&str; 3] = ["ra_deg", "dec_deg", "roll_deg"];
 const EULER_123: [&str; 3] = ["phi_deg", "theta_deg", "psi_deg"];
@@ -397,6 +400,12 @@ impl Varied {
 type Problem = (&'static str, String);
 
 fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String> {
+    if NOT_VARIED.contains(&path.text()) {
+        return Err(format!(
+            "is `{}`, expected a parameter of what is simulated or of the pipeline: every case has a seed of its own already",
+            path.text()
+        ));
+    }
     if let Some(other) = taken.iter().find(|other| other.overlaps(path)) {
         return Err(format!(
             "is `{}`, expected a path apart from `{}`, which is set too",
