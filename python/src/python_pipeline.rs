@@ -99,36 +99,41 @@ impl PythonPipeline {
         question: impl FnOnce(Python<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>)>,
     ) -> Result<String, String> {
         Python::attach(|py| {
-            let answer = question(py)
-                .and_then(|(frame, telemetry)| self.callable.call1(py, (frame, telemetry)))
-                .and_then(|answer| self.line.call1(py, (answer, key, number)))
-                .and_then(|line| line.extract(py));
-            answer.map_err(|error| {
-                let reason = reason(py, &error);
+            let asked =
+                question(py).and_then(|(frame, telemetry)| self.callable.call1(py, (frame, telemetry)));
+            let answer = asked.map_err(|error| {
+                let reason = format!("{}{}", said(&error), place(py, &error));
                 if !error.is_instance_of::<PyException>(py) {
                     self.ended.set(error);
                 }
                 reason
-            })
+            })?;
+            let line = self.line.call1(py, (answer, key, number)).and_then(|line| line.extract(py));
+            line.map_err(|error| said(&error))
         })
     }
 }
 
-/// What an exception says, and where it was raised.
-fn reason(py: Python<'_>, error: &PyErr) -> String {
+/// The beginning of what an exception says.
+fn said(error: &PyErr) -> String {
+    let text = error.to_string();
+    match text.char_indices().nth(REASON) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text,
+    }
+}
+
+/// Where an exception was raised, as it follows on what it says.
+fn place(py: Python<'_>, error: &PyErr) -> String {
     let mut place = String::new();
     let mut step = error.traceback(py).map(Bound::into_any);
     while let Some(at) = step {
         let line = at.getattr("tb_lineno").map(|line| line.to_string()).unwrap_or_default();
-        let file = at.getattr("tb_frame").and_then(|f| f.getattr("f_code")?.getattr("co_filename"));
+        let file = at.getattr("tb_frame").and_then(|frame| frame.getattr("f_code")?.getattr("co_filename"));
         place = file.map_or_else(|_| String::new(), |file| format!(" ({file}, line {line})"));
         step = at.getattr("tb_next").ok().filter(|next| !next.is_none());
     }
-    let text = format!("{error}");
-    match text.char_indices().nth(REASON) {
-        Some((end, _)) => format!("{}…{place}", &text[..end]),
-        None => text + &place,
-    }
+    place
 }
 
 impl PipelineFactory for PythonPipeline {

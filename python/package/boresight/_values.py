@@ -34,15 +34,20 @@ def to_json(what: str, value: Any) -> str:
 
 def answer_line(answer: Any, key: str, number: int) -> str:
     """A pipeline's answer to frame (or field) `number` as a line of the protocol of docs/external-pipeline.md."""
+    given = answer
     if answer is None:
         answer = NoSolution()
     if isinstance(answer, (Detection, NoSolution, Pose, RangeOnly)):
-        fields = {field.name: getattr(answer, field.name) for field in dataclasses.fields(answer)}
-        answer = {"status": answer.status, **fields}
+        named = {field.name: getattr(answer, field.name) for field in dataclasses.fields(answer)}
+        # What is not given is no key of the answer: so a Detection among docking fields is refused for what it is.
+        answer = {"status": answer.status} | {name: value for name, value in named.items() if value is not None}
     elif not isinstance(answer, dict):
         of = "Pose, RangeOnly, NoSolution" if key == "field" else "Detection, NoSolution"
-        raise TypeError(f"the pipeline returned {answer!r}, expected {of}, None or a dictionary")
-    return json.dumps({key: number, **answer}, default=plain, allow_nan=False)
+        raise TypeError(f"it returned {given!r}, expected {of}, None or a dictionary")
+    try:
+        return json.dumps({key: number, **answer}, default=plain, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"it returned {given!r}, expected finite numbers and text ({error})") from None
 
 
 def columns_of(table: Any) -> dict[str, Any]:
