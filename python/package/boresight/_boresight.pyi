@@ -12,9 +12,9 @@ from boresight.answers import Detection, NoSolution, Pose, RangeOnly
 
 __version__: str
 
-Word: TypeAlias = str | PathLike[str]
-Answer: TypeAlias = Detection | NoSolution | Pose | RangeOnly | Mapping[str, Any] | None
-Pipeline: TypeAlias = Callable[[Frame, Any], Answer] | type
+_Word: TypeAlias = str | PathLike[str]
+_Answer: TypeAlias = Detection | NoSolution | Pose | RangeOnly | Mapping[str, Any] | None
+_Pipeline: TypeAlias = Callable[[Frame, Any], _Answer] | type
 """A callable of (frame, telemetry), or a class made with the setup whose instances are one."""
 
 class Frame:
@@ -117,7 +117,7 @@ class Scenario:
     """What to simulate: a built-in scenario or a TOML file, with all its values checked."""
 
     @staticmethod
-    def load(scenario: Word) -> Scenario:
+    def load(scenario: _Word) -> Scenario:
         """Reads a built-in scenario, a TOML file, or the `run.toml` of a run."""
     @staticmethod
     def builtin_names() -> list[str]:
@@ -158,7 +158,7 @@ class Run:
     """What a run gave: score, truth and measurements."""
 
     @staticmethod
-    def load(directory: Word) -> Run:
+    def load(directory: _Word) -> Run:
         """Opens the directory of a run."""
     @property
     def directory(self) -> Path:
@@ -203,30 +203,30 @@ class StudyResult:
         """A row a case."""
 
 def run(
-    scenario: Scenario | Word,
+    scenario: Scenario | _Word,
     *,
     frames: range | None = None,
-    pipeline: Pipeline | str | None = None,
+    pipeline: _Pipeline | str | None = None,
     jobs: int | None = None,
-    out: Word | None = None,
+    out: _Word | None = None,
     timeout_s: float = 10.0,
 ) -> Run:
     """Makes frames, has a pipeline process them, and scores its answers."""
 
-def score(truth: Run | Word, measurements: Word | Table | Mapping[str, Sequence[Any]] | Any) -> dict[str, Any]:
+def score(truth: Run | _Word, measurements: _Word | Table | Mapping[str, Sequence[Any]] | Any) -> dict[str, Any]:
     """Scores measurements against the truth."""
 
 def study(
-    path: Word,
+    path: _Word,
     *,
-    out: Word | None = None,
+    out: _Word | None = None,
     pipeline: str | None = None,
     jobs: int | None = None,
     timeout_s: float = 10.0,
 ) -> StudyResult:
     """Runs what is missing of a study and sums it up."""
 
-def visibility(requirement: Word, *, frames: int | None = None, jobs: int | None = None) -> dict[str, Any]:
+def visibility(requirement: _Word, *, frames: int | None = None, jobs: int | None = None) -> dict[str, Any]:
     """Says which requirements a camera meets, and what would meet them."""
 
 def requirement_names() -> list[str]:
