@@ -3,6 +3,11 @@
 //!
 //! Nothing is computed here: values change hands. Every number is that of the command, bit for bit (python/tests).
 
+#![allow(
+    clippy::result_large_err,
+    reason = "the engine's failures are what they are, and are made once a call"
+)]
+
 mod arguments;
 mod errors;
 mod frame;
