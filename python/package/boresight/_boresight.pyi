@@ -10,6 +10,24 @@ from numpy.typing import NDArray
 
 from boresight.answers import Detection, NoSolution, Pose, RangeOnly
 
+__all__ = [
+    "FieldTelemetry",
+    "Frame",
+    "FrameStream",
+    "Run",
+    "Scenario",
+    "SimulatedFrame",
+    "StudyResult",
+    "Table",
+    "Telemetry",
+    "__version__",
+    "requirement_names",
+    "run",
+    "score",
+    "study",
+    "visibility",
+]
+
 __version__: str
 
 _Word: TypeAlias = str | PathLike[str]

@@ -8,8 +8,10 @@ import io
 import json
 import math
 import numbers
+from collections.abc import Mapping
 from typing import Any
 
+from boresight._boresight import Table
 from boresight.answers import Detection, NoSolution, Pose, RangeOnly
 from boresight.errors import InputError
 
@@ -41,7 +43,7 @@ def answer_line(answer: Any, key: str, number: int) -> str:
         named = {field.name: getattr(answer, field.name) for field in dataclasses.fields(answer)}
         # What is not given is no key of the answer: so a Detection among docking fields is refused for what it is.
         answer = {"status": answer.status} | {name: value for name, value in named.items() if value is not None}
-    elif not isinstance(answer, dict):
+    elif not isinstance(answer, Mapping):
         of = "Pose, RangeOnly, NoSolution" if key == "field" else "Detection, NoSolution"
         raise TypeError(f"it returned {given!r}, expected {of}, None or a dictionary")
     try:
@@ -50,22 +52,25 @@ def answer_line(answer: Any, key: str, number: int) -> str:
         raise type(error)(f"it returned {given!r}, expected finite numbers and text ({error})") from None
 
 
-def columns_of(table: Any) -> dict[str, Any]:
+def columns_of(table: Any) -> Mapping[str, Any]:
     """The columns of a table: ours, pyarrow's, polars', pandas', or a dictionary."""
-    if isinstance(table, dict):
-        return table
-    for way in ("to_pydict", "to_dict"):
-        if not hasattr(table, way):
-            continue
-        if way == "to_dict" and hasattr(table, "get_columns"):
-            return table.to_dict(as_series=False)
-        if way == "to_dict" and hasattr(table, "iloc"):
-            return table.to_dict("list")
-        return getattr(table, way)()
-    raise InputError(
-        f"`measurements` is of type {type(table).__name__}, expected a file, a table of boresight, polars, pandas or pyarrow, "
-        "or a dictionary of columns"
-    )
+    columns: Mapping[str, Any]
+    if isinstance(table, Mapping):
+        columns = table
+    elif isinstance(table, Table):
+        columns = table.to_dict()
+    elif hasattr(table, "to_pydict"):  # pyarrow
+        columns = table.to_pydict()
+    elif hasattr(table, "get_columns"):  # polars
+        columns = table.to_dict(as_series=False)
+    elif hasattr(table, "iloc") and hasattr(table, "columns"):  # pandas
+        columns = table.to_dict("list")
+    else:
+        raise InputError(
+            f"`measurements` is of type {type(table).__name__}, expected a file, a table of boresight, polars, pandas or pyarrow, "
+            "or a dictionary of columns"
+        )
+    return columns
 
 
 def cell(name: str, value: Any) -> str:
