@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arrow_array::RecordBatch;
-use boresight::files::{arrow_of_rows, format_utc};
+use boresight::files::{Row, arrow_of_rows, format_utc};
 use contract::docking::{Field, FieldTelemetry as DockingTelemetry};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -137,11 +137,10 @@ pub(crate) struct SimulatedFrame {
 impl SimulatedFrame {
     /// A frame of the far range.
     pub(crate) fn of(py: Python<'_>, exposure: Exposure, ready: &Arc<Ready>) -> PyResult<Py<Self>> {
-        let unwritable = |error: arrow_schema::ArrowError| BoresightError::new_err(error.to_string());
         let own = Self {
             telemetry: Py::new(py, Telemetry::of(&exposure.telemetry))?.into_any(),
-            truth: arrow_of_rows(&[exposure.truth]).map_err(unwritable)?,
-            objects: Some(arrow_of_rows(&exposure.objects).map_err(unwritable)?),
+            truth: batch(&[exposure.truth])?,
+            objects: Some(batch(&exposure.objects)?),
             ready: Arc::clone(ready),
             expected: PyOnceLock::new(),
         };
@@ -156,16 +155,19 @@ impl SimulatedFrame {
         truth: FieldTruth,
         ready: &Arc<Ready>,
     ) -> PyResult<Py<Self>> {
-        let unwritable = |error: arrow_schema::ArrowError| BoresightError::new_err(error.to_string());
         let own = Self {
             telemetry: Py::new(py, FieldTelemetry::of(telemetry))?.into_any(),
-            truth: arrow_of_rows(&[truth]).map_err(unwritable)?,
+            truth: batch(&[truth])?,
             objects: None,
             ready: Arc::clone(ready),
             expected: PyOnceLock::new(),
         };
         Py::new(py, PyClassInitializer::from(Frame::of_field(py, field)?).add_subclass(own))
     }
+}
+
+fn batch<R: Row>(rows: &[R]) -> PyResult<RecordBatch> {
+    arrow_of_rows(rows).map_err(|error| BoresightError::new_err(error.to_string()))
 }
 
 #[pymethods]

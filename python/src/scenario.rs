@@ -142,9 +142,9 @@ impl Scenario {
         Self::checked(py, with_overlay(&self.ready.source, &overlay).map_err(raised)?)
     }
 
-    /// The same scenario with another seed: other noise, the same sky.
-    fn with_seed(&self, py: Python<'_>, seed: u64) -> PyResult<Self> {
-        let overlay = [("seed".to_owned(), Value::from(seed))];
+    /// The same scenario with another seed, 0 to 2**63 - 1: other noise, the same sky.
+    fn with_seed(&self, py: Python<'_>, seed: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let overlay = [("seed".to_owned(), json::from_python("seed", seed)?)];
         Self::checked(py, with_overlay(&self.ready.source, &overlay).map_err(raised)?)
     }
 
@@ -170,11 +170,12 @@ impl Scenario {
     }
 
     /// Makes one frame: the same bits as in a whole run.
-    fn frame(&self, py: Python<'_>, number: u64) -> PyResult<Py<SimulatedFrame>> {
+    fn frame(&self, py: Python<'_>, number: i64) -> PyResult<Py<SimulatedFrame>> {
         let count = self.ready.frame_count();
-        if number >= count {
-            return Err(refused("number", number, &format!("a frame of the scenario, which has {count}")));
-        }
+        let expected = || {
+            refused("number", number, &format!("a frame of the scenario, 0 to {}", count.saturating_sub(1)))
+        };
+        let number = u64::try_from(number).ok().filter(|number| *number < count).ok_or_else(expected)?;
         match &self.ready.world {
             World::FarRange(prepared) => {
                 let made = py.detach(|| prepared.simulator().camera()?.expose(number));

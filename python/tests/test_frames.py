@@ -27,6 +27,8 @@ def test_values_are_set_by_path_and_leave_the_first_scenario_alone(argon):
     assert (other.value("sensor.gain_e_per_dn"), other.seed) == (3.0, 7)
     assert argon.value("sensor.gain_e_per_dn") != 3.0
     assert argon.with_seed(7).seed == 7
+    with pytest.raises(boresight.InputError, match="`seed` is -1, expected a whole number"):
+        argon.with_seed(-1)
 
 
 def test_a_scenario_written_as_toml_is_the_same(argon, tmp_path):
@@ -80,6 +82,12 @@ def test_a_frame_alone_is_that_of_a_stream(argon):
     assert np.array_equal(alone.pixels, frames[3].pixels)
     assert alone.telemetry.q_sc_j2000 == frames[3].telemetry.q_sc_j2000
     assert alone.truth == frames[3].truth
+
+
+@pytest.mark.parametrize("number", [-1, 16077])
+def test_a_frame_that_there_is_not_is_told(argon, number):
+    with pytest.raises(boresight.InputError, match=f"`number` is {number}, expected a frame of the scenario, 0 to 16076"):
+        argon.frame(number)
 
 
 def test_the_truth_is_that_of_the_image(argon):
