@@ -1,12 +1,11 @@
 //! Studies: Monte Carlo over what can vary.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 
 use boresight::failure::Failure;
 use boresight::files::arrow_of_parquet;
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::study::{Plan, ShardStore, Study, run_here, sum_up};
+use boresight::study::{Campaign, Study, Workers};
 use pyo3::prelude::*;
 use tempfile::TempDir;
 
@@ -74,20 +73,15 @@ pub(crate) fn study(
     let directory = out.or_else(|| kept.as_ref().map(|kept| kept.path().to_owned())).unwrap_or_default();
     let folder = directory.clone();
     let choice = PipelineChoice { word: pipeline, timeout_s };
-    let (summary, cases) = interruptibly(py, AfterCtrlC::Ends, move |is_wanted| {
+    let summary = interruptibly(py, AfterCtrlC::Ends, move |ended| {
         let study = Study::read(&path)?;
-        let hash = study.hash_with(&choice);
-        let shards = ShardStore::planned_shards(&folder);
-        let store = ShardStore::open(&folder, Plan::new(&study, hash.clone(), shards)?)?;
-        let todo: Vec<u64> = (1..=store.plan().shards).collect();
-        let told = |_: boresight::study::StudyStep<'_>| {
-            if is_wanted.load(Ordering::Relaxed) { Ok(()) } else { Err(Failure::Interrupted) }
-        };
-        let (table, _) = run_here(&study, &store, &todo, &choice, jobs, scratch.path(), told)?;
-        let (summary, cases, _) = sum_up(&study, &store, &hash, &path, &table)?;
-        let summary = serde_json::to_string(&summary)
-            .map_err(|error| Failure::Usage(format!("the summary cannot be written as JSON: {error}")))?;
-        Ok((summary, cases))
+        let campaign = Campaign::open(&study, &choice, &folder, None)?;
+        let workers = Workers { jobs, scratch: scratch.path(), ended: Some(ended) };
+        let table = campaign.run(workers, |_| ())?;
+        let summary = campaign.finish(&path, &table)?;
+        serde_json::to_string(&summary)
+            .map_err(|error| Failure::Usage(format!("the summary cannot be written as JSON: {error}")))
     })?;
+    let cases = directory.join("cases.parquet");
     Ok(StudyResult { directory, cases, summary, _temporary: kept })
 }

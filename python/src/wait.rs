@@ -21,14 +21,14 @@ pub(crate) enum AfterCtrlC {
     IsLeft,
 }
 
-/// Does work on a thread of its own, Python free to do something else; its flag says whether it is still wanted.
+/// Does work on a thread of its own, Python free to do something else; its flag is set when it is not wanted any more.
 pub(crate) fn interruptibly<T: Send + 'static>(
     py: Python<'_>,
     after: AfterCtrlC,
     work: impl FnOnce(&AtomicBool) -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
-    let is_wanted = Arc::new(AtomicBool::new(true));
-    let flag = Arc::clone(&is_wanted);
+    let ended = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&ended);
     let worker = std::thread::Builder::new()
         .name("boresight".to_owned())
         .spawn(move || work(&flag))
@@ -36,7 +36,7 @@ pub(crate) fn interruptibly<T: Send + 'static>(
     while !worker.is_finished() {
         py.detach(|| std::thread::sleep(LOOK));
         if let Err(interrupt) = py.check_signals() {
-            is_wanted.store(false, Ordering::Relaxed);
+            ended.store(true, Ordering::Relaxed);
             if after == AfterCtrlC::Ends {
                 // What it has to say is less than the interrupt.
                 let _ = py.detach(|| worker.join());
