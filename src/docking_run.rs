@@ -68,6 +68,11 @@ impl PreparedDocking {
         self.simulator.field_count()
     }
 
+    /// What makes its fields, as the fast renderer draws them.
+    pub fn simulator(&self) -> &DockingSimulator {
+        &self.simulator
+    }
+
     /// The scenario.
     pub fn scenario(&self) -> &DockingScenario {
         &self.run_file.scenario
@@ -135,6 +140,23 @@ impl PreparedDocking {
         factory: &dyn DockingPipelineFactory,
         done: impl Fn(),
     ) -> Result<DockingRan, Failure> {
+        self.run_while(directory, flight, factory, || {
+            done();
+            Ok(())
+        })
+    }
+
+    /// [`PreparedDocking::run`], as long as `go_on`, asked after each field, does not fail.
+    ///
+    /// # Errors
+    /// As [`PreparedDocking::run`]; what `go_on` says.
+    pub fn run_while(
+        &self,
+        directory: &RunDirectory,
+        flight: &DockingFlight,
+        factory: &dyn DockingPipelineFactory,
+        go_on: impl Fn() -> Result<(), Failure>,
+    ) -> Result<DockingRan, Failure> {
         let setup = &self.setup;
         let mut dataset = FieldDataset::create(&self.run_file, setup, directory, flight.images)?;
         let mut pipeline = factory.build(setup)?;
@@ -153,8 +175,7 @@ impl PreparedDocking {
             let truth = truth_as_filed(exposure.truth.clone());
             scorer.add(&true_field(&truth, setup), Some(&answered)).map_err(unscorable)?;
             dataset.add(&field, telemetry, exposure.truth)?;
-            done();
-            Ok(())
+            go_on()
         })?;
         dataset.finish()?;
         let first_failure = answers.finish()?;

@@ -24,6 +24,9 @@ pub enum Failure {
     /// A value that the contract does not allow, or a pipeline that cannot be built.
     #[error(transparent)]
     Contract(#[from] contract::ContractError),
+    /// Whoever asked for the answer does not want it any more.
+    #[error("interrupted")]
+    Interrupted,
     /// Anything else, in words.
     #[error("{0}")]
     Usage(String),

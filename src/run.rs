@@ -102,6 +102,11 @@ impl Prepared {
         &self.run_file.scenario
     }
 
+    /// What makes its frames.
+    pub fn simulator(&self) -> &Simulator {
+        &self.simulator
+    }
+
     /// What a pipeline is told before the first frame.
     pub fn setup(&self) -> Setup {
         let scenario = self.scenario();
@@ -142,6 +147,23 @@ impl Prepared {
         factory: &dyn PipelineFactory,
         done: impl Fn(),
     ) -> Result<Ran, Failure> {
+        self.run_while(directory, flight, factory, || {
+            done();
+            Ok(())
+        })
+    }
+
+    /// [`Prepared::run`], as long as `go_on`, asked after each frame, does not fail.
+    ///
+    /// # Errors
+    /// As [`Prepared::run`]; what `go_on` says.
+    pub fn run_while(
+        &self,
+        directory: &RunDirectory,
+        flight: &Flight,
+        factory: &dyn PipelineFactory,
+        go_on: impl Fn() -> Result<(), Failure>,
+    ) -> Result<Ran, Failure> {
         let mut dataset = self.dataset(directory, flight)?;
         let setup = self.setup();
         let mut pipeline = match self.run_file.inject {
@@ -163,8 +185,7 @@ impl Prepared {
             answers.add(exposure.frame.number(), &outcome)?;
             scorer.add(&exposure.truth, &exposure.objects, Some(&outcome)).map_err(unscorable)?;
             dataset.add(exposure)?;
-            done();
-            Ok(())
+            go_on()
         })?;
         dataset.finish()?;
         let first_failure = answers.finish()?;

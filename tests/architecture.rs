@@ -1,4 +1,5 @@
-//! The direction of dependencies: src -> sim, pipeline, contract; sim -> contract; pipeline -> contract; nothing else.
+//! The direction of dependencies: python -> src; src -> sim, pipeline, contract; sim -> contract; pipeline -> contract; nothing else.
+//! python/ hands values of all of them on, and nothing depends on it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,10 +24,13 @@ fn dependencies_point_down_and_nowhere_else() {
         })
         .collect();
     let to = |names: &[&str]| names.iter().map(|name| format!("boresight-{name}")).collect::<BTreeSet<_>>();
+    let mut all = to(&["contract", "pipeline", "sim"]);
+    all.insert("boresight".to_owned());
     let expected = BTreeMap::from([
         ("boresight".to_owned(), to(&["contract", "pipeline", "sim"])),
         ("boresight-contract".to_owned(), to(&[])),
         ("boresight-pipeline".to_owned(), to(&["contract"])),
+        ("boresight-python".to_owned(), all),
         ("boresight-sim".to_owned(), to(&["contract"])),
     ]);
     assert_eq!(arrows, expected);

@@ -103,6 +103,11 @@ impl Frame {
         &self.dn
     }
 
+    /// All digital numbers, row by row, given away without a copy.
+    pub fn into_dn(self) -> Vec<u16> {
+        self.dn
+    }
+
     /// One row.
     pub fn row(&self, y: usize) -> &[u16] {
         &self.dn[y * self.columns..(y + 1) * self.columns]

@@ -193,7 +193,7 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
         }
     };
     let scratch = super::scratch_directory()?;
-    let workers = Workers { jobs, scratch: scratch.path() };
+    let workers = Workers { jobs, scratch: scratch.path(), ended: None };
     let answer = match arguments.shard {
         Some(shard) => {
             let made = campaign.shard(shard.shard, workers, done);

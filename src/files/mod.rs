@@ -4,6 +4,7 @@
 //! the value and what was expected; it does not panic, and it allocates no more than the length of the file and
 //! [`contract::Camera::MAX_SIDE_PX`] justify. No writer overwrites.
 
+mod arrow_table;
 mod clusters;
 mod column;
 mod csv_table;
@@ -33,6 +34,7 @@ mod whole_file;
 mod windows;
 
 pub use self::exr::{Expected, read_expected, read_radiance, write_expected, write_radiance};
+pub use arrow_table::{arrow_of_csv, arrow_of_parquet, arrow_of_rows};
 pub use clusters::FrameCluster;
 pub use column::read_column;
 pub use dataset::{CameraFile, Dataset, DatasetFrame};

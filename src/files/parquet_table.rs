@@ -28,7 +28,7 @@ pub struct Column {
     name: &'static str,
     nullable: bool,
     repeats: bool,
-    values: ArrayRef,
+    pub(super) values: ArrayRef,
 }
 
 impl Column {
@@ -123,7 +123,7 @@ impl<R: Row> TableWriter<R> {
     }
 }
 
-fn schema(columns: &[Column]) -> Schema {
+pub(super) fn schema(columns: &[Column]) -> Schema {
     let field = |c: &Column| Field::new(c.name, c.values.data_type().clone(), c.nullable);
     Schema::new(columns.iter().map(field).collect::<Vec<_>>())
 }
@@ -245,7 +245,7 @@ pub(crate) fn guarded<T>(path: &Path, call: impl FnOnce() -> Result<T, FileError
 }
 
 /// Refuses columns that lie outside the file, before the crate asserts on them.
-fn check_extents(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(), FileError> {
+pub(super) fn check_extents(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(), FileError> {
     for column in metadata.row_groups().iter().flat_map(RowGroupMetaData::columns) {
         let start = column.dictionary_page_offset().unwrap_or(column.data_page_offset());
         let end = u64::try_from(start)
@@ -386,10 +386,10 @@ impl Columns<'_> {
     }
 }
 
-fn parquet_error(path: &Path, error: parquet::errors::ParquetError) -> FileError {
+pub(super) fn parquet_error(path: &Path, error: parquet::errors::ParquetError) -> FileError {
     FileError::format(path, "Parquet", error)
 }
 
-fn arrow_error(path: &Path, error: ArrowError) -> FileError {
+pub(super) fn arrow_error(path: &Path, error: ArrowError) -> FileError {
     FileError::format(path, "Parquet", error)
 }

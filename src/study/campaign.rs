@@ -1,6 +1,7 @@
 //! A study in a folder: what is missing of it is made, shard by shard, until it is done.
 
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use super::cases::{CaseRow, CaseTable};
 use super::definition::Study;
@@ -27,6 +28,8 @@ pub struct Workers<'a> {
     pub jobs: usize,
     /// A program finds its images in folders of its own below this one.
     pub scratch: &'a Path,
+    /// Set from outside, it ends the campaign: no other case is begun, and those of a shard that is not whole are lost.
+    pub ended: Option<&'a AtomicBool>,
 }
 
 /// A case that a campaign knows.
@@ -101,8 +104,7 @@ impl<'a> Campaign<'a> {
             return Ok((table, manifest));
         }
         let cases = self.store.plan().cases_of(shard);
-        let Workers { jobs, scratch } = workers;
-        let rows = run_cases(self.study, cases, self.choice, jobs, scratch, |case| done(Known::Run(case)))?;
+        let rows = run_cases(self.study, cases, self.choice, workers, |case| done(Known::Run(case)))?;
         let table = empty.with_rows(rows);
         let manifest = self.store.write(shard, &table)?;
         Ok((table, manifest))

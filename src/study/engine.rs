@@ -1,11 +1,12 @@
 //! Runs the cases of a shard on the threads of this machine.
 
 use std::ops::Range;
-use std::path::Path;
+use std::sync::atomic::Ordering;
 
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
+use super::campaign::Workers;
 use super::cases::CaseRow;
 use super::definition::Study;
 use super::evaluate::{Evaluated, evaluate};
@@ -16,13 +17,12 @@ use crate::pipeline_choice::PipelineChoice;
 /// neither. A program finds its images in folders of its own below `scratch`.
 ///
 /// # Errors
-/// The failure of the first case, in order, that has one.
+/// The failure of the first case, in order, that has one; [`Failure::Interrupted`] of those that were not begun any more.
 pub(super) fn run_cases(
     study: &Study,
     cases: Range<u64>,
     choice: &PipelineChoice,
-    jobs: usize,
-    scratch: &Path,
+    Workers { jobs, scratch, ended }: Workers<'_>,
     done: impl Fn(&Evaluated) + Sync,
 ) -> Result<Vec<CaseRow>, Failure> {
     let pool = ThreadPoolBuilder::new()
@@ -30,6 +30,9 @@ pub(super) fn run_cases(
         .build()
         .map_err(|error| Failure::Usage(format!("{jobs} threads cannot be started: {error}")))?;
     let one = |case: u64| {
+        if ended.is_some_and(|ended| ended.load(Ordering::Relaxed)) {
+            return Err(Failure::Interrupted);
+        }
         let own = tempfile::tempdir_in(scratch)
             .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))?;
         let evaluated = evaluate(study, case, choice, own.path())?;

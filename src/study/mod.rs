@@ -33,6 +33,7 @@ pub use design::DesignKind;
 pub use evaluate::{Evaluated, evaluate};
 pub use file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};
 pub use law::Law;
+pub use overlay::{value_at, with_overlay};
 pub use record::StudyRecord;
 pub use sensitivity::{RankCorrelation, SobolIndex};
 pub use shard::{Plan, ShardManifest, ShardStore};

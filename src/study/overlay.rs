@@ -2,6 +2,39 @@
 
 use serde_json::Value;
 
+use crate::failure::Failure;
+use crate::scenario::ScenarioSource;
+
+/// A scenario with values of its own at some paths, as in `sensor.gain_e_per_dn`, and its seed as it is or as one of them says.
+///
+/// # Errors
+/// [`Failure::Usage`] for a path that leads nowhere, or a value of the wrong type. Whether the scenario can be simulated shows when it is.
+pub fn with_overlay(source: &ScenarioSource, values: &[(String, Value)]) -> Result<ScenarioSource, Failure> {
+    let mut document = source.scenario.to_json()?;
+    for (text, value) in values {
+        let refuse = |expected: &str| Failure::Usage(format!("`{text}` is given, expected {expected}"));
+        let path = ValuePath::parse(text).map_err(refuse)?;
+        path.set(&mut document, value.clone()).map_err(|expected| refuse(&expected))?;
+    }
+    let seed = document.get("seed").and_then(Value::as_u64).filter(|seed| i64::try_from(*seed).is_ok());
+    let seed = seed.ok_or_else(|| {
+        let found = document.get("seed").unwrap_or(&Value::Null);
+        Failure::Usage(format!("`seed` is {found}, expected a whole number, 0 to {}", i64::MAX))
+    })?;
+    source.with_values(&document, seed, source.name.clone())
+}
+
+/// The value of a scenario at a path, as in `sensor.gain_e_per_dn`; what a scenario leaves out is null.
+///
+/// # Errors
+/// [`Failure::Usage`] for a path that leads nowhere.
+pub fn value_at(source: &ScenarioSource, path: &str) -> Result<Value, Failure> {
+    let refuse = |expected: &str| Failure::Usage(format!("`{path}` is given, expected {expected}"));
+    let document = source.scenario.to_json()?;
+    let found = ValuePath::parse(path).map_err(refuse)?.get(&document).cloned();
+    found.ok_or_else(|| refuse("the path of a value in the scenario, which has none there"))
+}
+
 /// A step on the way to a value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Step {

@@ -85,6 +85,11 @@ impl Field {
         &self.image
     }
 
+    /// The digital numbers, given away without a copy.
+    pub fn into_image(self) -> Frame {
+        self.image
+    }
+
     /// Which rows of the camera they are.
     pub fn lines(&self) -> Lines {
         self.lines

@@ -72,7 +72,10 @@ struct Answer {
 }
 
 /// The greeting line.
-pub(super) fn greeting(setup: &DockingSetup) -> Result<Vec<u8>, String> {
+///
+/// # Errors
+/// The reason why there is none.
+pub fn greeting(setup: &DockingSetup) -> Result<Vec<u8>, String> {
     line(&Greeting {
         boresight_pipeline: VERSION,
         world: "docking",
@@ -96,8 +99,11 @@ pub(super) fn request(field: &Field, telemetry: &FieldTelemetry, image: &Path) -
     })
 }
 
-/// The outcome that an answer to field `number` says, or why the answer cannot be used.
-pub(super) fn outcome(answer: &[u8], number: u64) -> Result<DockingOutcome, String> {
+/// The outcome that an answer to field `number` says.
+///
+/// # Errors
+/// Why the answer cannot be used.
+pub fn outcome(answer: &[u8], number: u64) -> Result<DockingOutcome, String> {
     let answer: Answer = parse(answer)?;
     if answer.field != number {
         return Err(format!("it answered field {} instead of field {number}", answer.field));

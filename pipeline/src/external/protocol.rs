@@ -98,7 +98,10 @@ struct Answer {
 }
 
 /// The greeting line.
-pub(super) fn greeting(setup: &Setup) -> Result<Vec<u8>, String> {
+///
+/// # Errors
+/// The reason why there is none.
+pub fn greeting(setup: &Setup) -> Result<Vec<u8>, String> {
     let star = |star: &contract::ListedStar| Star {
         id: star.id,
         icrs: (*star.direction.vector()).into(),
@@ -147,8 +150,11 @@ pub(super) fn request(
     })
 }
 
-/// The outcome that an answer to frame `number` says, or why the answer cannot be used.
-pub(super) fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Result<Outcome, String> {
+/// The outcome that an answer to frame `number`, of a detector of `size_px` (columns, rows), says.
+///
+/// # Errors
+/// Why the answer cannot be used.
+pub fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Result<Outcome, String> {
     let answer: Answer = parse(answer)?;
     if answer.frame != number {
         return Err(format!("it answered frame {} instead of frame {number}", answer.frame));

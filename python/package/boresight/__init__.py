@@ -1,0 +1,59 @@
+"""Boresight: camera frames whose truth is known, and an oracle for the pipelines that look at them.
+
+    import boresight
+
+    argon = boresight.Scenario.load("argon")
+    for frame in argon.frames(range(8000, 8010)):
+        print(frame.number, frame.pixels.mean(), frame.truth["target_x_px"])
+
+    run = boresight.run(argon, frames=range(8000, 8100))
+    print(run.score["figures"]["correct_rate"])
+
+The numbers are those of the command `boresight`, bit for bit. docs/python.md has the whole of it, CONVENTIONS.md frames, pixels, units and
+time.
+"""
+
+from boresight._boresight import (
+    FieldTelemetry,
+    Frame,
+    FrameStream,
+    Run,
+    Scenario,
+    SimulatedFrame,
+    StudyResult,
+    Table,
+    Telemetry,
+    __version__,
+    requirement_names,
+    run,
+    score,
+    study,
+    visibility,
+)
+from boresight.answers import Detection, NoSolution, Pose, RangeOnly
+from boresight.errors import BoresightError, FileError, InputError
+
+__all__ = [
+    "BoresightError",
+    "Detection",
+    "FieldTelemetry",
+    "FileError",
+    "Frame",
+    "FrameStream",
+    "InputError",
+    "NoSolution",
+    "Pose",
+    "RangeOnly",
+    "Run",
+    "Scenario",
+    "SimulatedFrame",
+    "StudyResult",
+    "Table",
+    "Telemetry",
+    "__version__",
+    "requirement_names",
+    "run",
+    "score",
+    "study",
+    "visibility",
+]

@@ -1,0 +1,65 @@
+"""What a pipeline that is written in Python answers. In docking it is one of `Pose`, `RangeOnly`, `NoSolution`; else `Detection`, `NoSolution`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Detection:
+    """The target, found."""
+
+    x_px: float
+    """Column of the centre of its image; the centre of the first pixel is 0. On the detector: -0.5 to columns - 0.5."""
+    y_px: float
+    """Row of the centre of its image."""
+    los_j2000: Sequence[float] | None = None
+    """Line of sight to the target, unit vector along the axes of ICRS. Without it the score takes the pixel through the true camera, and
+    only the image counts."""
+    q_cam_j2000: Sequence[float] | None = None
+    """Attitude of the camera, unit quaternion (w, x, y, z); recorded, not scored."""
+    n_stars: int | None = None
+    """Stars identified in the frame."""
+
+    status = "detected"
+
+
+@dataclass(frozen=True)
+class NoSolution:
+    """No target, and why: `no_target`, `empty_frame`, `saturated_frame`, `no_previous_frame`, or `failed: ` and a reason. In docking
+    `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`, `too_few_features`, `inconsistent`, or `failed: `."""
+
+    status: str = "no_target"
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Docking: all six parameters."""
+
+    d_m: Sequence[float]
+    """Position of the camera in the target's frame, (d1, d2, d3), m."""
+    phi_deg: Sequence[float]
+    """Rotation vector of the camera from ideal docking: active pitch, yaw, roll, degrees."""
+    sigma_d_m: Sequence[float] | None = None
+    """Standard deviations of `d_m`, m."""
+    sigma_phi_deg: Sequence[float] | None = None
+    """Standard deviations of `phi_deg`, degrees."""
+    contrast: float | None = None
+    """The contrast that the digitiser shall have from the next field on, 0.1 to 20; with `brightness` or not at all."""
+    brightness: float | None = None
+    """The brightness that it shall have, -10 to 10, in units of full scale."""
+
+    status = "measured"
+
+
+@dataclass(frozen=True)
+class RangeOnly:
+    """Docking: the target is not resolved yet, and its range is known from the outline of the station."""
+
+    range_m: float
+    """d3, m, above 0."""
+    sigma_range_m: float | None = None
+    """Its standard deviation, m."""
+
+    status = "range_only"

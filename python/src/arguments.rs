@@ -1,0 +1,47 @@
+//! Arguments that several functions share.
+
+use std::ops::Range;
+use std::path::PathBuf;
+
+use pyo3::prelude::*;
+use pyo3::types::PyRange;
+use pyo3::types::PyRangeMethods;
+
+use crate::errors::refused;
+
+/// A range of frames, of a scenario that has `count`; all of them without one.
+pub(crate) fn frames(given: Option<&Bound<'_, PyAny>>, count: u64) -> PyResult<Range<u64>> {
+    let Some(given) = given else { return Ok(0..count) };
+    let expected = format!(
+        "a range of step 1 that is not empty, within range(0, {count}), as range(0, {})",
+        count.min(40)
+    );
+    let refuse = || refused("frames", given.to_string(), &expected);
+    let range = given.cast::<PyRange>().map_err(|_| refuse())?;
+    let (start, stop) = (range.start()?, range.stop()?);
+    let bounds = u64::try_from(start).ok().zip(u64::try_from(stop).ok());
+    let bounds = bounds.filter(|(start, stop)| start < stop && *stop <= count);
+    match (range.step()?, bounds) {
+        (1, Some((start, stop))) => Ok(start..stop),
+        _ => Err(refuse()),
+    }
+}
+
+/// A number of threads; one a core without one.
+pub(crate) fn jobs(given: Option<i64>) -> PyResult<usize> {
+    let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    match given {
+        None => Ok(cores()),
+        Some(jobs @ 1..=1024) => Ok(jobs as usize),
+        Some(jobs) => Err(refused("jobs", jobs, "1 to 1024")),
+    }
+}
+
+/// A path, or a word that may be one.
+pub(crate) fn word(what: &str, given: &Bound<'_, PyAny>) -> PyResult<String> {
+    let path: PathBuf = given.extract().map_err(|_| {
+        let kind = given.get_type().name().map_or_else(|_| "?".to_owned(), |name| name.to_string());
+        refused(what, format!("of type {kind}"), "text or a path")
+    })?;
+    path.into_os_string().into_string().map_err(|path| refused(what, format!("{path:?}"), "a path in UTF-8"))
+}

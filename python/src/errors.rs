@@ -1,0 +1,35 @@
+//! Failures as Python's exceptions.
+
+use boresight::failure::Failure;
+use boresight::files::FileError as ReadOrWrite;
+use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::{PyErr, import_exception};
+
+import_exception!(boresight.errors, BoresightError);
+import_exception!(boresight.errors, InputError);
+import_exception!(boresight.errors, FileError);
+
+/// The exception of a failure: an `InputError` for what can be put right in what was given, a `FileError` for what the system refused.
+pub(crate) fn raised(failure: Failure) -> PyErr {
+    match &failure {
+        Failure::Interrupted => PyKeyboardInterrupt::new_err(()),
+        Failure::File(ReadOrWrite::Io { .. } | ReadOrWrite::OutputTaken { .. }) => {
+            FileError::new_err(failure.to_string())
+        }
+        Failure::Mitsuba(_) => BoresightError::new_err(failure.to_string()),
+        _ => {
+            let text = failure.explain();
+            InputError::new_err(text.strip_prefix("error: ").unwrap_or(&text).to_owned())
+        }
+    }
+}
+
+/// The exception of a file that cannot be read or written.
+pub(crate) fn file_error(error: ReadOrWrite) -> PyErr {
+    raised(error.into())
+}
+
+/// The exception of an argument: `what` is `value`, expected …
+pub(crate) fn refused(what: &str, value: impl std::fmt::Display, expected: &str) -> PyErr {
+    InputError::new_err(format!("`{what}` is {value}, expected {expected}"))
+}

@@ -1,0 +1,51 @@
+//! The library `boresight._boresight`, which Python loads: scenarios, frames, runs, scores, studies and visibility over the same engine
+//! as the command `boresight`, and pipelines written in Python.
+//!
+//! Nothing is computed here: values change hands. Every number is that of the command, bit for bit (python/tests).
+
+#![allow(
+    clippy::result_large_err,
+    reason = "the engine's failures are what they are, and are made once a call"
+)]
+
+mod arguments;
+mod errors;
+mod frame;
+mod json;
+mod python_pipeline;
+mod run;
+mod scenario;
+mod score;
+mod stream;
+mod study;
+mod table;
+mod visibility;
+mod wait;
+
+/// Scenarios, frames, runs, scores, studies and visibility, over the engine of the command `boresight`.
+#[pyo3::pymodule]
+mod _boresight {
+    #[pymodule_export]
+    use crate::frame::{FieldTelemetry, Frame, SimulatedFrame, Telemetry};
+    #[pymodule_export]
+    use crate::run::{Run, run};
+    #[pymodule_export]
+    use crate::scenario::Scenario;
+    #[pymodule_export]
+    use crate::score::score;
+    #[pymodule_export]
+    use crate::stream::FrameStream;
+    #[pymodule_export]
+    use crate::study::{StudyResult, study};
+    #[pymodule_export]
+    use crate::table::Table;
+    #[pymodule_export]
+    use crate::visibility::{requirement_names, visibility};
+
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn with_version(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

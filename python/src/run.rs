@@ -1,0 +1,231 @@
+//! Simulate, process, score: what the command `run` does, with its directory behind it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use boresight::docking_run::DockingFlight;
+use boresight::failure::Failure;
+use boresight::files::{RunDirectory, arrow_of_csv, arrow_of_parquet};
+use boresight::pipeline_choice::PipelineChoice;
+use boresight::run::{Expectation, FirstFailure, Flight};
+use boresight::scenario::{Scenario as Values, ScenarioSource};
+use contract::PipelineFactory;
+use contract::docking::DockingPipelineFactory;
+use pyo3::prelude::*;
+use tempfile::TempDir;
+
+use crate::arguments;
+use crate::errors::{BoresightError, FileError, file_error, raised, refused};
+use crate::json;
+use crate::python_pipeline::{Ended, PythonPipeline};
+use crate::scenario::{Scenario, World};
+use crate::table::Table;
+
+/// What a run gave: score, truth and measurements.
+///
+/// A view of its directory (docs/formats.md), which is a temporary one, gone with the object, unless `out` was given.
+#[pyclass(frozen, module = "boresight")]
+pub(crate) struct Run {
+    path: PathBuf,
+    is_docking: bool,
+    first_failure: Option<FirstFailure>,
+    _temporary: Option<TempDir>,
+}
+
+impl Run {
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn parquet(&self, py: Python<'_>, name: &str) -> PyResult<Table> {
+        let path = self.path.join(name);
+        let (schema, batches) = py.detach(|| arrow_of_parquet(&path)).map_err(file_error)?;
+        Ok(Table::new(schema, batches))
+    }
+
+    fn csv(&self, py: Python<'_>, name: &str) -> PyResult<Table> {
+        let path = self.path.join(name);
+        py.detach(|| arrow_of_csv(&path)).map(Table::of_batch).map_err(file_error)
+    }
+
+    fn of_world(&self, what: &str, is_docking: bool) -> PyResult<()> {
+        if self.is_docking == is_docking {
+            return Ok(());
+        }
+        let (of, expected) = if is_docking {
+            ("the far range", "a docking run")
+        } else {
+            ("docking", "a run of the far range")
+        };
+        Err(refused(what, format!("asked of a run of {of}"), expected))
+    }
+}
+
+#[pymethods]
+impl Run {
+    /// Opens the directory of a run, of the command's or of `out`.
+    #[staticmethod]
+    fn load(directory: PathBuf) -> PyResult<Self> {
+        let file = directory.join("run.toml");
+        if !file.is_file() {
+            return Err(FileError::new_err(format!(
+                "{}: there is no run.toml, expected the directory of a run",
+                directory.display()
+            )));
+        }
+        let source = ScenarioSource::read(&file.to_string_lossy()).map_err(raised)?;
+        let is_docking = matches!(source.scenario, Values::Docking(_));
+        Ok(Self { path: directory, is_docking, first_failure: None, _temporary: None })
+    }
+
+    /// The directory of the run.
+    #[getter]
+    fn directory(&self) -> &Path {
+        &self.path
+    }
+
+    /// The score, a dictionary: score.json, described in docs/score.md. Rates are 0 to 1, each figure has its count and its 95 % interval.
+    #[getter]
+    fn score<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let path = self.path.join("score.json");
+        let text = std::fs::read_to_string(&path);
+        let text = text.map_err(|error| FileError::new_err(format!("{}: {error}", path.display())))?;
+        json::text_to_python(py, &text)
+    }
+
+    /// The first failure of the pipeline, (frame, reason); None if it never failed, or the run was loaded.
+    #[getter]
+    fn first_failure(&self) -> Option<(u64, &str)> {
+        self.first_failure.as_ref().map(|failure| (failure.frame, failure.reason.as_str()))
+    }
+
+    /// The truth about each frame: truth/frames.parquet (docking: truth/fields.parquet).
+    #[getter]
+    fn truth_frames(&self, py: Python<'_>) -> PyResult<Table> {
+        self.parquet(py, if self.is_docking { "truth/fields.parquet" } else { "truth/frames.parquet" })
+    }
+
+    /// The truth about each object in each frame: truth/objects.parquet. Far range alone.
+    #[getter]
+    fn truth_objects(&self, py: Python<'_>) -> PyResult<Table> {
+        self.of_world("truth_objects", false)?;
+        self.parquet(py, "truth/objects.parquet")
+    }
+
+    /// The pipeline's answers: measurements.csv.
+    #[getter]
+    fn measurements(&self, py: Python<'_>) -> PyResult<Table> {
+        self.csv(py, "measurements.csv")
+    }
+
+    /// What a pipeline may know of each frame beside its pixels: telemetry.csv.
+    #[getter]
+    fn telemetry(&self, py: Python<'_>) -> PyResult<Table> {
+        self.csv(py, "telemetry.csv")
+    }
+
+    /// What the pipeline took each cluster for: clusters.parquet. Far range alone.
+    #[getter]
+    fn clusters(&self, py: Python<'_>) -> PyResult<Table> {
+        self.of_world("clusters", false)?;
+        self.parquet(py, "clusters.parquet")
+    }
+
+    /// What the pipeline said at the end of each portion: motion.csv. Docking alone.
+    #[getter]
+    fn motion(&self, py: Python<'_>) -> PyResult<Table> {
+        self.of_world("motion", true)?;
+        self.csv(py, "motion.csv")
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<boresight.Run in {}>", self.path.display())
+    }
+}
+
+/// Makes frames, has a pipeline process them, and scores its answers, as the command `boresight run` does and with the same numbers.
+///
+/// `pipeline` is None (the built-in one), `exec:COMMAND`, a callable of (frame, telemetry), or a class that is made with the setup and
+/// whose instances are such a callable. A callable returns `Detection`, `NoSolution`, None (no target) or a dictionary with the keys of
+/// docs/external-pipeline.md; in docking `Pose`, `RangeOnly`, `NoSolution` or None. Whatever it raises is the outcome of its frame, with
+/// its message; only what is no `Exception` (Ctrl-C) ends the run. `out` is a new or empty directory that keeps the run.
+#[pyfunction]
+#[pyo3(signature = (scenario, *, frames=None, pipeline=None, jobs=None, out=None, timeout_s=10.0))]
+pub(crate) fn run(
+    py: Python<'_>,
+    scenario: &Bound<'_, PyAny>,
+    frames: Option<&Bound<'_, PyAny>>,
+    pipeline: Option<&Bound<'_, PyAny>>,
+    jobs: Option<i64>,
+    out: Option<PathBuf>,
+    timeout_s: f64,
+) -> PyResult<Run> {
+    let ready = Scenario::given(scenario)?;
+    let frames = arguments::frames(frames, ready.frame_count())?;
+    let jobs = arguments::jobs(jobs)?;
+    let ended = Arc::new(Ended::default());
+    let temporary = |error: std::io::Error| {
+        BoresightError::new_err(format!("a temporary directory cannot be made: {error}"))
+    };
+    let scratch = tempfile::tempdir().map_err(temporary)?;
+    let asked = match pipeline {
+        Some(given) if given.extract::<String>().is_err() => {
+            Asked::Python(PythonPipeline::new(given, &ready, &ended)?)
+        }
+        word => {
+            let word = word.map(|word| word.extract()).transpose()?;
+            Asked::Word(PipelineChoice { word, timeout_s })
+        }
+    };
+    let run = || {
+        // The pipeline first: while nothing has been written.
+        match &ready.world {
+            World::FarRange(prepared) => {
+                let factory: Box<dyn PipelineFactory> = match asked {
+                    Asked::Word(choice) => choice.factory(&prepared.scenario().far_range, scratch.path())?,
+                    Asked::Python(pipeline) => Box::new(pipeline),
+                };
+                let (directory, temporary) = place(out.as_deref())?;
+                let flight = Flight { frames, jobs, images: None, expectation: Expectation::Dropped };
+                let ran = prepared.run_while(&directory, &flight, factory.as_ref(), || ended.go_on())?;
+                Ok((directory, temporary, ran.first_failure))
+            }
+            World::Docking(prepared) => {
+                let factory: Box<dyn DockingPipelineFactory> = match asked {
+                    Asked::Word(choice) => {
+                        choice.docking_factory(&prepared.scenario().docking, scratch.path())?
+                    }
+                    Asked::Python(pipeline) => Box::new(pipeline),
+                };
+                let (directory, temporary) = place(out.as_deref())?;
+                let flight = DockingFlight { fields: frames, jobs, images: None };
+                let ran = prepared.run_while(&directory, &flight, factory.as_ref(), || ended.go_on())?;
+                Ok((directory, temporary, ran.first_failure))
+            }
+        }
+    };
+    let ran: Result<_, Failure> = py.detach(run);
+    if let Some(interrupt) = ended.take() {
+        return Err(interrupt);
+    }
+    let (directory, temporary, first_failure) = ran.map_err(raised)?;
+    let is_docking = matches!(ready.world, World::Docking(_));
+    Ok(Run { path: directory.path().to_owned(), is_docking, first_failure, _temporary: temporary })
+}
+
+/// The pipeline asked for.
+enum Asked {
+    Word(PipelineChoice),
+    Python(PythonPipeline),
+}
+
+/// Where a run is written, and the temporary directory that it is in.
+fn place(out: Option<&Path>) -> Result<(RunDirectory, Option<TempDir>), Failure> {
+    if let Some(out) = out {
+        return Ok((RunDirectory::create(out)?, None));
+    }
+    let temporary = tempfile::Builder::new().prefix("boresight-run-").tempdir();
+    let temporary = temporary
+        .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))?;
+    Ok((RunDirectory::create(temporary.path())?, Some(temporary)))
+}

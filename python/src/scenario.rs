@@ -1,0 +1,217 @@
+//! Scenarios as objects. A scenario that exists can be run: all its values were checked.
+
+use std::sync::Arc;
+
+use boresight::docking_renderer::DockingRenderer;
+use boresight::docking_run::PreparedDocking;
+use boresight::failure::Failure;
+use boresight::run::Prepared;
+use boresight::scenario::{BUILT_IN, Scenario as Values, ScenarioSource};
+use boresight::study::{value_at, with_overlay};
+use contract::docking::Digitiser;
+use pipeline::external::{docking_protocol, protocol};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::Value;
+
+use crate::arguments;
+use crate::errors::{BoresightError, raised, refused};
+use crate::frame::SimulatedFrame;
+use crate::json;
+use crate::stream::FrameStream;
+
+/// A scenario with what makes its frames.
+pub(crate) struct Ready {
+    pub(crate) source: ScenarioSource,
+    pub(crate) world: World,
+}
+
+/// What makes the frames of a world.
+pub(crate) enum World {
+    FarRange(Box<Prepared>),
+    Docking(Box<PreparedDocking>),
+}
+
+impl Ready {
+    pub(crate) fn new(source: ScenarioSource) -> Result<Self, Failure> {
+        let world = match &source.scenario {
+            Values::FarRange(_) => World::FarRange(Box::new(Prepared::new(&source)?)),
+            Values::Docking(_) => {
+                World::Docking(Box::new(PreparedDocking::new(&source, DockingRenderer::Fast)?))
+            }
+        };
+        Ok(Self { source, world })
+    }
+
+    pub(crate) fn frame_count(&self) -> u64 {
+        match &self.world {
+            World::FarRange(prepared) => prepared.frame_count(),
+            World::Docking(prepared) => prepared.field_count(),
+        }
+    }
+}
+
+/// What to simulate: a built-in scenario or a TOML file, with all its values checked.
+///
+/// It does not change: `with_values` and `with_seed` give another one.
+#[pyclass(frozen, module = "boresight")]
+pub(crate) struct Scenario {
+    pub(crate) ready: Arc<Ready>,
+}
+
+impl Scenario {
+    /// A scenario, of an object or of the word that names one.
+    pub(crate) fn given(given: &Bound<'_, PyAny>) -> PyResult<Arc<Ready>> {
+        match given.cast::<Self>() {
+            Ok(scenario) => Ok(Arc::clone(&scenario.get().ready)),
+            Err(_) => Ok(Self::load(given.py(), given)?.ready),
+        }
+    }
+
+    fn checked(py: Python<'_>, source: ScenarioSource) -> PyResult<Self> {
+        let ready = py.detach(|| Ready::new(source)).map_err(raised)?;
+        Ok(Self { ready: Arc::new(ready) })
+    }
+}
+
+#[pymethods]
+impl Scenario {
+    /// Reads a built-in scenario by its name, a TOML file, or the `run.toml` of a run to be repeated.
+    ///
+    /// Raises `InputError` with line and column of the first mistake.
+    #[staticmethod]
+    fn load(py: Python<'_>, scenario: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let word = arguments::word("scenario", scenario)?;
+        Self::checked(py, ScenarioSource::read(&word).map_err(raised)?)
+    }
+
+    /// Names of the built-in scenarios.
+    #[staticmethod]
+    fn builtin_names() -> Vec<&'static str> {
+        BUILT_IN.iter().map(|built_in| built_in.name).collect()
+    }
+
+    /// Name: that of the built-in one, or the file's without its extension.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.ready.source.name
+    }
+
+    /// What it is, in one line.
+    #[getter]
+    fn title(&self) -> &str {
+        self.ready.source.scenario.title()
+    }
+
+    /// `far_range` or `docking`.
+    #[getter]
+    fn world(&self) -> &'static str {
+        match &self.ready.world {
+            World::FarRange(_) => "far_range",
+            World::Docking(_) => "docking",
+        }
+    }
+
+    /// Seed of every random draw.
+    #[getter]
+    fn seed(&self) -> u64 {
+        match &self.ready.source.scenario {
+            Values::FarRange(scenario) => scenario.seed,
+            Values::Docking(scenario) => scenario.seed,
+        }
+    }
+
+    /// Number of its frames (docking: fields).
+    #[getter]
+    fn frame_count(&self) -> u64 {
+        self.ready.frame_count()
+    }
+
+    /// The same scenario with other values, by their paths: `{"sensor.gain_e_per_dn": 3.0, "schedule[0].count": 100}`.
+    ///
+    /// Raises `InputError` for a path that there is not, and for a value outside its range.
+    fn with_values(&self, py: Python<'_>, values: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let mut overlay: Vec<(String, Value)> = Vec::new();
+        for (path, value) in values {
+            let path: String = path
+                .extract()
+                .map_err(|_| refused("values", "a dictionary with a key that is no text", "paths as keys"))?;
+            let value = json::from_python(&path, &value)?;
+            overlay.push((path, value));
+        }
+        Self::checked(py, with_overlay(&self.ready.source, &overlay).map_err(raised)?)
+    }
+
+    /// The same scenario with another seed, 0 to 2**63 - 1: other noise, the same sky.
+    fn with_seed(&self, py: Python<'_>, seed: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let overlay = [("seed".to_owned(), json::from_python("seed", seed)?)];
+        Self::checked(py, with_overlay(&self.ready.source, &overlay).map_err(raised)?)
+    }
+
+    /// The value at a path, as in `sensor.gain_e_per_dn`; tables as dictionaries, None for what the scenario leaves out.
+    fn value<'py>(&self, py: Python<'py>, path: &str) -> PyResult<Bound<'py, PyAny>> {
+        json::to_python(py, &value_at(&self.ready.source, path).map_err(raised)?)
+    }
+
+    /// All its values with all defaults, as a TOML file that can be run.
+    fn to_toml(&self) -> PyResult<String> {
+        let text = match &self.ready.source.scenario {
+            Values::FarRange(scenario) => toml::to_string(scenario),
+            Values::Docking(scenario) => toml::to_string(scenario),
+        };
+        text.map_err(|error| BoresightError::new_err(error.to_string()))
+    }
+
+    /// What a pipeline is told before the first frame, a dictionary: camera, mounting and star list (docking: cameras and target). Its keys
+    /// are those of the greeting in docs/external-pipeline.md.
+    #[getter]
+    fn setup<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        setup(py, &self.ready)
+    }
+
+    /// Makes one frame: the same bits as in a whole run.
+    fn frame(&self, py: Python<'_>, number: i64) -> PyResult<Py<SimulatedFrame>> {
+        let count = self.ready.frame_count();
+        let expected = || {
+            refused("number", number, &format!("a frame of the scenario, 0 to {}", count.saturating_sub(1)))
+        };
+        let number = u64::try_from(number).ok().filter(|number| *number < count).ok_or_else(expected)?;
+        match &self.ready.world {
+            World::FarRange(prepared) => {
+                let made = py.detach(|| prepared.simulator().camera()?.expose(number));
+                SimulatedFrame::of(py, made.map_err(|error| raised(error.into()))?, &self.ready)
+            }
+            World::Docking(prepared) => {
+                let simulator = prepared.simulator();
+                let made = py.detach(|| simulator.expose(&mut simulator.workspace()?, number));
+                let made = made.map_err(|error| raised(error.into()))?;
+                let digitiser = Digitiser::default();
+                let (field, telemetry) = (made.video.digitise(&digitiser), made.telemetry(digitiser));
+                SimulatedFrame::of_field(py, field, &telemetry, made.truth, &self.ready)
+            }
+        }
+    }
+
+    /// Makes frames, in order, on `jobs` threads (default: all cores) while the caller works on those before: an iterator over
+    /// `SimulatedFrame`. `frames` is a `range` of step 1; all frames without one.
+    #[pyo3(signature = (frames=None, *, jobs=None))]
+    fn frames(&self, frames: Option<&Bound<'_, PyAny>>, jobs: Option<i64>) -> PyResult<FrameStream> {
+        let frames = arguments::frames(frames, self.ready.frame_count())?;
+        FrameStream::start(&self.ready, frames, arguments::jobs(jobs)?)
+    }
+
+    fn __repr__(&self) -> String {
+        let unit = if self.world() == "docking" { "fields" } else { "frames" };
+        format!("<boresight.Scenario {}: {} {unit}, seed {}>", self.name(), self.frame_count(), self.seed())
+    }
+}
+
+/// What a pipeline is told before the first frame, as a dictionary.
+pub(crate) fn setup<'py>(py: Python<'py>, ready: &Ready) -> PyResult<Bound<'py, PyAny>> {
+    let line = match &ready.world {
+        World::FarRange(prepared) => protocol::greeting(&prepared.setup()),
+        World::Docking(prepared) => docking_protocol::greeting(prepared.setup()),
+    };
+    let line = line.map_err(BoresightError::new_err)?;
+    json::text_to_python(py, &String::from_utf8_lossy(&line))
+}

@@ -1,0 +1,79 @@
+//! The oracle over anybody's measurements.
+
+use std::path::{Path, PathBuf};
+
+use boresight::docking_run::score_docking;
+use boresight::failure::Failure;
+use boresight::run;
+use boresight::scenario::{World, world};
+use boresight::toml_file::read_text;
+use pyo3::prelude::*;
+
+use crate::arguments;
+use crate::errors::{BoresightError, FileError, raised};
+use crate::json::text_to_python;
+use crate::run::Run;
+
+/// Scores measurements against the truth, as the command `boresight score` does.
+///
+/// `truth` is a `Run`, or the directory of a run or of a rendered dataset. `measurements` is a file, or a table: boresight's own, one of
+/// polars, pandas or pyarrow, or a dictionary of columns. Its columns are those of measurements.csv (docs/formats.md); `frame`, `status`,
+/// `x_px`, `y_px` are enough (docking: `field`, `status`, `d1_m` ... `phi3_deg`). A frame of the truth without a row is a miss. Of a file,
+/// `clusters.parquet` (docking: `motion.csv`) beside it is read too: evidence for the causes of misses. Gives the dictionary of score.json.
+#[pyfunction]
+pub(crate) fn score<'py>(
+    py: Python<'py>,
+    truth: &Bound<'py, PyAny>,
+    measurements: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let directory = match truth.cast::<Run>() {
+        Ok(run) => run.get().path().to_owned(),
+        Err(_) => PathBuf::from(arguments::word("truth", truth)?),
+    };
+    if let Ok(path) = measurements.extract::<PathBuf>() {
+        let scored = py.detach(|| scored(&directory, &path));
+        return text_to_python(py, &scored.map_err(raised)?);
+    }
+    let text: String =
+        py.import("boresight._values")?.call_method1("csv_text", (measurements,))?.extract()?;
+    let temporary = |error: std::io::Error| {
+        BoresightError::new_err(format!("a temporary file cannot be written: {error}"))
+    };
+    let folder = tempfile::tempdir().map_err(temporary)?;
+    let path = folder.path().join("measurements.csv");
+    std::fs::write(&path, text).map_err(temporary)?;
+    let scored = py.detach(|| scored(&directory, &path));
+    let scored = scored.map_err(|failure| {
+        // The table has no file: its lines are its rows, below the names of the columns.
+        let told = failure.to_string().replace(&path.display().to_string(), "measurements");
+        match raised(failure) {
+            error if error.is_instance_of::<FileError>(py) => FileError::new_err(told),
+            _ => crate::errors::InputError::new_err(told),
+        }
+    });
+    text_to_python(py, &scored?)
+}
+
+/// The score of a file of measurements, as JSON.
+fn scored(directory: &Path, measurements: &Path) -> Result<String, Failure> {
+    let run_file = directory.join("run.toml");
+    let unreadable = |error| {
+        Failure::Usage(format!(
+            "{}: cannot read: {error}, expected the directory of a run",
+            run_file.display()
+        ))
+    };
+    let text = read_text(&run_file).map_err(unreadable)?;
+    let beside = |name: &str| Some(measurements.with_file_name(name)).filter(|path| path.is_file());
+    let json = match world(&run_file, &text, "scenario.world")? {
+        World::FarRange => {
+            let clusters = beside("clusters.parquet");
+            serde_json::to_string(&run::score(directory, measurements, clusters.as_deref())?.score)
+        }
+        World::Docking => {
+            let motion = beside("motion.csv");
+            serde_json::to_string(&score_docking(directory, measurements, motion.as_deref())?)
+        }
+    };
+    json.map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))
+}

@@ -1,0 +1,178 @@
+//! Tables for Python: Arrow, handed over by its C data interface, so that polars, pandas and pyarrow read them and none is needed.
+
+use arrow_array::cast::AsArray;
+use arrow_array::ffi_stream::FFI_ArrowArrayStream;
+use arrow_array::types::{Float64Type, TimestampNanosecondType, UInt32Type, UInt64Type};
+use arrow_array::{Array, ArrayRef, RecordBatch, RecordBatchIterator};
+use arrow_schema::ffi::FFI_ArrowSchema;
+use arrow_schema::{ArrowError, DataType, SchemaRef};
+use numpy::PyArray1;
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use pyo3::types::{PyCapsule, PyDict, PyList};
+
+use crate::errors::BoresightError;
+
+/// A table: columns by name, units in the names, as docs/formats.md describes them.
+///
+/// `polars.DataFrame(table)`, `pyarrow.table(table)` and `pandas.DataFrame.from_arrow(table)` take it as it is, by the Arrow C data
+/// interface and without a copy. Without any of them `table["x_px"]` is a numpy array.
+#[pyclass(frozen, module = "boresight")]
+pub(crate) struct Table {
+    schema: SchemaRef,
+    batches: Vec<RecordBatch>,
+}
+
+impl Table {
+    pub(crate) fn new(schema: SchemaRef, batches: Vec<RecordBatch>) -> Self {
+        Self { schema, batches }
+    }
+
+    pub(crate) fn of_batch(batch: RecordBatch) -> Self {
+        Self { schema: batch.schema(), batches: vec![batch] }
+    }
+
+    fn rows(&self) -> usize {
+        self.batches.iter().map(RecordBatch::num_rows).sum()
+    }
+
+    fn column<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+        let arrays: Vec<&ArrayRef> = self.batches.iter().map(|batch| batch.column(index)).collect();
+        let has_null = arrays.iter().any(|array| array.null_count() > 0);
+        match self.schema.field(index).data_type() {
+            DataType::UInt64 if !has_null => {
+                let values = arrays.iter().flat_map(|array| array.as_primitive::<UInt64Type>().values());
+                Ok(PyArray1::from_vec(py, values.copied().collect()).into_any())
+            }
+            DataType::UInt32 if !has_null => {
+                let values = arrays.iter().flat_map(|array| array.as_primitive::<UInt32Type>().values());
+                Ok(PyArray1::from_vec(py, values.copied().collect()).into_any())
+            }
+            DataType::Boolean if !has_null => {
+                let values = arrays.iter().flat_map(|array| array.as_boolean().values());
+                Ok(PyArray1::from_vec(py, values.collect()).into_any())
+            }
+            DataType::Timestamp(..) => {
+                let values =
+                    arrays.iter().flat_map(|array| array.as_primitive::<TimestampNanosecondType>().values());
+                PyArray1::from_vec(py, values.copied().collect()).call_method1("view", ("datetime64[ns]",))
+            }
+            DataType::Utf8 => {
+                let texts = arrays.iter().flat_map(|array| array.as_string::<i32>().iter());
+                Ok(PyList::new(py, texts.collect::<Vec<_>>())?.into_any())
+            }
+            _ => {
+                let numbers = arrays.iter().flat_map(|array| floats(array));
+                Ok(PyArray1::from_vec(py, numbers.collect()).into_any())
+            }
+        }
+    }
+}
+
+/// Numbers as floating-point ones, NaN where there is none.
+fn floats(array: &ArrayRef) -> Vec<f64> {
+    match array.data_type() {
+        DataType::Float64 => {
+            array.as_primitive::<Float64Type>().iter().map(|value| value.unwrap_or(f64::NAN)).collect()
+        }
+        DataType::UInt64 => {
+            let values = array.as_primitive::<UInt64Type>().iter();
+            values.map(|value| value.map_or(f64::NAN, |value| value as f64)).collect()
+        }
+        DataType::UInt32 => {
+            let values = array.as_primitive::<UInt32Type>().iter();
+            values.map(|value| value.map_or(f64::NAN, f64::from)).collect()
+        }
+        // No table of ours has another type.
+        _ => vec![f64::NAN; array.len()],
+    }
+}
+
+#[pymethods]
+impl Table {
+    /// Names of the columns, in order.
+    #[getter]
+    fn column_names(&self) -> Vec<&str> {
+        self.schema.fields().iter().map(|field| field.name().as_str()).collect()
+    }
+
+    /// Number of rows.
+    #[getter]
+    fn num_rows(&self) -> usize {
+        self.rows()
+    }
+
+    fn __len__(&self) -> usize {
+        self.rows()
+    }
+
+    /// A column: numbers and truth values as a numpy array (NaN where there is no value), times as `datetime64[ns]` (UTC), words as a
+    /// list (None where there is none).
+    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let index = self.schema.index_of(name).map_err(|_| {
+            let known = self.column_names().join(", ");
+            PyKeyError::new_err(format!("there is no column `{name}`; there are: {known}"))
+        })?;
+        self.column(py, index)
+    }
+
+    /// All columns by name, as `table[name]` gives them.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let columns = PyDict::new(py);
+        for (index, field) in self.schema.fields().iter().enumerate() {
+            columns.set_item(field.name(), self.column(py, index)?)?;
+        }
+        Ok(columns)
+    }
+
+    /// Arrow's C data interface: the table as a stream.
+    #[pyo3(signature = (requested_schema=None))]
+    fn __arrow_c_stream__<'py>(
+        &self,
+        py: Python<'py>,
+        requested_schema: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyCapsule>> {
+        // Another schema is a wish that a producer need not grant.
+        drop(requested_schema);
+        let batches: Vec<Result<RecordBatch, ArrowError>> = self.batches.iter().cloned().map(Ok).collect();
+        let reader = RecordBatchIterator::new(batches, SchemaRef::clone(&self.schema));
+        PyCapsule::new_with_value(py, FFI_ArrowArrayStream::new(Box::new(reader)), c"arrow_array_stream")
+    }
+
+    /// Arrow's C data interface: names and types of the columns.
+    fn __arrow_c_schema__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyCapsule>> {
+        let schema = FFI_ArrowSchema::try_from(self.schema.as_ref())
+            .map_err(|error| BoresightError::new_err(error.to_string()))?;
+        PyCapsule::new_with_value(py, schema, c"arrow_schema")
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<boresight.Table of {} rows: {}>", self.rows(), self.column_names().join(", "))
+    }
+}
+
+/// The one row of a batch, by column: what is not there is None.
+pub(crate) fn row<'py>(py: Python<'py>, batch: RecordBatch) -> PyResult<Bound<'py, PyDict>> {
+    let cells = PyDict::new(py);
+    let nulls: Vec<bool> = batch.columns().iter().map(|column| column.is_null(0)).collect();
+    let names: Vec<String> = batch.schema_ref().fields().iter().map(|field| field.name().clone()).collect();
+    let table = Table::of_batch(batch);
+    for (index, (name, is_null)) in names.into_iter().zip(nulls).enumerate() {
+        if is_null {
+            cells.set_item(name, py.None())?;
+            continue;
+        }
+        let column = table.column(py, index)?;
+        let is_time = matches!(table.schema.field(index).data_type(), DataType::Timestamp(..));
+        // Python's own numbers; a time stays numpy's, which knows nanoseconds.
+        let values =
+            if is_time { column } else { py.import("builtins")?.call_method1("list", (plain(&column)?,))? };
+        cells.set_item(name, values.get_item(0)?)?;
+    }
+    Ok(cells)
+}
+
+/// A numpy array as a list of Python's own numbers.
+fn plain<'py>(column: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    if column.hasattr("tolist")? { column.call_method0("tolist") } else { Ok(column.clone()) }
+}

@@ -1,0 +1,46 @@
+//! Which camera is needed.
+
+use boresight::failure::Failure;
+use boresight::visibility::{BUILT_IN_REQUIREMENTS, Requirements, assess};
+use pyo3::prelude::*;
+
+use crate::arguments;
+use crate::errors::{raised, refused};
+use crate::json::text_to_python;
+use crate::wait::{AfterCtrlC, interruptibly};
+
+/// Names of the built-in requirement files.
+#[pyfunction]
+pub(crate) fn requirement_names() -> Vec<&'static str> {
+    BUILT_IN_REQUIREMENTS.iter().map(|built_in| built_in.name).collect()
+}
+
+/// Says which requirements a camera meets, and which exposure, aperture or focal length would, as the command `boresight visibility`
+/// does: the dictionary that it prints with `--json` (docs/visibility.md).
+///
+/// `requirement` is the name of a built-in requirement file or the path of one; `frames` are simulated for each result, instead of the
+/// file's number (0: none).
+#[pyfunction]
+#[pyo3(signature = (requirement, *, frames=None, jobs=None))]
+pub(crate) fn visibility<'py>(
+    py: Python<'py>,
+    requirement: &Bound<'py, PyAny>,
+    frames: Option<i64>,
+    jobs: Option<i64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let word = arguments::word("requirement", requirement)?;
+    let jobs = arguments::jobs(jobs)?;
+    let mut requirements = Requirements::read(&word).map_err(raised)?;
+    if let Some(frames) = frames {
+        let allowed = u32::try_from(frames).ok().filter(|frames| *frames <= 100_000);
+        requirements.file.confirm.frames = allowed.ok_or_else(|| refused("frames", frames, "0 to 100000"))?;
+    }
+    let report = interruptibly(py, AfterCtrlC::IsLeft, move |_| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
+        let pool = pool.map_err(|error| Failure::Usage(format!("threads cannot be started: {error}")))?;
+        let report = pool.install(|| assess(&requirements, |_| ()))?;
+        serde_json::to_string(&report)
+            .map_err(|error| Failure::Usage(format!("the report cannot be written as JSON: {error}")))
+    })?;
+    text_to_python(py, &report)
+}

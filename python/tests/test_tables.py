@@ -1,0 +1,82 @@
+"""Tables for polars, pandas and pyarrow, and tables from them."""
+
+import numpy as np
+import pandas
+import polars
+import pyarrow
+import pytest
+
+import boresight
+
+
+@pytest.fixture(scope="module")
+def run():
+    return boresight.run("argon", frames=range(8000, 8040))
+
+
+def test_every_library_reads_the_same(run):
+    truth = run.truth_objects
+    ours = truth["electrons"]
+    assert np.array_equal(polars.DataFrame(truth)["electrons"].to_numpy(), ours)
+    assert np.array_equal(pyarrow.table(truth)["electrons"].to_numpy(), ours)
+    assert np.array_equal(pandas.DataFrame.from_arrow(truth)["electrons"].to_numpy(), ours)
+    assert len(truth) == truth.num_rows == len(ours)
+    assert truth.column_names[:3] == ["frame", "kind", "id"]
+
+
+def test_columns_have_numpy_types_and_nan_where_nothing_is(run):
+    measured, truth = run.measurements, run.truth_frames
+    assert measured["frame"].dtype == np.uint64
+    missing = np.array([status != "detected" for status in measured["status"]])
+    assert np.array_equal(np.isnan(measured["x_px"]), missing)
+    assert truth["time_utc"].dtype == "datetime64[ns]"
+    with pytest.raises(KeyError, match="there is no column `x`; there are: frame"):
+        measured["x"]
+
+
+def test_a_table_outlives_its_run():
+    table = boresight.run("argon", frames=range(8000, 8002)).truth_objects
+    frame = polars.DataFrame(table)
+    del table
+    assert frame["frame"].to_list()[0] == 8000
+
+
+def test_tables_of_every_library_have_one_score(run):
+    measured = run.measurements
+    tables = [
+        measured,
+        polars.DataFrame(measured),
+        pyarrow.table(measured),
+        pandas.DataFrame.from_arrow(measured),
+        measured.to_dict(),
+        run.directory / "measurements.csv",
+    ]
+    for table in tables:
+        assert boresight.score(run, table)["figures"] == run.score["figures"], type(table)
+
+
+def test_four_columns_are_enough_and_a_frame_without_a_row_is_a_miss(run):
+    score = boresight.score(run.directory, {"frame": [8001], "status": ["detected"], "x_px": [353.2], "y_px": [309.0]})
+    assert (score["frames"], score["figures"]["hit_rate"]["count"]) == (40, 1)
+
+
+@pytest.mark.parametrize(
+    ("measurements", "told"),
+    [
+        ({"frame": [8000], "status": ["detected"], "x_px": [1.0]}, "measurements: column `y_px` is missing"),
+        ({"frame": [8000], "status": ["detected"], "x_px": ["here"], "y_px": [1]}, "line 2: `x_px` is `here`, expected a finite number"),
+        ({"frame": [7], "status": ["no_target"], "x_px": [None], "y_px": [None]}, "`frame` is `7`, expected a frame of"),
+        ({"frame": [8000, 8001], "status": ["no_target"], "x_px": [], "y_px": []}, "expected columns of one length"),
+        (7, "of type int, expected a file, a table"),
+    ],
+)
+def test_a_wrong_table_is_told_by_row_and_column(run, measurements, told):
+    with pytest.raises(boresight.InputError, match=told):
+        boresight.score(run, measurements)
+
+
+def test_what_is_no_run_is_told(tmp_path):
+    with pytest.raises(boresight.InputError, match="expected the directory of a run"):
+        boresight.score(tmp_path, tmp_path / "measurements.csv")
+    with pytest.raises(boresight.FileError, match=r"there is no run\.toml"):
+        boresight.Run.load(tmp_path)
