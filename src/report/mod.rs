@@ -1,0 +1,86 @@
+//! The report: one HTML file for people, of what a directory of results holds.
+//!
+//! A page ([`Page`]) is computed from what was read, and is the same for the same files: nothing of it comes from a clock or from anywhere
+//! else. Charts are those of a charting library ([`Chart`]), with the numbers in a table behind each; pictures ([`Picture`]) are of frames
+//! that the simulator renders anew, one by one ([`FrameSheet`]). It asks nothing of any network.
+//!
+//! - [`far_range_page`]: a far-range run.
+//! - [`report_of`]: whatever a directory holds; [`write_page`] puts it into a file.
+
+mod chart;
+mod far_range;
+mod figures;
+mod frame_sheet;
+mod page;
+mod picture;
+mod read;
+mod thin;
+
+use std::io::Write;
+use std::path::Path;
+
+use tempfile::NamedTempFile;
+
+pub use chart::Chart;
+pub use far_range::{FarRangeRun, far_range_page};
+pub use frame_sheet::FrameSheet;
+pub use page::{Block, DataTable, Page, Section};
+pub use picture::{Mark, Picture, Pixels, Shape};
+pub use read::ResultKind;
+
+use crate::failure::Failure;
+use crate::files::FileError;
+use crate::scenario::{World, world};
+use crate::score::FrameVerdict;
+use crate::toml_file;
+
+/// The report of a directory of results.
+///
+/// # Errors
+/// A [`Failure`] that names the file which is missing or cannot be read.
+pub fn report_of(directory: &Path) -> Result<Page, Failure> {
+    match ResultKind::of(directory)? {
+        ResultKind::Run => {
+            let path = directory.join("run.toml");
+            let text = toml_file::read_text(&path).map_err(|source| FileError::Io {
+                path: path.clone(),
+                doing: "read",
+                source,
+            })?;
+            match world(&path, &text, "scenario.world")? {
+                World::FarRange => {
+                    far_range_page(&FarRangeRun::read(directory)?, &FrameSheet::open(directory)?)
+                }
+                World::Docking => todo_docking(directory),
+            }
+        }
+        ResultKind::Study => todo_docking(directory),
+        ResultKind::Visibility => todo_docking(directory),
+    }
+}
+
+/// The report of a far-range run whose verdicts are at hand.
+///
+/// # Errors
+/// As [`report_of`].
+pub fn far_range_report(directory: &Path, verdicts: Vec<FrameVerdict>) -> Result<Page, Failure> {
+    far_range_page(&FarRangeRun::with_verdicts(directory, verdicts)?, &FrameSheet::open(directory)?)
+}
+
+fn todo_docking(_: &Path) -> Result<Page, Failure> {
+    Err(Failure::Usage("not yet".to_owned()))
+}
+
+/// Writes a page, at once or not at all; a report that was there is replaced. Returns its length, bytes.
+///
+/// # Errors
+/// A [`Failure`] when the page cannot be put together or the file not be written.
+pub fn write_page(page: &Page, path: &Path) -> Result<u64, Failure> {
+    let html = page.html()?;
+    let io = |doing| move |source| FileError::Io { path: path.to_owned(), doing, source };
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut file = NamedTempFile::new_in(folder).map_err(io("create"))?;
+    file.write_all(html.as_bytes()).map_err(io("write"))?;
+    file.persist(path).map_err(|error| io("create")(error.error))?;
+    Ok(html.len() as u64)
+}
