@@ -7,7 +7,7 @@ use sim::truth::{ObjectKind, ObjectTruth, Visibility};
 use sim::{Exposure, Simulator};
 
 use super::far_range::FarRangeRun;
-use super::picture::{Mark, Picture, Pixels, Shape, window_around};
+use super::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch, window_around};
 use crate::failure::Failure;
 use crate::files::{FrameCluster, TableReader};
 use crate::scenario::ScenarioSource;
@@ -187,7 +187,7 @@ fn picture_of(exposure: &Exposure, points: &[PixelPoint], margin_px: f64) -> Res
     let frame = &exposure.frame;
     let (columns, rows) = (frame.columns(), frame.rows());
     let window = window_around(points, margin_px, columns, rows);
-    Picture::new(String::new(), String::new(), Pixels { columns, rows, dn: frame.dn() }, window)
+    Picture::new(Pixels { columns, rows, dn: frame.dn() }, window, RowPlace::WHOLE, Stretch::Stars)
 }
 
 fn regions(exposure: &Exposure) -> Vec<Mark> {

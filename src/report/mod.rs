@@ -8,7 +8,9 @@
 //! - [`report_of`]: whatever a directory holds; [`write_page`] puts it into a file.
 
 mod chart;
+mod docking;
 mod far_range;
+mod field_sheet;
 mod figures;
 mod frame_sheet;
 mod page;
@@ -22,10 +24,12 @@ use std::path::Path;
 use tempfile::NamedTempFile;
 
 pub use chart::Chart;
+pub use docking::{DockingRun, docking_page};
 pub use far_range::{FarRangeRun, far_range_page};
+pub use field_sheet::FieldSheet;
 pub use frame_sheet::FrameSheet;
 pub use page::{Block, DataTable, Page, Section};
-pub use picture::{Mark, Picture, Pixels, Shape};
+pub use picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
 pub use read::ResultKind;
 
 use crate::failure::Failure;
@@ -51,7 +55,7 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
                 World::FarRange => {
                     far_range_page(&FarRangeRun::read(directory)?, &FrameSheet::open(directory)?)
                 }
-                World::Docking => todo_docking(directory),
+                World::Docking => docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?),
             }
         }
         ResultKind::Study => todo_docking(directory),

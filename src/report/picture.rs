@@ -10,7 +10,7 @@ use image::{GrayImage, ImageFormat};
 use crate::failure::Failure;
 
 /// Samples of a picture at most: of more pixels, squares of them are drawn as their brightest.
-const MOST_SAMPLES: usize = 40_000;
+const MOST_SAMPLES: usize = 60_000;
 
 /// A window of a frame, with what is drawn over it.
 #[derive(Debug, Clone)]
@@ -19,8 +19,10 @@ pub struct Picture {
     pub title: String,
     /// The rest of its caption.
     pub caption: String,
-    /// The window that it shows.
+    /// The window that it shows, columns and rows of the image.
     pub window: Window,
+    /// Where the rows of the image are in the camera.
+    pub lines: RowPlace,
     /// The pixels, as a PNG in a `data:` URI.
     pub png: String,
     /// What is drawn over them.
@@ -68,7 +70,30 @@ impl Mark {
     }
 }
 
-/// Digital numbers, row by row, and the size of a pixel's cell: rows of a field are twice as far apart as its columns.
+/// Which row of the camera a row of an image is: `first` + `pitch` × row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RowPlace {
+    /// Row of the camera of the first row.
+    pub first: f64,
+    /// Rows of the camera from one row to the next.
+    pub pitch: f64,
+}
+
+impl RowPlace {
+    /// Of a whole frame.
+    pub const WHOLE: Self = Self { first: 0.0, pitch: 1.0 };
+}
+
+/// How digital numbers become shades.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stretch {
+    /// By asinh from the median to the brightest pixel: noise and bright cores are both seen.
+    Stars,
+    /// In proportion, from the darkest to the brightest pixel.
+    Linear,
+}
+
+/// Digital numbers, row by row.
 #[derive(Debug, Clone, Copy)]
 pub struct Pixels<'a> {
     /// Columns.
@@ -84,13 +109,19 @@ impl Picture {
     ///
     /// # Errors
     /// [`Failure::Usage`] when the PNG cannot be encoded.
-    pub fn new(title: String, caption: String, pixels: Pixels<'_>, window: Window) -> Result<Self, Failure> {
-        Ok(Self { title, caption, window, png: png(pixels, window)?, marks: Vec::new() })
+    pub fn new(
+        pixels: Pixels<'_>,
+        window: Window,
+        lines: RowPlace,
+        stretch: Stretch,
+    ) -> Result<Self, Failure> {
+        let png = png(pixels, window, stretch)?;
+        Ok(Self { title: String::new(), caption: String::new(), window, lines, png, marks: Vec::new() })
     }
 
     /// The part of the frame that is shown: pixel centres are whole numbers.
     pub fn view_box(&self) -> String {
-        format!("{} {} {} {}", self.left(), self.top(), self.window.columns, self.window.rows)
+        format!("{} {} {} {}", self.left(), self.top(), self.window.columns, self.height())
     }
 
     /// Left edge.
@@ -100,7 +131,12 @@ impl Picture {
 
     /// Upper edge.
     pub fn top(&self) -> f64 {
-        self.window.y as f64 - 0.5
+        self.lines.first + self.lines.pitch * (self.window.y as f64 - 0.5)
+    }
+
+    /// Height, rows of the camera.
+    pub fn height(&self) -> f64 {
+        self.lines.pitch * self.window.rows as f64
     }
 }
 
@@ -127,37 +163,24 @@ pub(super) fn window_around(points: &[PixelPoint], margin_px: f64, columns: usiz
     Window { x, y, columns, rows }
 }
 
-/// A window of the pixels as a PNG of 8 bits. Between the window's median and its brightest pixel the scale is that of asinh, in
-/// which noise and bright cores are both seen.
-fn png(pixels: Pixels<'_>, window: Window) -> Result<String, Failure> {
+/// A window of the pixels as a PNG of 8 bits.
+fn png(pixels: Pixels<'_>, window: Window, stretch: Stretch) -> Result<String, Failure> {
     let mut step = 1;
     while (window.columns / step) * (window.rows / step) > MOST_SAMPLES {
         step += 1;
     }
     let (columns, rows) = (window.columns.div_ceil(step), window.rows.div_ceil(step));
-    let brightest = |column: usize, row: usize| {
-        let (x0, y0) = (window.x + column * step, window.y + row * step);
-        let xs = x0..(x0 + step).min(window.x + window.columns);
-        let ys = y0..(y0 + step).min(window.y + window.rows);
-        let of_row = |y: usize| pixels.dn[y * pixels.columns + xs.start..y * pixels.columns + xs.end].iter();
-        ys.flat_map(of_row).copied().max().unwrap_or(0)
+    let mut samples: Vec<u16> = Vec::with_capacity(columns * rows);
+    for row in 0..rows {
+        for column in 0..columns {
+            samples.push(brightest(pixels, window, (column * step, row * step), step));
+        }
+    }
+    let shades = match stretch {
+        Stretch::Stars => asinh_shades(&samples),
+        Stretch::Linear => linear_shades(&samples),
     };
-    let samples: Vec<u16> =
-        (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row))).map(|(c, r)| brightest(c, r)).collect();
-    let mut lit: Vec<u16> = samples.iter().copied().filter(|&dn| dn > 0).collect();
-    lit.sort_unstable();
-    let low = f64::from(lit.get(lit.len() / 2).copied().unwrap_or(0));
-    let high = f64::from(lit.last().copied().unwrap_or(1)).max(low + 1.0);
-    // Half of the picture is at most as bright as the median: what is sent as 0, and the lower half of the noise.
-    let spread = low - f64::from(lit.get(lit.len() / 6).copied().unwrap_or(0));
-    let black = (low - 2.0 * spread).max(0.0).min(low);
-    let softening = ((high - black) / 25.0).max(1.0);
-    let full = libm::asinh((high - black) / softening);
-    let level = |dn: u16| {
-        let above = (f64::from(dn) - black).max(0.0);
-        (255.0 * libm::asinh(above / softening) / full).round().min(255.0) as u8
-    };
-    let image = GrayImage::from_raw(columns as u32, rows as u32, samples.into_iter().map(level).collect());
+    let image = GrayImage::from_raw(columns as u32, rows as u32, shades);
     let mut bytes = Cursor::new(Vec::new());
     let written = image.map(|image| image.write_to(&mut bytes, ImageFormat::Png));
     match written {
@@ -165,6 +188,39 @@ fn png(pixels: Pixels<'_>, window: Window) -> Result<String, Failure> {
         Some(Err(error)) => Err(Failure::Usage(format!("a picture of the report cannot be made: {error}"))),
         None => Err(Failure::Usage("a picture of the report has no pixels".to_owned())),
     }
+}
+
+/// The brightest pixel of a square in a window: a star stays one.
+fn brightest(pixels: Pixels<'_>, window: Window, (column, row): (usize, usize), step: usize) -> u16 {
+    let (left, top) = (window.x + column, window.y + row);
+    let right = (left + step).min(window.x + window.columns);
+    let bottom = (top + step).min(window.y + window.rows);
+    let of_row = |y: usize| pixels.dn[y * pixels.columns + left..y * pixels.columns + right].iter();
+    (top..bottom).flat_map(of_row).copied().max().unwrap_or(0)
+}
+
+fn asinh_shades(samples: &[u16]) -> Vec<u8> {
+    // What was not transmitted is 0, and says nothing of the noise.
+    let mut lit: Vec<u16> = samples.iter().copied().filter(|&dn| dn > 0).collect();
+    lit.sort_unstable();
+    let at = |part: usize| f64::from(lit.get(lit.len() / part).copied().unwrap_or(0));
+    let (middle, below) = (at(2), at(6));
+    let high = f64::from(lit.last().copied().unwrap_or(1)).max(middle + 1.0);
+    // Two deviations of the noise below the median.
+    let black = (middle - 2.0 * (middle - below)).max(0.0);
+    let softening = ((high - black) / 25.0).max(1.0);
+    let full = libm::asinh((high - black) / softening);
+    let shade = |dn: &u16| {
+        let above = (f64::from(*dn) - black).max(0.0);
+        (255.0 * libm::asinh(above / softening) / full).round().min(255.0) as u8
+    };
+    samples.iter().map(shade).collect()
+}
+
+fn linear_shades(samples: &[u16]) -> Vec<u8> {
+    let (low, high) = samples.iter().fold((u16::MAX, 0), |(low, high), &dn| (low.min(dn), high.max(dn)));
+    let range = f64::from(high.saturating_sub(low)).max(1.0);
+    samples.iter().map(|&dn| (255.0 * f64::from(dn - low) / range).round() as u8).collect()
 }
 
 #[cfg(test)]
@@ -188,7 +244,7 @@ mod tests {
         dn[417 * 1000 + 333] = 900;
         let pixels = Pixels { columns: 1000, rows: 800, dn: &dn };
         let whole = Window { x: 0, y: 0, columns: 1000, rows: 800 };
-        let uri = png(pixels, whole).unwrap();
+        let uri = png(pixels, whole, Stretch::Stars).unwrap();
         let bytes = STANDARD.decode(uri.strip_prefix("data:image/png;base64,").unwrap()).unwrap();
         let image = image::load_from_memory(&bytes).unwrap().to_luma8();
         assert!((image.width() * image.height()) as usize <= 2 * MOST_SAMPLES);
@@ -199,6 +255,8 @@ mod tests {
     fn a_black_picture_is_black() {
         let dn = [0_u16; 12];
         let window = Window { x: 0, y: 0, columns: 4, rows: 3 };
-        assert!(png(Pixels { columns: 4, rows: 3, dn: &dn }, window).is_ok());
+        for stretch in [Stretch::Stars, Stretch::Linear] {
+            assert!(png(Pixels { columns: 4, rows: 3, dn: &dn }, window, stretch).is_ok());
+        }
     }
 }
