@@ -176,7 +176,7 @@ pub(super) fn bars(name: &str, x: Vec<String>, y: Vec<f64>) -> Box<Bar<String, f
 
 /// The layout of stacked bars.
 pub(super) fn stacked_bars(x_title: &str, y_title: &str) -> Layout {
-    axes(x_title, y_title).bar_mode(BarMode::Stack)
+    axes(x_title, y_title).bar_mode(BarMode::Stack).bar_gap(0.4)
 }
 
 /// The layout of one pair of axes.

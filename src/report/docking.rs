@@ -7,8 +7,8 @@ use plotly::Trace;
 use sim::docking::FieldTruth;
 
 use super::chart::{
-    BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, WRONG, band, bars, crosses, line, points, rounded, stacked,
-    stacked_bars,
+    BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, WRONG, band, bars, crosses, line, points, rounded,
+    stacked, stacked_bars,
 };
 use super::field_sheet::FieldSheet;
 use super::figures::{figure_table, shown_percent};
@@ -73,7 +73,8 @@ impl DockingRun {
     /// # Errors
     /// A [`Failure`] that names the file which is missing, cannot be read, or is not of the same fields as the others.
     pub fn read(directory: &Path) -> Result<Self, Failure> {
-        for name in ["score.json", "measurements.csv", "telemetry.csv", "setup.toml", "truth/fields.parquet"] {
+        for name in ["score.json", "measurements.csv", "telemetry.csv", "setup.toml", "truth/fields.parquet"]
+        {
             if !directory.join(name).is_file() {
                 return Err(missing(directory, name));
             }
@@ -97,7 +98,8 @@ impl DockingRun {
         }
         let mut answers = read_field_measurements(&measurements)?.into_iter().peekable();
         let mut rows = read_field_telemetry(&directory.join("telemetry.csv"))?.into_iter().peekable();
-        let mut said = motion.as_deref().map(read_motion).transpose()?.unwrap_or_default().into_iter().peekable();
+        let mut said =
+            motion.as_deref().map(read_motion).transpose()?.unwrap_or_default().into_iter().peekable();
         let (mut outcomes, mut telemetry, mut reports) = (Vec::new(), Vec::new(), Vec::new());
         for (row, truth) in truths.iter().enumerate() {
             outcomes.push(answers.next_if(|(field, _)| *field == truth.field).map(|(_, outcome)| outcome));
@@ -186,16 +188,30 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldSheet) -> Result<Page, Failur
 /// Figures by range, and all of them.
 fn figures_section(run: &DockingRun) -> Section {
     let score = &run.score;
-    let mut table = DataTable::new(["range", "fields", "reports", "success", "of clear ones", "range alone", "wrong", "missed"])
-        .caption("Percent, with 95 % intervals, by true range and lens.");
+    let mut table = DataTable::new([
+        "range",
+        "fields",
+        "reports",
+        "success",
+        "of clear ones",
+        "range alone",
+        "wrong",
+        "missed",
+    ])
+    .caption("Percent, with 95 % intervals, by true range and lens.");
     let rates = ["success_rate", "clear_success_rate", "range_only_rate", "wrong_rate", "miss_rate"];
-    let groups = score.groups.iter().map(|(name, group)| (name.as_str(), group.frames, group.portions, &group.figures));
-    for (name, frames, portions, figures) in groups.chain([("all", score.frames, score.portions, &score.figures)]) {
+    let groups = score
+        .groups
+        .iter()
+        .map(|(name, group)| (name.as_str(), group.frames, group.portions, &group.figures));
+    for (name, frames, portions, figures) in
+        groups.chain([("all", score.frames, score.portions, &score.figures)])
+    {
         let mut cells = vec![name.to_owned(), frames.to_string(), portions.to_string()];
         cells.extend(rates.map(|rate| figures.get(rate).map_or_else(String::new, shown_percent)));
         table.push(cells);
     }
-    Section::new("figures", "Figures").table(table).table(figure_table(&score.figures))
+    Section::new("figures", "Figures").table(table).folded("All figures", figure_table(&score.figures))
 }
 
 /// Figs. 5 and 6: the motion and its accuracy.
@@ -280,7 +296,8 @@ fn motion_sections(run: &DockingRun) -> [Section; 2] {
     for (name, unit, _) in PARAMETERS {
         head.extend(["number", "smallest", "mean", "largest"].map(|what| format!("{name}, {unit}: {what}")));
     }
-    let mut data = DataTable::new(head).caption("Errors of the best estimate, measured minus true, by stretches of time.");
+    let mut data = DataTable::new(head)
+        .caption("Errors of the best estimate, measured minus true, by stretches of time.");
     for bin in bins(best.len(), TABLE_BINS) {
         let mut cells = vec![format!("{:.2}", best[bin.start].0)];
         for i in 0..7 {
@@ -325,7 +342,13 @@ fn sigmas(best: &[(f64, usize, [f64; 7], [f64; 7])]) -> Chart {
         let (t, _, _, sigmas) = &best[bin.start];
         data.push([format!("{t:.2}")].into_iter().chain(sigmas.iter().map(|sigma| format!("{sigma:.5}"))));
     }
-    Chart::new("Standard deviations that the pipeline tells, at the last moment of every portion.", 640, data, traces, layout)
+    Chart::new(
+        "Standard deviations that the pipeline tells, at the last moment of every portion.",
+        640,
+        data,
+        traces,
+        layout,
+    )
 }
 
 /// Limits of an axis that shows all but the wildest hundredth of some values.
@@ -377,7 +400,8 @@ fn field_errors(run: &DockingRun) -> Section {
     for name in names {
         head.extend(["number", "smallest", "mean", "largest"].map(|what| format!("{name}: {what}")));
     }
-    let mut data = DataTable::new(head).caption("By stretches of measured fields; measurements.csv has every field.");
+    let mut data =
+        DataTable::new(head).caption("By stretches of measured fields; measurements.csv has every field.");
     for bin in bins(rows.len(), TABLE_BINS) {
         let mut cells = vec![format!("{:.2}", run.truths[rows[bin.start]].time_s)];
         for i in 0..6 {
@@ -399,7 +423,13 @@ fn field_errors(run: &DockingRun) -> Section {
 fn verdicts(run: &DockingRun) -> Section {
     let score = &run.score;
     let groups: Vec<String> = score.groups.keys().cloned().collect();
-    let mut data = DataTable::new(["what", "cause"].map(str::to_owned).into_iter().chain(groups.iter().cloned()).chain(["all".to_owned()]));
+    let mut data = DataTable::new(
+        ["what", "cause"]
+            .map(str::to_owned)
+            .into_iter()
+            .chain(groups.iter().cloned())
+            .chain(["all".to_owned()]),
+    );
     let mut traces: Vec<Box<dyn Trace>> = Vec::new();
     let mut add = |what: &str, cause: &str, counts: Vec<u64>, all: u64| {
         if all == 0 {
@@ -414,9 +444,13 @@ fn verdicts(run: &DockingRun) -> Section {
         let name = if cause.is_empty() { what.to_owned() } else { format!("{what}: {cause}") };
         traces.push(bars(&name, groups.clone(), percent.collect()).hover_template("%{x}: %{y} %"));
     };
-    let counted = |of: &dyn Fn(&crate::score::docking::DockingGroup) -> u64| score.groups.values().map(of).collect::<Vec<u64>>();
+    let counted = |of: &dyn Fn(&crate::score::docking::DockingGroup) -> u64| {
+        score.groups.values().map(of).collect::<Vec<u64>>()
+    };
     for name in ["success_rate", "range_only_rate"] {
-        let count = |figures: &indexmap::IndexMap<String, crate::score::Figure>| figures.get(name).map_or(0, |figure| figure.count);
+        let count = |figures: &indexmap::IndexMap<String, crate::score::Figure>| {
+            figures.get(name).map_or(0, |figure| figure.count)
+        };
         let what = if name == "success_rate" { "success" } else { "range alone" };
         add(what, "", counted(&|group| count(&group.figures)), count(&score.figures));
     }

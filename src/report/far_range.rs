@@ -9,8 +9,8 @@ use plotly::{Layout, Trace};
 use sim::truth::{FrameTruth, Observer};
 
 use super::chart::{
-    BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, WRONG, axes, bars, crosses, dashed, line, points, rounded,
-    stacked, stacked_bars,
+    BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, WRONG, axes, bars, crosses, dashed, line, points,
+    rounded, stacked, stacked_bars,
 };
 use super::figures::{figure_table, shown_percent};
 use super::frame_sheet::FrameSheet;
@@ -189,12 +189,20 @@ fn figures_section(run: &FarRangeRun) -> Section {
     let mut head = vec![String::new()];
     head.extend(groups.iter().map(|group| (*group).clone()));
     head.push("all".to_owned());
-    let mut table = DataTable::new(head)
-        .caption("Percent, with 95 % intervals; rates of the errors are of the frames with a detected target.");
-    let columns = || score.groups.values().map(|group| (group.frames, &group.figures)).chain([(score.frames, &score.figures)]);
+    let mut table = DataTable::new(head).caption(
+        "Percent, with 95 % intervals; rates of the errors are of the frames with a detected target.",
+    );
+    let columns = || {
+        score
+            .groups
+            .values()
+            .map(|group| (group.frames, &group.figures))
+            .chain([(score.frames, &score.figures)])
+    };
     let row = |name: &str, cells: Vec<String>| [name.to_owned()].into_iter().chain(cells).collect::<Vec<_>>();
     table.push(row("images", columns().map(|(frames, _)| frames.to_string()).collect()));
-    let labels = ["hit rate", "RA error < 0.024°", "RA error < 0.048°", "Dec error < 0.024°", "Dec error < 0.048°"];
+    let labels =
+        ["hit rate", "RA error < 0.024°", "RA error < 0.048°", "Dec error < 0.024°", "Dec error < 0.048°"];
     for ((name, rates), label) in ARGON_TABLE_2.rates().into_iter().zip(labels) {
         let ours = columns().map(|(_, figures)| figures.get(name).map_or_else(String::new, shown_percent));
         table.push(row(label, ours.collect()));
@@ -222,7 +230,7 @@ fn figures_section(run: &FarRangeRun) -> Section {
             distance.mean_points, distance.worst_points
         ));
     }
-    section.table(table).table(figure_table(&score.figures))
+    section.table(table).folded("All figures", figure_table(&score.figures))
 }
 
 /// Fig. 3: the target in the image.
@@ -255,13 +263,21 @@ fn track(run: &FarRangeRun) -> Section {
     let numbered = |rows: &[usize]| rows.iter().map(|&row| run.truths[row].frame).collect::<Vec<_>>();
     let hover = "frame %{customdata}<br>x %{x} px, y %{y} px";
     let traces: Vec<Box<dyn Trace>> = vec![
-        points("true", tx, ty, REFERENCE).custom_data(numbered(&true_rows)).hover_template(hover).opacity(0.5),
+        points("true", tx, ty, REFERENCE)
+            .custom_data(numbered(&true_rows))
+            .hover_template(hover)
+            .opacity(0.5),
         points("measured, right", rx, ry, MEASURED).custom_data(numbered(&right)).hover_template(hover),
         crosses("measured, wrong", wx, wy, WRONG).custom_data(numbered(&wrong)).hover_template(hover),
     ];
     let (columns, rows) = (camera.columns as f64, camera.rows as f64);
     let layout = Layout::new()
-        .x_axis(Axis::new().title("x, px (columns)").range(vec![-0.5, columns - 0.5]).constrain(AxisConstrain::Domain))
+        .x_axis(
+            Axis::new()
+                .title("x, px (columns)")
+                .range(vec![-0.5, columns - 0.5])
+                .constrain(AxisConstrain::Domain),
+        )
         .y_axis(
             Axis::new()
                 .title("y, px (rows, downwards)")
@@ -300,14 +316,12 @@ fn by_bins(run: &FarRangeRun, columns: &[BinColumn<'_>]) -> DataTable {
     for (name, _, _) in columns {
         head.extend(["number", "smallest", "mean", "largest"].map(|what| format!("{name}: {what}")));
     }
-    let mut table = DataTable::new(head)
-        .caption("A line is a stretch of frames; measurements.csv and truth/frames.parquet have every frame.");
+    let mut table = DataTable::new(head).caption(
+        "A line is a stretch of frames; measurements.csv and truth/frames.parquet have every frame.",
+    );
     for bin in bins(run.truths.len(), TABLE_BINS) {
         let first = &run.truths[bin.start];
-        let mut cells = vec![
-            shown_time(first),
-            format!("{}–{}", first.frame, run.truths[bin.end - 1].frame),
-        ];
+        let mut cells = vec![shown_time(first), format!("{}–{}", first.frame, run.truths[bin.end - 1].frame)];
         for (_, value, decimals) in columns {
             cells.extend(summary(bin.clone().map(value), *decimals));
         }
@@ -356,15 +370,17 @@ fn errors(run: &FarRangeRun) -> Section {
         }
         Panel { range: Some([-limit, limit]), ..Panel::new(title, traces) }
     };
-    let (traces, layout) =
-        stacked("time, UTC", vec![panel(0, "RA error, °"), panel(1, "Dec error, °")]);
+    let (traces, layout) = stacked("time, UTC", vec![panel(0, "RA error, °"), panel(1, "Dec error, °")]);
     let right_only = |row: usize, index: usize| match run.verdicts[row].verdict {
         Verdict::Correct { .. } => component(row, index),
         _ => f64::NAN,
     };
     let data = by_bins(
         run,
-        &[("RA error of the right, °", &|row| right_only(row, 0), 4), ("Dec error of the right, °", &|row| right_only(row, 1), 4)],
+        &[
+            ("RA error of the right, °", &|row| right_only(row, 0), 4),
+            ("Dec error of the right, °", &|row| right_only(row, 1), 4),
+        ],
     );
     Section::new("fig-5", "Fig. 5: errors of right ascension and declination").chart(Chart::new(
         format!(
@@ -390,14 +406,18 @@ fn regions(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, Failure> {
         _ => None,
     };
     let mut by_error: Vec<usize> = (0..run.verdicts.len()).filter(|&row| dec(row).is_some()).collect();
-    by_error.sort_by(|&a, &b| dec(b).partial_cmp(&dec(a)).unwrap_or(std::cmp::Ordering::Equal).then(a.cmp(&b)));
+    by_error
+        .sort_by(|&a, &b| dec(b).partial_cmp(&dec(a)).unwrap_or(std::cmp::Ordering::Equal).then(a.cmp(&b)));
     let truncated = sheet.first_region(run, by_error.iter().copied().take(12), |cut| cut > 0.05)?;
     // As near as possible, where the image is as large as that of the other.
-    let mut near: Vec<usize> = by_error.iter().copied().filter(|&row| dec(row).is_some_and(|e| e < 0.024)).collect();
+    let mut near: Vec<usize> =
+        by_error.iter().copied().filter(|&row| dec(row).is_some_and(|e| e < 0.024)).collect();
     near.sort_by(|&a, &b| run.truths[a].range_km.total_cmp(&run.truths[b].range_km).then(a.cmp(&b)));
     let whole = sheet.first_region(run, near.into_iter().take(24), |cut| cut < 0.02)?;
     let note = match (&whole, &truncated) {
-        (Some(_), Some(_)) => "Left whole, right truncated: the camera keeps regions of a fixed size, and of a target larger than one the rest is lost.",
+        (Some(_), Some(_)) => {
+            "Left whole, right truncated: the camera keeps regions of a fixed size, and of a target larger than one the rest is lost."
+        }
         (Some(_), None) => "No target of this run was cut by its region.",
         (None, Some(_)) => "Every target of this run that is near enough was cut by its region.",
         (None, None) => "No frame of this run shows a region with the target alone.",
@@ -416,7 +436,8 @@ fn stars(run: &FarRangeRun) -> Section {
     if told.is_empty() {
         return section.text("The pipeline does not tell how many stars it identified.");
     }
-    let rows: Vec<usize> = thinned(told.len(), &[&|i| number(told[i])]).into_iter().map(|i| told[i]).collect();
+    let rows: Vec<usize> =
+        thinned(told.len(), &[&|i| number(told[i])]).into_iter().map(|i| told[i]).collect();
     let mut sum = 0.0;
     let mut means = Vec::with_capacity(told.len());
     for (place, &row) in told.iter().enumerate() {
@@ -473,9 +494,8 @@ fn mounting(run: &FarRangeRun) -> Section {
     if told.is_empty() {
         return section.text("The pipeline does not tell the camera's attitude.");
     }
-    let truth = |row: usize| {
-        degrees(run.truths[row].camera_from_icrs * run.truths[row].body_from_icrs.inverse())
-    };
+    let truth =
+        |row: usize| degrees(run.truths[row].camera_from_icrs * run.truths[row].body_from_icrs.inverse());
     let every = thinned(count, &[]);
     let panels = ["φ, °", "θ, °", "ψ, °"].into_iter().enumerate().map(|(index, title)| {
         let rows: Vec<usize> =
@@ -600,7 +620,8 @@ fn causes(run: &FarRangeRun) -> Section {
 fn frames(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, Failure> {
     let mut chosen: Vec<usize> = Vec::new();
     let mut middle = |is: &dyn Fn(&Verdict) -> bool| {
-        let rows: Vec<usize> = (0..run.verdicts.len()).filter(|&row| is(&run.verdicts[row].verdict)).collect();
+        let rows: Vec<usize> =
+            (0..run.verdicts.len()).filter(|&row| is(&run.verdicts[row].verdict)).collect();
         chosen.extend(rows.get(rows.len() / 2));
     };
     middle(&|verdict| matches!(verdict, Verdict::Correct { .. }));

@@ -34,10 +34,12 @@ impl FieldSheet {
         let source = ScenarioSource::read(&path.to_string_lossy())?;
         let simulator = source.docking_simulator(source.docking("the report of a docking run")?);
         Ok(Self {
-            simulator: simulator.map(|simulator| {
-                let setup = simulator.setup();
-                (simulator, setup)
-            }).map_err(|failure| failure.to_string()),
+            simulator: simulator
+                .map(|simulator| {
+                    let setup = simulator.setup();
+                    (simulator, setup)
+                })
+                .map_err(|failure| failure.to_string()),
             features: Some(directory.join("features.parquet")).filter(|path| path.is_file()),
         })
     }
@@ -61,10 +63,8 @@ impl FieldSheet {
             let exposure = DockingRenderer::Fast.expose(simulator, setup, &mut workspace, truth.field)?;
             let field = exposure.video.digitise(&run.telemetry[row].telemetry.digitiser);
             let image = field.image();
-            let lines = RowPlace {
-                first: field.lines().camera_row(0) as f64,
-                pitch: field.lines().step() as f64,
-            };
+            let lines =
+                RowPlace { first: field.lines().camera_row(0) as f64, pitch: field.lines().step() as f64 };
             let window = window(truth, &features, (image.columns(), image.rows()), lines);
             let pixels = Pixels { columns: image.columns(), rows: image.rows(), dn: image.dn() };
             let mut picture = Picture::new(pixels, window, lines, Stretch::Linear)?;
@@ -114,10 +114,16 @@ fn capital(word: &str) -> String {
 }
 
 /// The window around what was recognised, or around the true target; the whole field where neither is in it.
-fn window(truth: &FieldTruth, features: &[FeatureRow], (columns, rows): (usize, usize), lines: RowPlace) -> Window {
+fn window(
+    truth: &FieldTruth,
+    features: &[FeatureRow],
+    (columns, rows): (usize, usize),
+    lines: RowPlace,
+) -> Window {
     let circle = features.iter().find(|row| row.kind == "circle");
     let recognised = circle.map(|row| (row.position, row.radius_px.unwrap_or(0.0)));
-    let of_truth = truth.disk_centre.map(|centre| ([centre.x, centre.y], truth.circle_radius_px.unwrap_or(0.0)));
+    let of_truth =
+        truth.disk_centre.map(|centre| ([centre.x, centre.y], truth.circle_radius_px.unwrap_or(0.0)));
     let whole = Window { x: 0, y: 0, columns, rows };
     let Some(([x, y], radius)) = recognised.or(of_truth) else { return whole };
     let row = (y - lines.first) / lines.pitch;
@@ -159,7 +165,11 @@ fn feature_mark(row: &FeatureRow) -> Mark {
         "cross" => (Shape::Cross(9.0), "measured", format!("cross, recognised: {place}")),
         "mark" => {
             let class = if row.usage == "used" { "measured" } else { "other" };
-            (Shape::Circle(3.0), class, format!("mark {}, {}: {place}", row.index, row.usage.replace('_', " ")))
+            (
+                Shape::Circle(3.0),
+                class,
+                format!("mark {}, {}: {place}", row.index, row.usage.replace('_', " ")),
+            )
         }
         kind => {
             let radius = row.radius_px.filter(|radius| radius.is_finite()).unwrap_or(3.0);

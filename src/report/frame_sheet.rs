@@ -81,10 +81,12 @@ impl FrameSheet {
         for row in rows {
             let exposure = camera.expose(run.truths[row].frame)?;
             let Some(target) = target(&exposure).filter(|target| is_wanted(target.cut)) else { continue };
-            let (x, y) = (target.position.x.round().max(0.0) as usize, target.position.y.round().max(0.0) as usize);
+            let (x, y) =
+                (target.position.x.round().max(0.0) as usize, target.position.y.round().max(0.0) as usize);
             let windows = exposure.frame.windows().unwrap_or_default();
             let Some(region) = windows.iter().find(|w| w.contains(x, y)) else { continue };
-            let corner = |dx: usize, dy: usize| PixelPoint::new((region.x + dx) as f64, (region.y + dy) as f64);
+            let corner =
+                |dx: usize, dy: usize| PixelPoint::new((region.x + dx) as f64, (region.y + dy) as f64);
             let around = [corner(0, 0), corner(region.columns - 1, region.rows - 1), target.position];
             let mut picture = picture_of(&exposure, &around, 6.0)?;
             picture.title = if target.cut < 0.02 { "Whole.".to_owned() } else { "Truncated.".to_owned() };
@@ -162,11 +164,13 @@ pub(super) fn framed(
     clusters: &[Cluster],
 ) -> Result<Picture, Failure> {
     let measured = outcome.and_then(Outcome::measurement).map(|measured| measured.position);
-    let points: Vec<PixelPoint> = target(exposure).map(|target| target.position).into_iter().chain(measured).collect();
+    let points: Vec<PixelPoint> =
+        target(exposure).map(|target| target.position).into_iter().chain(measured).collect();
     let mut picture = picture_of(exposure, &points, 36.0)?;
     let window = picture.window;
     let is_shown = |at: PixelPoint| {
-        let inside = |at: f64, from: usize, count: usize| at > from as f64 - 1.0 && at < (from + count) as f64;
+        let inside =
+            |at: f64, from: usize, count: usize| at > from as f64 - 1.0 && at < (from + count) as f64;
         inside(at.x, window.x, window.columns) && inside(at.y, window.y, window.rows)
     };
     picture.marks = regions(exposure);
@@ -224,7 +228,12 @@ fn other_mark(object: &ObjectTruth) -> Mark {
         at: object.position,
         shape: Shape::Circle(object.radius_px.clamp(2.5, 12.0)),
         class: if is_star { "star" } else { "other" },
-        title: format!("{} {}{magnitude}, SNR {:.1}", object.kind.code().replace('_', " "), object.id, object.snr),
+        title: format!(
+            "{} {}{magnitude}, SNR {:.1}",
+            object.kind.code().replace('_', " "),
+            object.id,
+            object.snr
+        ),
     }
 }
 

@@ -4,7 +4,8 @@
 //! else. Charts are those of a charting library ([`Chart`]), with the numbers in a table behind each; pictures ([`Picture`]) are of frames
 //! that the simulator renders anew, one by one ([`FrameSheet`]). It asks nothing of any network.
 //!
-//! - [`far_range_page`]: a far-range run.
+//! - [`far_range_page`], [`docking_page`]: a run; [`study_page`]: a study; [`visibility_page`]: the answer to requirements; [`gate_page`]: what a
+//!   gate found.
 //! - [`report_of`]: whatever a directory holds; [`write_page`] puts it into a file.
 
 mod chart;
@@ -13,10 +14,13 @@ mod far_range;
 mod field_sheet;
 mod figures;
 mod frame_sheet;
+mod gate;
 mod page;
 mod picture;
 mod read;
+mod study;
 mod thin;
+mod visibility;
 
 use std::io::Write;
 use std::path::Path;
@@ -28,9 +32,12 @@ pub use docking::{DockingRun, docking_page};
 pub use far_range::{FarRangeRun, far_range_page};
 pub use field_sheet::FieldSheet;
 pub use frame_sheet::FrameSheet;
+pub use gate::{FlippedFrames, gate_page};
 pub use page::{Block, DataTable, Page, Section};
 pub use picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
 pub use read::ResultKind;
+pub use study::{StudyResult, study_page};
+pub use visibility::{read_visibility, visibility_page};
 
 use crate::failure::Failure;
 use crate::files::FileError;
@@ -58,8 +65,8 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
                 World::Docking => docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?),
             }
         }
-        ResultKind::Study => todo_docking(directory),
-        ResultKind::Visibility => todo_docking(directory),
+        ResultKind::Study => Ok(study_page(&StudyResult::read(directory)?)),
+        ResultKind::Visibility => Ok(visibility_page(&read_visibility(directory)?)),
     }
 }
 
@@ -69,10 +76,6 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
 /// As [`report_of`].
 pub fn far_range_report(directory: &Path, verdicts: Vec<FrameVerdict>) -> Result<Page, Failure> {
     far_range_page(&FarRangeRun::with_verdicts(directory, verdicts)?, &FrameSheet::open(directory)?)
-}
-
-fn todo_docking(_: &Path) -> Result<Page, Failure> {
-    Err(Failure::Usage("not yet".to_owned()))
 }
 
 /// Writes a page, at once or not at all; a report that was there is replaced. Returns its length, bytes.

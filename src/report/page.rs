@@ -72,6 +72,18 @@ impl Section {
         self
     }
 
+    /// With small charts at its end, two side by side.
+    pub fn charts(mut self, charts: Vec<Chart>) -> Self {
+        self.blocks.push(Block::Charts(charts));
+        self
+    }
+
+    /// With a table at its end that is folded away under some words.
+    pub fn folded(mut self, words: impl Into<String>, table: DataTable) -> Self {
+        self.blocks.push(Block::Folded(words.into(), table));
+        self
+    }
+
     /// With pictures at its end, side by side.
     pub fn pictures(mut self, pictures: Vec<Picture>) -> Self {
         self.blocks.push(Block::Pictures(pictures));
@@ -88,6 +100,10 @@ pub enum Block {
     Table(DataTable),
     /// A chart with the table behind it.
     Chart(Chart),
+    /// Small charts, two side by side where there is room.
+    Charts(Vec<Chart>),
+    /// A table that is folded away until a reader opens it, and the words that it is folded under.
+    Folded(String, DataTable),
     /// Pictures side by side.
     Pictures(Vec<Picture>),
 }
@@ -101,6 +117,8 @@ pub struct DataTable {
     pub head: Vec<String>,
     /// The rows, each as long as the head.
     pub rows: Vec<Vec<String>>,
+    /// Whether its cells are sentences rather than numbers.
+    pub is_wordy: bool,
 }
 
 impl DataTable {
@@ -112,6 +130,12 @@ impl DataTable {
     /// With a line above it.
     pub fn caption(mut self, caption: impl Into<String>) -> Self {
         self.caption = caption.into();
+        self
+    }
+
+    /// Of sentences rather than numbers.
+    pub fn wordy(mut self) -> Self {
+        self.is_wordy = true;
         self
     }
 

@@ -151,8 +151,7 @@ pub(super) fn window_around(points: &[PixelPoint], margin_px: f64, columns: usiz
         low = PixelPoint::new(low.x.min(point.x), low.y.min(point.y));
         high = PixelPoint::new(high.x.max(point.x), high.y.max(point.y));
     }
-    let width = (high.x - low.x + 2.0 * margin_px)
-        .max((high.y - low.y + 2.0 * margin_px) * 4.0 / 3.0);
+    let width = (high.x - low.x + 2.0 * margin_px).max((high.y - low.y + 2.0 * margin_px) * 4.0 / 3.0);
     let side = |middle: f64, length: f64, limit: usize| {
         let length = (length.ceil() as usize).min(limit);
         let start = (middle - length as f64 / 2.0).round().max(0.0) as usize;
