@@ -10,7 +10,7 @@ use super::page::{DataTable, script_safe};
 /// What is true.
 pub(super) const TRUTH: &str = "#2f9e69";
 /// What was measured, and is right.
-pub(super) const MEASURED: &str = "#2f7fc1";
+pub(super) const MEASURED: &str = "#3686c9";
 /// What was measured, and is wrong.
 pub(super) const WRONG: &str = "#c9415a";
 /// A second thing beside the measured one: a mean, a limit.
@@ -92,7 +92,7 @@ pub(super) fn points<X: Serialize + Clone + 'static>(
     y: Vec<f64>,
     colour: &'static str,
 ) -> Box<Scatter<X, f64>> {
-    let marker = Marker::new().size(4).color(colour).opacity(0.75);
+    let marker = Marker::new().size(4).color(colour).opacity(0.85);
     Scatter::new(x, y).name(plain(name)).mode(Mode::Markers).marker(marker)
 }
 

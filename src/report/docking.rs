@@ -11,7 +11,7 @@ use super::chart::{
     stacked, stacked_bars,
 };
 use super::field_sheet::FieldSheet;
-use super::figures::{figure_table, shown_percent};
+use super::figures::{figure_table, percent_cell, shown_percent};
 use super::page::{DataTable, Page, Section};
 use super::read::{missing, read_json};
 use super::thin::{bins, summary, thinned};
@@ -208,7 +208,7 @@ fn figures_section(run: &DockingRun) -> Section {
         groups.chain([("all", score.frames, score.portions, &score.figures)])
     {
         let mut cells = vec![name.to_owned(), frames.to_string(), portions.to_string()];
-        cells.extend(rates.map(|rate| figures.get(rate).map_or_else(String::new, shown_percent)));
+        cells.extend(rates.map(|rate| percent_cell(figures.get(rate))));
         table.push(cells);
     }
     Section::new("figures", "Figures").table(table).folded("All figures", figure_table(&score.figures))

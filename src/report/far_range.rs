@@ -12,7 +12,7 @@ use super::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, WRONG, axes, bars, crosses, dashed, line, points,
     rounded, stacked, stacked_bars,
 };
-use super::figures::{figure_table, shown_percent};
+use super::figures::{figure_table, percent_cell, shown_percent};
 use super::frame_sheet::FrameSheet;
 use super::page::{DataTable, Page, Section};
 use super::read::{missing, read_json};
@@ -113,6 +113,22 @@ fn check_files(directory: &Path) -> Result<(), Failure> {
     }
 }
 
+/// A line through some rows of a run, in order, that breaks where another group begins: days are apart.
+fn broken(run: &FarRangeRun, rows: impl Iterator<Item = (usize, f64)>) -> (Vec<String>, Vec<f64>) {
+    let (mut times, mut values) = (Vec::new(), Vec::new());
+    let mut last: Option<usize> = None;
+    for (row, value) in rows {
+        if last.is_some_and(|last| run.verdicts[last].group != run.verdicts[row].group) {
+            times.push(time_word(&run.truths[row]));
+            values.push(f64::NAN);
+        }
+        times.push(time_word(&run.truths[row]));
+        values.push(value);
+        last = Some(row);
+    }
+    (times, values)
+}
+
 /// The time of a frame to the second, for people.
 fn shown_time(truth: &FrameTruth) -> String {
     time_word(truth).get(..19).unwrap_or_default().replace('T', " ")
@@ -204,7 +220,7 @@ fn figures_section(run: &FarRangeRun) -> Section {
     let labels =
         ["hit rate", "RA error < 0.024°", "RA error < 0.048°", "Dec error < 0.024°", "Dec error < 0.048°"];
     for ((name, rates), label) in ARGON_TABLE_2.rates().into_iter().zip(labels) {
-        let ours = columns().map(|(_, figures)| figures.get(name).map_or_else(String::new, shown_percent));
+        let ours = columns().map(|(_, figures)| percent_cell(figures.get(name)));
         table.push(row(label, ours.collect()));
         if published.is_some() {
             // A group is the paper's day of the same name; all is the paper's only where every frame was flown.
@@ -221,7 +237,7 @@ fn figures_section(run: &FarRangeRun) -> Section {
     let mut section = Section::new("table-2", title);
     if published.is_some() {
         section = section.text(
-            "Published: Benninghoff, Tzschichholz, Boge and Gaias, the ARGON experiment of PRISMA, 23–27 April 2012, their Table 2.",
+            "Published: Benninghoff, Tzschichholz, Boge and Gaias, the ARGON experiment of PRISMA, 23–27 April 2012, their Table 2; its figures are of whole days.",
         );
     }
     if let Some(distance) = published.and_then(|table| table.distance(score)) {
@@ -409,17 +425,18 @@ fn regions(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, Failure> {
     by_error
         .sort_by(|&a, &b| dec(b).partial_cmp(&dec(a)).unwrap_or(std::cmp::Ordering::Equal).then(a.cmp(&b)));
     let truncated = sheet.first_region(run, by_error.iter().copied().take(12), |cut| cut > 0.05)?;
-    // As near as possible, where the image is as large as that of the other.
+    // The nearest of some ranges from near to far: there the image is as large as that of the other.
     let mut near: Vec<usize> =
-        by_error.iter().copied().filter(|&row| dec(row).is_some_and(|e| e < 0.024)).collect();
+        by_error.iter().copied().filter(|&row| dec(row).is_some_and(|error| error < 0.012)).collect();
     near.sort_by(|&a, &b| run.truths[a].range_km.total_cmp(&run.truths[b].range_km).then(a.cmp(&b)));
-    let whole = sheet.first_region(run, near.into_iter().take(24), |cut| cut < 0.02)?;
+    let step = near.len().div_ceil(30).max(1);
+    let whole = sheet.first_region(run, near.into_iter().step_by(step), |cut| cut < 0.02)?;
     let note = match (&whole, &truncated) {
         (Some(_), Some(_)) => {
             "Left whole, right truncated: the camera keeps regions of a fixed size, and of a target larger than one the rest is lost."
         }
         (Some(_), None) => "No target of this run was cut by its region.",
-        (None, Some(_)) => "Every target of this run that is near enough was cut by its region.",
+        (None, Some(_)) => "No target of this run was found whole in its region.",
         (None, None) => "No frame of this run shows a region with the target alone.",
     };
     let pictures: Vec<_> = whole.into_iter().chain(truncated).collect();
@@ -448,6 +465,8 @@ fn stars(run: &FarRangeRun) -> Section {
         means.push(sum / MEAN_OF.min(place + 1) as f64);
     }
     let mean_rows = thinned(told.len(), &[&|i| means[i]]);
+    let (mean_times, mean_values) =
+        broken(run, mean_rows.into_iter().map(|i| (told[i], rounded(means[i], 2))));
     let least = run.run_file.scenario.far_range.attitude.min_stars;
     let ends = vec![time_word(&run.truths[0]), time_word(&run.truths[count - 1])];
     let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
@@ -456,12 +475,7 @@ fn stars(run: &FarRangeRun) -> Section {
             .opacity(0.5)
             .custom_data(frames)
             .hover_template("frame %{customdata}<br>%{x}<br>%{y} stars"),
-        line(
-            "mean of the last 100 images",
-            mean_rows.iter().map(|&i| time_word(&run.truths[told[i]])).collect(),
-            mean_rows.iter().map(|&i| rounded(means[i], 2)).collect(),
-            BESIDE,
-        ),
+        line("mean of the last 100 images", mean_times, mean_values, BESIDE),
         dashed("least for an attitude", ends, vec![f64::from(least); 2], REFERENCE),
     ];
     let data = by_bins(run, &[("stars", &number, 1)]);
@@ -501,11 +515,9 @@ fn mounting(run: &FarRangeRun) -> Section {
         let rows: Vec<usize> =
             thinned(told.len(), &[&|i| measured[told[i]][index]]).into_iter().map(|i| told[i]).collect();
         let y = rows.iter().map(|&row| rounded(measured[row][index], 5)).collect();
-        let true_y = every.iter().map(|&row| rounded(truth(row)[index], 5)).collect();
-        let traces = vec![
-            points("measured", run.times(&rows), y, MEASURED),
-            line("true", run.times(&every), true_y, TRUTH),
-        ];
+        let (true_x, true_y) = broken(run, every.iter().map(|&row| (row, rounded(truth(row)[index], 5))));
+        let traces =
+            vec![points("measured", run.times(&rows), y, MEASURED), line("true", true_x, true_y, TRUTH)];
         Panel::new(title, traces)
     });
     let (traces, layout) = stacked("time, UTC", panels.collect());
@@ -545,11 +557,15 @@ fn aberration(run: &FarRangeRun) -> Result<Section, Failure> {
         angles.push([in_camera.x.to_degrees(), in_camera.y.to_degrees(), correction.norm().to_degrees()]);
     }
     let times = run.times(&rows);
-    let y = |index: usize| angles.iter().map(|angle| rounded(angle[index], 6)).collect();
-    let traces: Vec<Box<dyn Trace>> = vec![
-        line("about x", times.clone(), y(0), MEASURED),
-        line("about y", times.clone(), y(1), BESIDE),
-        line("whole", times.clone(), y(2), REFERENCE),
+    let component = |name: &str, index: usize, colour| -> Box<dyn Trace> {
+        let values = rows.iter().zip(&angles).map(|(&row, angle)| (row, rounded(angle[index], 6)));
+        let (x, y) = broken(run, values);
+        line(name, x, y, colour)
+    };
+    let traces = vec![
+        component("about x", 0, MEASURED),
+        component("about y", 1, BESIDE),
+        component("whole", 2, REFERENCE),
     ];
     let mut data = DataTable::new(["time (UTC)", "about x, °", "about y, °", "whole, °"]);
     for bin in bins(rows.len(), TABLE_BINS) {

@@ -13,10 +13,18 @@ pub(super) fn shown_percent(figure: &Figure) -> String {
     format!("{:.2} %{}", 100.0 * value, interval.unwrap_or_default())
 }
 
+/// The same for a table that says percent above.
+pub(super) fn percent_cell(figure: Option<&Figure>) -> String {
+    figure.map_or_else(String::new, |figure| shown_percent(figure).replacen(" %", "", 1))
+}
+
 /// A number with four significant digits, or as it is when it is whole.
 pub(super) fn significant(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 { "0".to_owned() } else { "–".to_owned() };
+    if !value.is_finite() {
+        return "–".to_owned();
+    }
+    if value.fract() == 0.0 && value.abs() < 1e9 {
+        return format!("{value:.0}");
     }
     let places = 3 - libm::floor(libm::log10(value.abs())) as i32;
     match places {
@@ -63,6 +71,6 @@ mod tests {
     #[test]
     fn numbers_have_four_significant_digits() {
         let shown = [0.0, 1.0, 12.345_67, 0.001_234_56, 123_456.0, -2.0e-12, f64::NAN].map(significant);
-        assert_eq!(shown, ["0", "1.000", "12.35", "0.001235", "123456", "-2.000e-12", "–"]);
+        assert_eq!(shown, ["0", "1", "12.35", "0.001235", "123456", "-2.000e-12", "–"]);
     }
 }

@@ -22,10 +22,7 @@ mod study;
 mod thin;
 mod visibility;
 
-use std::io::Write;
 use std::path::Path;
-
-use tempfile::NamedTempFile;
 
 pub use chart::Chart;
 pub use docking::{DockingRun, docking_page};
@@ -86,8 +83,13 @@ pub fn write_page(page: &Page, path: &Path) -> Result<u64, Failure> {
     let html = page.html()?;
     let io = |doing| move |source| FileError::Io { path: path.to_owned(), doing, source };
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = NamedTempFile::new_in(folder).map_err(io("create"))?;
-    file.write_all(html.as_bytes()).map_err(io("write"))?;
-    file.persist(path).map_err(|error| io("create")(error.error))?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let partial = folder.join(format!(".{name}.{}.partial", std::process::id()));
+    let written = std::fs::write(&partial, &html).map_err(io("write"));
+    if let Err(error) = written.and_then(|()| std::fs::rename(&partial, path).map_err(io("create"))) {
+        // It may not be there.
+        let _ = std::fs::remove_file(&partial);
+        return Err(error.into());
+    }
     Ok(html.len() as u64)
 }

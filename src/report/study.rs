@@ -96,7 +96,7 @@ pub fn study_page(study: &StudyResult) -> Page {
 /// A value with its interval.
 fn shown(estimate: &Estimate) -> String {
     let interval = estimate.low.zip(estimate.high);
-    let interval = interval.map(|(low, high)| format!(" ({}–{})", significant(low), significant(high)));
+    let interval = interval.map(|(low, high)| format!(" ({} to {})", significant(low), significant(high)));
     format!("{}{}", significant(estimate.value), interval.unwrap_or_default())
 }
 
@@ -367,7 +367,7 @@ fn worst(study: &StudyResult) -> Section {
     let mut head = vec!["case".to_owned(), summary.worst_by.clone()];
     head.extend(drawn.iter().map(|name| (*name).clone()));
     head.push("runs it again".to_owned());
-    let mut table = DataTable::new(head);
+    let mut table = DataTable::new(head).wordy();
     for case in &summary.worst {
         let mut cells = vec![case.case.to_string(), significant(case.value)];
         cells.extend(drawn.iter().map(|name| match case.drawn.get(*name) {

@@ -250,7 +250,7 @@ fn sky(report: &VisibilityReport) -> Section {
             .hover_template("%{text}<extra></extra>")
     };
     let stars = counted.iter().map(|p| rounded(p.stars, 3)).collect();
-    let size = if sky.map.len() > 1500 { 5 } else { 7 };
+    let size = if sky.map.len() > 1500 { 6 } else { 7 };
     let coloured = Marker::new()
         .size(size)
         .color_array(stars)
