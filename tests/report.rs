@@ -144,6 +144,30 @@ fn a_run_with_injected_truth_says_so() {
 }
 
 #[test]
+fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
+    let bench = Bench::new();
+    bench.boresight("run argon --frames 300..310 --out honest --no-report").done();
+    for stage in ["roi", "attitude"] {
+        bench.boresight(&format!("run argon --frames 300..310 --inject {stage} --out {stage} --no-report")).done();
+    }
+    bench.boresight("report honest --budget roi --budget attitude").done();
+    let page = PageText::read(&bench, "honest/report.html");
+    page.check(&["budget"]);
+    let chart = page.charts().into_iter().find(|chart| chart.to_string().contains("RMS error")).unwrap();
+    assert_eq!(chart["data"][0]["x"], serde_json::json!(["none: the honest run", "attitude", "roi"]));
+    let own = bench.json("attitude/score.json")["figures"]["ra_rms_deg"]["value"].as_f64().unwrap();
+    assert!((chart["data"][0]["y"][1].as_f64().unwrap() - own).abs() < 1e-6);
+
+    bench.boresight("report honest --budget honest").refused(&["honest/run.toml", "`inject` is missing"]);
+    bench.boresight("report roi --budget attitude").refused(&["--budget", "honest run"]);
+    bench.boresight("run argon --frames 300..309 --inject attitude --out short --no-report").done();
+    bench.boresight("report honest --budget short").refused(&["short/run.toml", "other frames"]);
+    bench.boresight("run argon --seed 5 --frames 300..310 --inject attitude --out seed --no-report").done();
+    bench.boresight("report honest --budget seed").refused(&["seed/run.toml", "`scenario`"]);
+    bench.boresight("report honest --budget nowhere").refused(&["nowhere/run.toml"]);
+}
+
+#[test]
 fn the_page_of_a_docking_run_has_the_papers_figures_and_the_numbers_of_its_score() {
     let bench = Bench::new();
     bench.boresight("run docking --frames 15000..15060 --out run").done();

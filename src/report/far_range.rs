@@ -8,6 +8,7 @@ use plotly::layout::{Axis, AxisConstrain, AxisRange};
 use plotly::{Layout, Trace};
 use sim::truth::{FrameTruth, Observer};
 
+use super::budget::{InjectedRun, budget};
 use super::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, WRONG, axes, bars, crosses, dashed, line, points,
     rounded, stacked, stacked_bars,
@@ -45,6 +46,8 @@ pub struct FarRangeRun {
     pub outcomes: Vec<Option<Outcome>>,
     /// `telemetry.csv`, of the same frames.
     pub telemetry: Vec<TelemetryRow>,
+    /// Runs of the same frames with the truth for a stage each; empty where there is no error budget.
+    pub budget: Vec<InjectedRun>,
 }
 
 impl FarRangeRun {
@@ -94,7 +97,7 @@ impl FarRangeRun {
                 truths.len()
             )));
         }
-        Ok(Self { run_file, score, verdicts, truths, outcomes, telemetry })
+        Ok(Self { run_file, score, verdicts, truths, outcomes, telemetry, budget: Vec::new() })
     }
 
     /// Times of some frames, as the charts' axes take them.
@@ -172,6 +175,7 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Page, Fai
         mounting(run),
         aberration(run)?,
         causes(run),
+        budget(run),
         frames(run, sheet)?,
     ];
     sections.retain(|section| !section.blocks.is_empty());

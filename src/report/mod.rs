@@ -8,6 +8,7 @@
 //!   gate found.
 //! - [`report_of`]: whatever a directory holds; [`write_page`] puts it into a file.
 
+mod budget;
 mod chart;
 mod docking;
 mod far_range;
@@ -22,8 +23,9 @@ mod study;
 mod thin;
 mod visibility;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+pub use budget::InjectedRun;
 pub use chart::Chart;
 pub use docking::{DockingRun, docking_page};
 pub use far_range::{FarRangeRun, far_range_page};
@@ -65,6 +67,17 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
         ResultKind::Study => Ok(study_page(&StudyResult::read(directory)?)),
         ResultKind::Visibility => Ok(visibility_page(&read_visibility(directory)?)),
     }
+}
+
+/// The report of a far-range run with its error budget: `budget` are directories of runs of the same frames, each with the truth in the
+/// place of one stage's result.
+///
+/// # Errors
+/// As [`report_of`]; a [`Failure`] for a directory that is not of the same frames, or is an honest run.
+pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
+    let mut run = FarRangeRun::read(directory)?;
+    run.budget = InjectedRun::read_all(budget, &run)?;
+    far_range_page(&run, &FrameSheet::open(directory)?)
 }
 
 /// The report of a far-range run whose verdicts are at hand.
