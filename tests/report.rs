@@ -148,7 +148,9 @@ fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
     let bench = Bench::new();
     bench.boresight("run argon --frames 220..240 --out honest --no-report").done();
     for stage in ["roi", "attitude"] {
-        bench.boresight(&format!("run argon --frames 220..240 --inject {stage} --out {stage} --no-report")).done();
+        bench
+            .boresight(&format!("run argon --frames 220..240 --inject {stage} --out {stage} --no-report"))
+            .done();
     }
     bench.boresight("report honest --budget roi --budget attitude").done();
     let page = PageText::read(&bench, "honest/report.html");

@@ -64,6 +64,9 @@ impl Chart {
     }
 }
 
+/// Points or a line of numbers over x, in the box in which the charting library makes them.
+pub(super) type Curve<X> = Box<Scatter<X, f64>>;
+
 /// A number with so many decimals: more would only make the page longer.
 pub(super) fn rounded(value: f64, decimals: i32) -> f64 {
     let unit = (0..decimals).fold(1.0, |unit, _| unit * 10.0);
@@ -81,7 +84,7 @@ pub(super) fn line<X: Serialize + Clone + 'static>(
     x: Vec<X>,
     y: Vec<f64>,
     colour: &'static str,
-) -> Box<Scatter<X, f64>> {
+) -> Curve<X> {
     Scatter::new(x, y).name(plain(name)).mode(Mode::Lines).line(Line::new().width(1.6).color(colour))
 }
 
@@ -91,7 +94,7 @@ pub(super) fn points<X: Serialize + Clone + 'static>(
     x: Vec<X>,
     y: Vec<f64>,
     colour: &'static str,
-) -> Box<Scatter<X, f64>> {
+) -> Curve<X> {
     let marker = Marker::new().size(4).color(colour).opacity(0.85);
     Scatter::new(x, y).name(plain(name)).mode(Mode::Markers).marker(marker)
 }
@@ -102,7 +105,7 @@ pub(super) fn crosses<X: Serialize + Clone + 'static>(
     x: Vec<X>,
     y: Vec<f64>,
     colour: &'static str,
-) -> Box<Scatter<X, f64>> {
+) -> Curve<X> {
     let marker = Marker::new().size(6).color(colour).symbol(MarkerSymbol::X);
     Scatter::new(x, y).name(plain(name)).mode(Mode::Markers).marker(marker)
 }
@@ -115,7 +118,7 @@ pub(super) fn intervals<X: Serialize + Clone + 'static>(
     low: &[f64],
     high: &[f64],
     colour: &'static str,
-) -> Box<Scatter<X, f64>> {
+) -> Curve<X> {
     let up = high.iter().zip(&y).map(|(high, y)| (high - y).max(0.0)).collect();
     let down = low.iter().zip(&y).map(|(low, y)| (y - low).max(0.0)).collect();
     let bars = ErrorData::new(ErrorType::Data).symmetric(false).array(up).array_minus(down).thickness(1.2);
@@ -152,7 +155,7 @@ pub(super) fn band<X: Serialize + Clone + 'static>(
     low: Vec<f64>,
     high: Vec<f64>,
     fill: &'static str,
-) -> [Box<Scatter<X, f64>>; 2] {
+) -> [Curve<X>; 2] {
     let edge = |x, y| Scatter::new(x, y).mode(Mode::Lines).line(Line::new().width(0.0)).name(plain(name));
     let below = edge(x.clone(), low).show_legend(false);
     [below, edge(x, high).fill(Fill::ToNextY).fill_color(fill)]
@@ -164,7 +167,7 @@ pub(super) fn dashed<X: Serialize + Clone + 'static>(
     x: Vec<X>,
     y: Vec<f64>,
     colour: &'static str,
-) -> Box<Scatter<X, f64>> {
+) -> Curve<X> {
     let style = Line::new().width(1.2).color(colour).dash(DashType::Dash);
     Scatter::new(x, y).name(plain(name)).mode(Mode::Lines).line(style)
 }
@@ -194,13 +197,13 @@ pub(super) struct Panel<X: Serialize + Clone + 'static> {
     /// Title of its axis.
     pub(super) title: String,
     /// What is drawn in it.
-    pub(super) traces: Vec<Box<Scatter<X, f64>>>,
+    pub(super) traces: Vec<Curve<X>>,
     /// Limits of its axis; `None`: those of what is drawn.
     pub(super) range: Option<[f64; 2]>,
 }
 
 impl<X: Serialize + Clone + 'static> Panel<X> {
-    pub(super) fn new(title: impl Into<String>, traces: Vec<Box<Scatter<X, f64>>>) -> Self {
+    pub(super) fn new(title: impl Into<String>, traces: Vec<Curve<X>>) -> Self {
         Self { title: title.into(), traces, range: None }
     }
 }

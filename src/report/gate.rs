@@ -5,11 +5,9 @@ use std::path::Path;
 use plotly::Trace;
 
 use super::chart::{Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
-use super::docking::DockingRun;
-use super::far_range::FarRangeRun;
-use super::field_sheet::FieldSheet;
+use super::docking::{DockingRun, FieldSheet};
+use super::far_range::{FarRangeRun, FrameSheet};
 use super::figures::{cell, significant};
-use super::frame_sheet::FrameSheet;
 use super::page::{DataTable, Page, Section};
 use super::picture::Picture;
 use crate::failure::Failure;

@@ -8,13 +8,10 @@
 //!   gate found.
 //! - [`report_of`]: whatever a directory holds; [`write_page`] puts it into a file.
 
-mod budget;
 mod chart;
 mod docking;
 mod far_range;
-mod field_sheet;
 mod figures;
-mod frame_sheet;
 mod gate;
 mod page;
 mod picture;
@@ -25,12 +22,9 @@ mod visibility;
 
 use std::path::{Path, PathBuf};
 
-pub use budget::InjectedRun;
 pub use chart::Chart;
-pub use docking::{DockingRun, docking_page};
-pub use far_range::{FarRangeRun, far_range_page};
-pub use field_sheet::FieldSheet;
-pub use frame_sheet::FrameSheet;
+pub use docking::{DockingRun, FieldSheet, PortionReport, docking_page};
+pub use far_range::{FarRangeRun, FrameSheet, InjectedRun, far_range_page};
 pub use gate::{FlippedFrames, gate_page};
 pub use page::{Block, DataTable, Page, Section};
 pub use picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};

@@ -68,7 +68,7 @@ impl Section {
 
     /// With a chart at its end.
     pub fn chart(mut self, chart: Chart) -> Self {
-        self.blocks.push(Block::Chart(chart));
+        self.blocks.push(Block::Chart(Box::new(chart)));
         self
     }
 
@@ -99,7 +99,7 @@ pub enum Block {
     /// A table.
     Table(DataTable),
     /// A chart with the table behind it.
-    Chart(Chart),
+    Chart(Box<Chart>),
     /// Small charts, two side by side where there is room.
     Charts(Vec<Chart>),
     /// A table that is folded away until a reader opens it, and the words that it is folded under.

@@ -14,7 +14,7 @@ use super::thin::{bins, summary as summed, thinned};
 use crate::failure::Failure;
 use crate::files::FileError;
 use crate::score::{Better, Kind, sense};
-use crate::study::{CaseTable, Estimate, Summary};
+use crate::study::{CaseTable, Estimate, FigureSummary, Summary};
 
 /// Cases that a chart shows one by one in the table behind it; of more, a summary.
 const TABLE_BINS: usize = 60;
@@ -117,40 +117,34 @@ fn figures(study: &StudyResult) -> Section {
             estimate(&figure.p95),
         ]);
     }
-    let rates = summary.figures.iter().filter(|(name, _)| sense(name).kind == Kind::Rate);
-    let rates: Vec<(&String, Estimate, Option<(f64, f64)>)> = rates
-        .filter_map(|(name, figure)| {
-            let quantiles = figure.p05.zip(figure.p95).map(|(low, high)| (low.value, high.value));
-            Some((name, figure.all?, quantiles))
-        })
-        .collect();
+    let is_rate = |(name, _): &(&String, &FigureSummary)| sense(name).kind == Kind::Rate;
+    let rates = summary.figures.iter().filter(is_rate);
+    let rates: Vec<(&String, Estimate, &FigureSummary)> =
+        rates.filter_map(|(name, figure)| Some((name, figure.all?, figure))).collect();
     let section = Section::new("figures", "Figures");
     if rates.is_empty() {
         return section.table(table);
     }
-    // Downwards in the order of the table.
+    // Upwards as the axis goes, so that the first is on top.
+    let column = |number: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
+        rates.iter().rev().map(|(_, all, figure)| rounded(number(all, figure), 6)).collect()
+    };
     let names: Vec<String> = rates.iter().rev().map(|(name, _, _)| (*name).clone()).collect();
-    let all = |pick: &dyn Fn(&Estimate) -> f64| {
-        rates.iter().rev().map(|(_, all, _)| rounded(pick(all), 6)).collect::<Vec<_>>()
-    };
-    let cases = |pick: &dyn Fn((f64, f64)) -> f64| {
-        rates.iter().rev().map(|(_, _, quantiles)| quantiles.map_or(f64::NAN, pick)).collect::<Vec<_>>()
-    };
-    let value = |estimate: &Estimate| estimate.value;
+    let quantile = |estimate: Option<Estimate>| estimate.map_or(f64::NAN, |estimate| estimate.value);
     let traces: Vec<Box<dyn Trace>> = vec![
         intervals_across(
-            "5 to 95 % of the cases",
-            cases(&|(low, high)| 0.5 * (low + high)),
-            &cases(&|(low, _)| low),
-            &cases(&|(_, high)| high),
+            "cases: median, 5 and 95 %",
+            column(&|_, figure| quantile(figure.median)),
+            &column(&|_, figure| quantile(figure.p05)),
+            &column(&|_, figure| quantile(figure.p95)),
             names.clone(),
             BESIDE,
         ),
         intervals_across(
             "all frames, 95 % interval",
-            all(&value),
-            &all(&|estimate| estimate.low.unwrap_or(estimate.value)),
-            &all(&|estimate| estimate.high.unwrap_or(estimate.value)),
+            column(&|all, _| all.value),
+            &column(&|all, _| all.low.unwrap_or(all.value)),
+            &column(&|all, _| all.high.unwrap_or(all.value)),
             names,
             MEASURED,
         ),

@@ -6,12 +6,12 @@ use contract::docking::DockingSetup;
 use contract::{PixelPoint, Window};
 use sim::docking::{DockingSimulator, FieldTruth};
 
-use super::docking::{DockingRun, answer_words};
-use super::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
+use super::{DockingRun, answer_words};
 use crate::docking_renderer::DockingRenderer;
 use crate::failure::Failure;
 use crate::files::TableReader;
 use crate::files::docking::FeatureRow;
+use crate::report::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
 use crate::scenario::ScenarioSource;
 
 /// Smallest side of a picture across columns, px.

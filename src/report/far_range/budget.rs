@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use plotly::Trace;
 
-use super::chart::{BESIDE, Chart, MEASURED, axes, intervals, rounded};
-use super::far_range::FarRangeRun;
-use super::figures::{cell, percent_cell};
-use super::page::{DataTable, Section};
-use super::read::{missing, read_json};
+use super::FarRangeRun;
 use crate::failure::Failure;
 use crate::inject::Stage;
+use crate::report::chart::{BESIDE, Chart, MEASURED, axes, intervals, rounded};
+use crate::report::figures::{cell, percent_cell};
+use crate::report::page::{DataTable, Section};
+use crate::report::read::{missing, read_json};
 use crate::run_file::RunFile;
 use crate::scenario::FarRangeScenario;
 use crate::score::{Score, names};
@@ -43,13 +43,17 @@ impl InjectedRun {
             scenario.roi.clone_from(&own.scenario.roi);
         }
         if own.inject.is_some() {
-            return Err(Failure::Usage("--budget is given, expected with the report of an honest run alone".to_owned()));
+            return Err(Failure::Usage(
+                "--budget is given, expected with the report of an honest run alone".to_owned(),
+            ));
         }
         if scenario != own.scenario {
             return refuse("`scenario` is another one, expected that of the honest run");
         }
         let score: Score = read_json(&directory.join("score.json"), "score")?;
-        let frames = |score: &Score| score.groups.iter().map(|(name, group)| (name.clone(), group.frames)).collect::<Vec<_>>();
+        let frames = |score: &Score| {
+            score.groups.iter().map(|(name, group)| (name.clone(), group.frames)).collect::<Vec<_>>()
+        };
         if frames(&score) != frames(&honest.score) {
             return refuse("the run is of other frames, expected those of the honest run");
         }

@@ -6,10 +6,10 @@ use contract::{Cluster, Label, Outcome, PixelPoint};
 use sim::truth::{ObjectKind, ObjectTruth, Visibility};
 use sim::{Exposure, Simulator};
 
-use super::far_range::FarRangeRun;
-use super::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch, window_around};
+use super::FarRangeRun;
 use crate::failure::Failure;
 use crate::files::{FrameCluster, TableReader};
+use crate::report::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch, window_around};
 use crate::scenario::ScenarioSource;
 use crate::score::{Cause, FrameVerdict, Verdict};
 
