@@ -33,7 +33,7 @@ pub use study::{StudyResult, study_page};
 pub use visibility::{read_visibility, visibility_page};
 
 use crate::failure::Failure;
-use crate::files::FileError;
+use crate::files::{FileError, WholeFile};
 use crate::scenario::{World, world};
 use crate::score::FrameVerdict;
 use crate::toml_file;
@@ -88,15 +88,6 @@ pub fn far_range_report(directory: &Path, verdicts: Vec<FrameVerdict>) -> Result
 /// A [`Failure`] when the page cannot be put together or the file not be written.
 pub fn write_page(page: &Page, path: &Path) -> Result<u64, Failure> {
     let html = page.html()?;
-    let io = |doing| move |source| FileError::Io { path: path.to_owned(), doing, source };
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let partial = folder.join(format!(".{name}.{}.partial", std::process::id()));
-    let written = std::fs::write(&partial, &html).map_err(io("write"));
-    if let Err(error) = written.and_then(|()| std::fs::rename(&partial, path).map_err(io("create"))) {
-        // It may not be there.
-        let _ = std::fs::remove_file(&partial);
-        return Err(error.into());
-    }
+    WholeFile::with_text(path, &html)?.replace()?;
     Ok(html.len() as u64)
 }
