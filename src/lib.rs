@@ -15,6 +15,7 @@ pub mod gate_table;
 pub mod inject;
 pub mod mitsuba;
 pub mod pipeline_choice;
+pub mod report;
 pub mod run;
 pub mod run_file;
 pub mod scenario;

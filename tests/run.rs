@@ -28,6 +28,7 @@ fn a_run_directory_holds_every_file_of_a_run() {
         "frames/000301.fits",
         "frames/000302.fits",
         "measurements.csv",
+        "report.html",
         "run.toml",
         "score.json",
         "stars.csv",

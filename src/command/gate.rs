@@ -13,6 +13,7 @@ use crate::gate::{
     read_result,
 };
 use crate::gate_table::{baseline_text, gate_table};
+use crate::report::{FlippedFrames, gate_page, write_page};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -48,6 +49,9 @@ struct CompareArguments {
     /// Write the report as JUnit XML too, or why nothing could be compared; a new file
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
+    /// Write the report as one HTML file too, flipped frames as pictures; replaced if it is there
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -126,6 +130,9 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
         WholeFile::with_text(path, &xml)?.commit_new()?;
     }
     let report = compared?;
+    if let Some(path) = &arguments.report {
+        write_page(&gate_page(&report, FlippedFrames::render(&report, &arguments.result)?), path)?;
+    }
     output.answer(&report, gate_table(&report, output.is_terminal()))?;
     Ok(if report.verdict == FigureVerdict::Worse { Answer::No } else { Answer::Yes })
 }

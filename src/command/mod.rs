@@ -4,6 +4,7 @@ mod dataset;
 mod gate;
 mod options;
 mod output;
+mod report;
 mod run;
 mod scenario;
 mod score;
@@ -47,6 +48,8 @@ enum Command {
     Visibility(visibility::VisibilityArguments),
     /// Say whether a result is worse than a baseline; exit status 1 when it is
     Gate(gate::GateArguments),
+    /// One HTML file of what a directory of results holds: charts, tables, frames; it needs no network
+    Report(report::ReportArguments),
     /// List, check and start scenarios
     #[command(subcommand)]
     Scenario(scenario::ScenarioCommand),
@@ -82,6 +85,7 @@ pub fn main() -> ExitCode {
         Command::Study(command) => study::study(&command, &output),
         Command::Visibility(arguments) => visibility::visibility(&arguments, &output),
         Command::Gate(arguments) => gate::gate(&arguments, &output),
+        Command::Report(arguments) => report::report(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
         Command::Completions(arguments) => shell::completions(&arguments, &output),
         Command::Man(arguments) => shell::man(&arguments, &output),

@@ -8,12 +8,14 @@ use super::Answer;
 use super::dataset::check_size;
 use super::options::{PipelineOptions, RendererOptions, Selection, format_of};
 use super::output::Output;
+use super::report::write_beside;
 use crate::docking_run::{DockingFlight, PreparedDocking};
 use crate::docking_table::docking;
 use crate::docking_writer::FieldImages;
 use crate::failure::Failure;
 use crate::files::RunDirectory;
 use crate::inject::Stage;
+use crate::report::{far_range_report, report_of};
 use crate::run::{Expectation, Flight, Prepared};
 use crate::scenario::{Scenario, ScenarioSource, World, is_argon};
 use crate::score::ARGON_TABLE_2;
@@ -37,6 +39,9 @@ pub(super) struct RunArguments {
     /// Keep the images as well: fits, png or exr (about 1 MB a frame); docking: png, avi, mjpeg (AVI) or y4m
     #[arg(long, value_name = "FORMAT")]
     save_frames: Option<String>,
+    /// Write no report.html
+    #[arg(long)]
+    no_report: bool,
     #[command(flatten)]
     renderer: RendererOptions,
 }
@@ -50,6 +55,7 @@ impl RunArguments {
             pipeline: PipelineOptions::default(),
             inject: None,
             save_frames: None,
+            no_report: false,
             renderer: RendererOptions::default(),
         }
     }
@@ -98,6 +104,9 @@ fn run_far_range(
     let ran = scored?;
     output.first_failure(ran.first_failure.as_ref());
     let score = ran.scored.score;
+    if !arguments.no_report {
+        write_beside(far_range_report(directory.path(), ran.scored.verdicts), directory.path(), output);
+    }
 
     let style = TableStyle {
         styled: output.is_terminal(),
@@ -141,6 +150,9 @@ fn run_docking(
     progress.finish_and_clear();
     let ran = ran?;
     output.first_failure(ran.first_failure.as_ref());
+    if !arguments.no_report {
+        write_beside(report_of(directory.path()), directory.path(), output);
+    }
     let text = docking(&ran.score, output.is_terminal());
     output.answer(&ran.score, format!("{text}\nresults in {}", directory.path().display()))?;
     Ok(Answer::Yes)

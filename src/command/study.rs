@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::Answer;
 use super::options::{PipelineOptions, default_jobs, format_of};
 use super::output::Output;
+use super::report::write_beside;
 use crate::docking_renderer::DockingRenderer;
 use crate::docking_run::{DockingFlight, PreparedDocking};
 use crate::docking_table::docking;
@@ -16,6 +17,7 @@ use crate::docking_writer::FieldImages;
 use crate::failure::Failure;
 use crate::files::RunDirectory;
 use crate::pipeline_choice::PipelineChoice;
+use crate::report::report_of;
 use crate::run::{Expectation, FirstFailure, Flight, Prepared};
 use crate::scenario::Scenario;
 use crate::study::{
@@ -60,6 +62,9 @@ pub(super) struct RunArguments {
     /// Threads, or workers of a cluster on this machine; default: all cores. The results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
+    /// Write no report.html
+    #[arg(long)]
+    no_report: bool,
     #[command(flatten)]
     pipeline: PipelineOptions,
 }
@@ -82,6 +87,9 @@ pub(super) struct MergeArguments {
     /// Directory of the shards
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
+    /// Write no report.html
+    #[arg(long)]
+    no_report: bool,
     #[command(flatten)]
     pipeline: PipelineOptions,
 }
@@ -131,9 +139,21 @@ impl std::str::FromStr for ShardOf {
 
 pub(super) fn study(command: &StudyCommand, output: &Output) -> Result<Answer, Failure> {
     match command {
-        StudyCommand::Run(arguments) => run(arguments, output),
+        StudyCommand::Run(arguments) => {
+            let answer = run(arguments, output)?;
+            if arguments.shard.is_none() && !arguments.no_report {
+                write_beside(report_of(&arguments.out), &arguments.out, output);
+            }
+            Ok(answer)
+        }
         StudyCommand::Plan(arguments) => plan(arguments, output),
-        StudyCommand::Merge(arguments) => merge(arguments, output),
+        StudyCommand::Merge(arguments) => {
+            let answer = merge(arguments, output)?;
+            if !arguments.no_report {
+                write_beside(report_of(&arguments.out), &arguments.out, output);
+            }
+            Ok(answer)
+        }
         StudyCommand::Replay(arguments) => replay(arguments, output),
         StudyCommand::Check(arguments) => check(arguments, output),
         StudyCommand::Schema => {

@@ -6,7 +6,9 @@ use clap::Args;
 
 use super::Answer;
 use super::output::Output;
+use super::report::write_beside;
 use crate::failure::Failure;
+use crate::report::{visibility_page, write_page};
 use crate::visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, Status, assess, write_report};
 use crate::visibility_table::{visibility_markdown, visibility_table};
 
@@ -18,6 +20,9 @@ pub(super) struct VisibilityArguments {
     /// A new or empty directory for visibility.json, visibility.md and the curves
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Write the report as one HTML file too, replaced if it is there; with --out it is in the directory anyway
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
     /// Frames simulated for each result, instead of the file's `confirm.frames`; 0: none
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000))]
     frames: Option<u32>,
@@ -25,10 +30,10 @@ pub(super) struct VisibilityArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Print the JSON Schema of requirement files
-    #[arg(long, conflicts_with_all = ["requirement", "list", "out", "frames", "jobs"])]
+    #[arg(long, conflicts_with_all = ["requirement", "list", "out", "report", "frames", "jobs"])]
     schema: bool,
     /// List the built-in requirement files
-    #[arg(long, conflicts_with_all = ["requirement", "out", "frames", "jobs"])]
+    #[arg(long, conflicts_with_all = ["requirement", "out", "report", "frames", "jobs"])]
     list: bool,
 }
 
@@ -63,6 +68,10 @@ pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Re
     progress.finish_and_clear();
     if let Some(folder) = &arguments.out {
         write_report(&report, &visibility_markdown(&report), folder)?;
+        write_beside(Ok(visibility_page(&report)), folder, output);
+    }
+    if let Some(path) = &arguments.report {
+        write_page(&visibility_page(&report), path)?;
     }
     let mut text = visibility_table(&report, output.is_terminal());
     if let Some(folder) = &arguments.out {

@@ -124,7 +124,7 @@ impl<'a> Assessment<'a> {
             asked,
             reached: reached.probability,
             margin,
-            margin_unit,
+            margin_unit: margin_unit.into(),
             evidence: format!(
                 "{}; {}",
                 self.reached_in_words(demand, &reached, asked),
@@ -149,7 +149,7 @@ impl<'a> Assessment<'a> {
             asked,
             reached: 0.0,
             margin: None,
-            margin_unit: unit,
+            margin_unit: unit.into(),
             evidence: String::new(),
             simulated: None,
             found: None,
@@ -215,8 +215,8 @@ impl<'a> Assessment<'a> {
             binds: (!is_met)
                 .then(|| "simulation: fewer frames meet it than the analytic law says".to_owned()),
             found: Some(Found {
-                parameter,
-                unit,
+                parameter: parameter.into(),
+                unit: unit.into(),
                 value,
                 probability: reached.probability,
                 threshold_value,

@@ -134,7 +134,7 @@ pub(super) fn sky(requirements: &Requirements, design: &Design<'_>) -> Result<Sk
             ra_deg: pointing.boresight.ra().degrees(),
             dec_deg: pointing.boresight.dec().degrees(),
             time_utc: crate::files::format_utc(pointing.time),
-            excluded: pointing.excluded.map(|why| why.code()),
+            excluded: pointing.excluded.map(|why| why.code().into()),
             background_e_per_s: field.background_e_per_s,
             in_field: field.stars.iter().filter(|star| star.magnitude <= limit).count() as u64,
             stars: stars.map_or(0.0, |seen| seen.expected),

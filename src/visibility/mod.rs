@@ -53,4 +53,4 @@ pub use requirement::{
 pub use sky::{Excluded, Field, Pointing, Sky, SkyStar};
 pub use star_count::{Curves, Seen, over_sky, star_trail_px};
 pub use target::{Aspect, Setting, Sight, TargetModel, Watch};
-pub use write::write_report;
+pub use write::{read_sky, write_report};

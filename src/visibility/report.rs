@@ -1,9 +1,11 @@
 //! What is told of requirements: verdicts and curves, as `visibility.json` holds them.
 
-use serde::Serialize;
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
 
 /// The answer to a file of requirements.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VisibilityReport {
     /// Name of the file.
     pub name: String,
@@ -32,7 +34,7 @@ pub struct VisibilityReport {
 }
 
 /// The camera, in figures that are looked for in a data sheet.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CameraFigures {
     /// Width and height of the field, degrees; absent where a corner has no direction.
     pub field_deg: Option<[f64; 2]>,
@@ -55,7 +57,7 @@ pub struct CameraFigures {
 }
 
 /// Whether a requirement is met.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// It is.
@@ -78,7 +80,7 @@ impl Status {
 }
 
 /// One row of the verification table.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// Name of the requirement.
     pub id: String,
@@ -93,7 +95,7 @@ pub struct Verdict {
     /// Room, in the unit beside it; negative where it is not met.
     pub margin: Option<f64>,
     /// Unit of the margin.
-    pub margin_unit: &'static str,
+    pub margin_unit: Cow<'static, str>,
     /// In words: what was looked at, and what was simulated.
     pub evidence: String,
     /// What was simulated.
@@ -105,7 +107,7 @@ pub struct Verdict {
 }
 
 /// A simulated rate with the one-sided bounds of Clopper & Pearson.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Simulated {
     /// Frames of which it is true.
     pub count: u64,
@@ -120,12 +122,12 @@ pub struct Simulated {
 }
 
 /// A value that meets a requirement, and one that does not.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Found {
     /// Name of the parameter.
-    pub parameter: &'static str,
+    pub parameter: Cow<'static, str>,
     /// Its unit.
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// The value that meets the requirement, with room enough for the simulation to show it.
     pub value: f64,
     /// Probability by the analytic law there.
@@ -145,7 +147,7 @@ pub struct Found {
 }
 
 /// A point of the detection curve.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct DetectionPoint {
     /// Johnson V of a star of mean colour.
     pub magnitude: f64,
@@ -156,7 +158,7 @@ pub struct DetectionPoint {
 }
 
 /// Stars of simulated frames about a magnitude.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SimulatedPoint {
     /// Middle of the magnitudes.
     pub magnitude: f64,
@@ -173,7 +175,7 @@ pub struct SimulatedPoint {
 }
 
 /// A point of the limiting magnitude.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LimitPoint {
     /// Exposure, s.
     pub exposure_s: f64,
@@ -188,7 +190,7 @@ pub struct LimitPoint {
 }
 
 /// The sky in figures.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SkySummary {
     /// Boresights.
     pub pointings: u64,
@@ -212,7 +214,7 @@ pub struct SkySummary {
 }
 
 /// The stars at one pointing.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PointingStars {
     /// Right ascension, degrees.
     pub ra_deg: f64,
@@ -221,7 +223,7 @@ pub struct PointingStars {
     /// When.
     pub time_utc: String,
     /// What excludes it; `None` when it counts.
-    pub excluded: Option<&'static str>,
+    pub excluded: Option<Cow<'static, str>>,
     /// Light of the background, electrons a second and pixel.
     pub background_e_per_s: f64,
     /// Stars in the field to the limiting magnitude of the probability that is asked for.
@@ -233,7 +235,7 @@ pub struct PointingStars {
 }
 
 /// Exposures at one range.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WindowPoint {
     /// Range, km.
     pub range_km: f64,
@@ -252,7 +254,7 @@ pub struct WindowPoint {
 }
 
 /// From where on, approaching, stars are too few.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StarsLost {
     /// Stars that are needed.
     pub n_min: u32,
@@ -264,7 +266,7 @@ pub struct StarsLost {
 }
 
 /// Greatest range by phase angle.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RangeByPhase {
     /// Smallest and largest phase angle, degrees.
     pub phases_deg: [f64; 2],

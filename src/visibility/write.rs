@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::report::VisibilityReport;
+use super::report::{PointingStars, VisibilityReport};
 use crate::failure::Failure;
 use crate::files::{FileError, WholeFile};
 
@@ -106,13 +106,23 @@ fn sky(report: &VisibilityReport) -> String {
             "{},{},{},{},{},{}",
             cells(&[Some(p.ra_deg), Some(p.dec_deg)]),
             p.time_utc,
-            p.excluded.unwrap_or(""),
+            p.excluded.as_deref().unwrap_or(""),
             cell(Some(p.background_e_per_s)),
             p.in_field,
             cells(&[Some(p.stars), Some(p.probability)])
         )
     });
     table("ra_deg,dec_deg,time_utc,excluded,background_e_per_s,in_field,stars,probability", lines)
+}
+
+/// Reads `sky.csv`.
+///
+/// # Errors
+/// [`FileError`] for a file that cannot be read, or a row that is none of its.
+pub fn read_sky(path: &Path) -> Result<Vec<PointingStars>, FileError> {
+    let format = |error: csv::Error| FileError::format(path, "sky.csv", error);
+    let file = std::fs::File::open(path).map_err(io(path, "open"))?;
+    csv::Reader::from_reader(file).deserialize().map(|row| row.map_err(format)).collect()
 }
 
 fn exposure_window(report: &VisibilityReport) -> String {

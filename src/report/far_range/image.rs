@@ -1,0 +1,133 @@
+//! What is seen in the images: the track of the target, regions, frames of every kind.
+
+use contract::Outcome;
+use plotly::layout::{Axis, AxisConstrain, AxisRange};
+use plotly::{Layout, Trace};
+
+use super::FrameSheet;
+use super::run::{FarRangeRun, by_bins, thinning};
+use crate::failure::Failure;
+use crate::report::chart::{Chart, MEASURED, REFERENCE, WRONG, crosses, points, rounded};
+use crate::report::page::Section;
+use crate::report::thin::thinned;
+use crate::score::{Cause, Verdict};
+
+/// Fig. 3: the target in the image.
+pub(super) fn track(run: &FarRangeRun) -> Section {
+    let camera = &run.run_file.scenario.camera;
+    let at = |row: usize| run.truths[row].target_position.map_or([f64::NAN; 2], |p| [p.x, p.y]);
+    let answer = |row: usize| {
+        let measured = run.outcomes[row].as_ref().and_then(Outcome::measurement);
+        measured.map_or([f64::NAN; 2], |m| [m.position.x, m.position.y])
+    };
+    let count = run.truths.len();
+    let is = |row: usize, code: &str| run.verdicts[row].verdict.code() == code;
+    let xy = |rows: &[usize], of: &dyn Fn(usize) -> [f64; 2]| -> (Vec<f64>, Vec<f64>) {
+        rows.iter().map(|&row| of(row)).map(|[x, y]| (rounded(x, 2), rounded(y, 2))).unzip()
+    };
+    let true_rows = thinned(count, &[&|row| at(row)[0], &|row| at(row)[1]]);
+    let right: Vec<usize> = (0..count).filter(|&row| is(row, "correct")).collect();
+    let right: Vec<usize> = thinned(right.len(), &[&|i| answer(right[i])[0], &|i| answer(right[i])[1]])
+        .into_iter()
+        .map(|i| right[i])
+        .collect();
+    let wrong: Vec<usize> = (0..count).filter(|&row| is(row, "wrong")).collect();
+    let wrong: Vec<usize> = thinned(wrong.len(), &[&|i| answer(wrong[i])[0], &|i| answer(wrong[i])[1]])
+        .into_iter()
+        .map(|i| wrong[i])
+        .collect();
+    let (tx, ty) = xy(&true_rows, &at);
+    let (rx, ry) = xy(&right, &answer);
+    let (wx, wy) = xy(&wrong, &answer);
+    let numbered = |rows: &[usize]| rows.iter().map(|&row| run.truths[row].frame).collect::<Vec<_>>();
+    let hover = "frame %{customdata}<br>x %{x} px, y %{y} px";
+    let traces: Vec<Box<dyn Trace>> = vec![
+        points("true", tx, ty, REFERENCE)
+            .custom_data(numbered(&true_rows))
+            .hover_template(hover)
+            .opacity(0.5),
+        points("measured, right", rx, ry, MEASURED).custom_data(numbered(&right)).hover_template(hover),
+        crosses("measured, wrong", wx, wy, WRONG).custom_data(numbered(&wrong)).hover_template(hover),
+    ];
+    let (columns, rows) = (camera.columns as f64, camera.rows as f64);
+    let layout = Layout::new()
+        .x_axis(
+            Axis::new()
+                .title("x, px (columns)")
+                .range(vec![-0.5, columns - 0.5])
+                .constrain(AxisConstrain::Domain),
+        )
+        .y_axis(
+            Axis::new()
+                .title("y, px (rows, downwards)")
+                .range(AxisRange::from(vec![rows - 0.5, -0.5]))
+                .scale_anchor("x")
+                .constrain(AxisConstrain::Domain),
+        );
+    let data = by_bins(run, &[("true x, px", &|row| at(row)[0], 1), ("true y, px", &|row| at(row)[1], 1)]);
+    Section::new("fig-3", "Fig. 3: track of the target in pixels").chart(Chart::new(
+        format!("Where the target is and where it was measured, whole detector. {}", thinning(count)),
+        620,
+        data,
+        traces,
+        layout,
+    ))
+}
+
+/// Fig. 6: a whole and a truncated region.
+pub(super) fn regions(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, Failure> {
+    let section = Section::new("fig-6", "Fig. 6: a whole and a truncated region of interest");
+    if run.run_file.scenario.roi.is_none() {
+        return Ok(section.text("The camera of this scenario sends whole images: nothing is cut."));
+    }
+    let dec = |row: usize| match run.verdicts[row].verdict {
+        Verdict::Correct { error } => Some(error.dec.degrees().abs()),
+        _ => None,
+    };
+    let mut by_error: Vec<usize> = (0..run.verdicts.len()).filter(|&row| dec(row).is_some()).collect();
+    by_error
+        .sort_by(|&a, &b| dec(b).partial_cmp(&dec(a)).unwrap_or(std::cmp::Ordering::Equal).then(a.cmp(&b)));
+    let truncated = sheet.first_region(run, by_error.iter().copied().take(12), |cut| cut > 0.05)?;
+    // The nearest of some ranges from near to far: there the image is as large as that of the other.
+    let mut near: Vec<usize> =
+        by_error.iter().copied().filter(|&row| dec(row).is_some_and(|error| error < 0.012)).collect();
+    near.sort_by(|&a, &b| run.truths[a].range_km.total_cmp(&run.truths[b].range_km).then(a.cmp(&b)));
+    let step = near.len().div_ceil(30).max(1);
+    let whole = sheet.first_region(run, near.into_iter().step_by(step), |cut| cut < 0.02)?;
+    let note = match (&whole, &truncated) {
+        (Some(_), Some(_)) => {
+            "Left whole, right truncated: the camera keeps regions of a fixed size, and of a target larger than one the rest is lost."
+        }
+        (Some(_), None) => "No target of this run was cut by its region.",
+        (None, Some(_)) => "No target of this run was found whole in its region.",
+        (None, None) => "No frame of this run shows a region with the target alone.",
+    };
+    let pictures: Vec<_> = whole.into_iter().chain(truncated).collect();
+    let section = section.text(note);
+    Ok(if pictures.is_empty() { section } else { section.pictures(pictures) })
+}
+
+/// A sheet of frames: every kind of miss and of wrong answer, and right ones to compare with.
+pub(super) fn frames(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, Failure> {
+    let mut chosen: Vec<usize> = Vec::new();
+    let mut middle = |is: &dyn Fn(&Verdict) -> bool| {
+        let rows: Vec<usize> =
+            (0..run.verdicts.len()).filter(|&row| is(&run.verdicts[row].verdict)).collect();
+        chosen.extend(rows.get(rows.len() / 2));
+    };
+    middle(&|verdict| matches!(verdict, Verdict::Correct { .. }));
+    for of in Cause::ALL {
+        middle(&|verdict| matches!(verdict, Verdict::Missed { cause } if *cause == of));
+        middle(&|verdict| matches!(verdict, Verdict::Wrong { cause, .. } if *cause == of));
+    }
+    let section = Section::new("frames", "Frames").text(
+        "A right answer, then of every kind of miss and of wrong answer the frame in the middle of all of that kind, rendered anew \
+         from run.toml. Green circle: the target's true place; orange cross: the answer; blue: true stars that can be detected, \
+         violet: planets, the Moon, hot pixels, tracks of particles; yellow: clusters, with what the pipeline took them for; dashed: \
+         transmitted regions. Brightness is stretched in every picture by itself.",
+    );
+    Ok(match sheet.reason() {
+        Some(reason) => section.text(format!("There are no pictures: {reason}")),
+        None => section.pictures(sheet.pictures(run, &chosen)?),
+    })
+}

@@ -1,0 +1,270 @@
+//! The report of a gate: what changed, and the frames that flipped.
+
+use std::path::Path;
+
+use plotly::Trace;
+
+use super::chart::{Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
+use super::docking::{DockingRun, FieldSheet};
+use super::far_range::{FarRangeRun, FrameSheet};
+use super::figures::{cell, significant};
+use super::page::{DataTable, Page, Section};
+use super::picture::Picture;
+use crate::failure::Failure;
+use crate::gate::{FigureVerdict, Flip, FlipKind, GateReport, Pairing};
+
+/// Flipped frames that are shown as pictures, at most.
+const MOST_PICTURES: usize = 12;
+/// Flipped frames that are listed, at most.
+const MOST_ROWS: usize = 200;
+
+/// Something that flips happened to, as pictures.
+pub struct FlippedFrames {
+    /// Pictures of them.
+    pictures: Vec<Picture>,
+    /// Why there are none, where there should be.
+    reason: Option<String>,
+}
+
+impl FlippedFrames {
+    /// Renders flipped frames of a result anew, from its directory: of every change from one verdict and cause to another the first
+    /// frame, and then more of those that were lost. A study has none: its frames are those of many scenarios.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the result cannot be read or a frame not be rendered.
+    pub fn render(report: &GateReport, result: &Path) -> Result<Self, Failure> {
+        let none = Self { pictures: Vec::new(), reason: None };
+        let Some(flips) = &report.flips else { return Ok(none) };
+        if report.units == "cases" || flips.units.is_empty() {
+            return Ok(none);
+        }
+        let chosen = chosen(&flips.units);
+        let (mut pictures, reason) = if report.units == "frames" {
+            let run = FarRangeRun::read(result)?;
+            let rows =
+                rows_of(&chosen, |number| run.truths.binary_search_by_key(&number, |truth| truth.frame).ok());
+            let sheet = FrameSheet::open(result)?;
+            (sheet.pictures(&run, &rows)?, sheet.reason().map(str::to_owned))
+        } else {
+            let run = DockingRun::read(result)?;
+            let rows =
+                rows_of(&chosen, |number| run.truths.binary_search_by_key(&number, |truth| truth.field).ok());
+            let sheet = FieldSheet::open(result)?;
+            (sheet.pictures(&run, &rows)?, sheet.reason().map(str::to_owned))
+        };
+        for (picture, flip) in pictures.iter_mut().zip(&chosen) {
+            picture.title = format!("{}: {}.", kind_words(flip.kind), change(flip));
+        }
+        Ok(Self { pictures, reason })
+    }
+}
+
+fn rows_of(flips: &[&Flip], row: impl Fn(u64) -> Option<usize>) -> Vec<usize> {
+    flips.iter().filter_map(|flip| row(flip.number)).collect()
+}
+
+/// Of every change the first unit, lost ones first, then more of the lost.
+fn chosen(flips: &[Flip]) -> Vec<&Flip> {
+    let order = [FlipKind::Lost, FlipKind::Won, FlipKind::Other];
+    let mut chosen: Vec<&Flip> = Vec::new();
+    for kind in order {
+        for flip in flips.iter().filter(|flip| flip.kind == kind) {
+            if chosen.len() < MOST_PICTURES && !chosen.iter().any(|other| change(other) == change(flip)) {
+                chosen.push(flip);
+            }
+        }
+    }
+    for flip in flips.iter().filter(|flip| flip.kind == FlipKind::Lost) {
+        if chosen.len() < MOST_PICTURES && !chosen.iter().any(|other| other.number == flip.number) {
+            chosen.push(flip);
+        }
+    }
+    chosen
+}
+
+fn kind_words(kind: FlipKind) -> &'static str {
+    match kind {
+        FlipKind::Lost => "Lost",
+        FlipKind::Won => "Won",
+        FlipKind::Other => "Changed",
+    }
+}
+
+/// From which verdict to which.
+fn change(flip: &Flip) -> String {
+    let words = |verdict: &str, cause: &Option<String>| match cause {
+        Some(cause) => format!("{} ({})", verdict.replace('_', " "), cause.replace('_', " ")),
+        None => verdict.replace('_', " "),
+    };
+    format!("{} → {}", words(&flip.baseline, &flip.baseline_cause), words(&flip.result, &flip.result_cause))
+}
+
+/// The page of a gate.
+pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
+    let worse: Vec<&str> = report.worse().collect();
+    let lead = if worse.is_empty() {
+        format!("No figure is worse than in the baseline, of {} compared.", report.figures.len())
+    } else {
+        format!("Worse than in the baseline: {}.", worse.join(", "))
+    };
+    let mut figures = report.figures.clone();
+    figures.sort_by(|_, a, _, b| a.adjusted_p.total_cmp(&b.adjusted_p));
+    let pairing = match report.pairing {
+        Pairing::Frames => "the same frames",
+        Pairing::Blocks => "blocks of time, another seed",
+    };
+    Page {
+        title: format!("{}: {}", report.name, report.verdict.words()),
+        kind: "Gate: a result against a baseline",
+        version: report.result_version.clone(),
+        lead: vec![lead, format!("The baseline is one because: {}", report.reason)],
+        warnings: report.notes.clone(),
+        facts: vec![
+            ("Compared", format!("{} {}", report.count, report.units)),
+            ("Pairs", pairing.to_owned()),
+            ("Blocks", format!("{} of about {:.0} {}", report.blocks, report.block_length, report.units)),
+            ("Alpha", significant(report.alpha)),
+            ("Seeds", format!("{} and {}", report.baseline_seed, report.result_seed)),
+            ("Versions", format!("{} and {}", report.baseline_version, report.result_version)),
+        ],
+        sections: vec![effects(report), changed(report, frames)],
+        data: data(report),
+    }
+}
+
+/// The report without its list of units, which may be as long as the run.
+fn data(report: &GateReport) -> serde_json::Value {
+    let counts = report.flips.as_ref();
+    serde_json::json!({
+        "verdict": report.verdict,
+        "figures": report.figures,
+        "flips": counts.map(|flips| serde_json::json!({ "lost": flips.lost, "won": flips.won, "other": flips.other })),
+    })
+}
+
+/// Differences with their intervals.
+fn effects(report: &GateReport) -> Section {
+    let mut table = DataTable::new([
+        "figure",
+        "verdict",
+        "baseline",
+        "result",
+        "difference",
+        "low",
+        "high",
+        "tolerance",
+        "adjusted p",
+        "smallest visible",
+        "blocks",
+    ])
+    .caption(
+        "Result minus baseline, with 95 % intervals; p of a worsening, adjusted for all figures together.",
+    );
+    for (name, figure) in &report.figures {
+        table.push([
+            name.clone(),
+            figure.verdict.words().to_owned(),
+            cell(figure.baseline),
+            cell(figure.result),
+            cell(figure.difference),
+            cell(figure.low),
+            cell(figure.high),
+            significant(figure.tolerance),
+            significant(figure.adjusted_p),
+            cell(figure.smallest_visible),
+            figure.blocks.to_string(),
+        ]);
+    }
+    // In units of the tolerance, so that rates and degrees stand on one axis.
+    let shown: Vec<_> = report
+        .figures
+        .iter()
+        .filter(|(_, figure)| figure.difference.is_some() && figure.tolerance > 0.0)
+        .collect();
+    let section = Section::new("effects", "What changed");
+    if shown.is_empty() {
+        return section.table(table);
+    }
+    let of = |is: &dyn Fn(FigureVerdict) -> bool, name: &str, colour| {
+        let chosen: Vec<_> = shown.iter().filter(|(_, figure)| is(figure.verdict)).collect();
+        let scaled = |value: Option<f64>, tolerance: f64| rounded(value.unwrap_or(f64::NAN) / tolerance, 4);
+        let y: Vec<f64> = chosen.iter().map(|(_, f)| scaled(f.difference, f.tolerance)).collect();
+        let low: Vec<f64> = chosen.iter().map(|(_, f)| scaled(f.low.or(f.difference), f.tolerance)).collect();
+        let high: Vec<f64> =
+            chosen.iter().map(|(_, f)| scaled(f.high.or(f.difference), f.tolerance)).collect();
+        intervals(name, chosen.iter().map(|(name, _)| (*name).clone()).collect(), y, &low, &high, colour)
+    };
+    let names: Vec<String> = shown.iter().map(|(name, _)| (*name).clone()).collect();
+    let limit = |at: f64, name: &str| {
+        let trace = line(name, names.clone(), vec![at; names.len()], REFERENCE).opacity(0.6);
+        if at > 0.0 { trace } else { trace.show_legend(false) }
+    };
+    let traces: Vec<Box<dyn Trace>> = vec![
+        limit(1.0, "tolerance"),
+        limit(-1.0, "−tolerance"),
+        of(&|verdict| verdict.is_worse(), "worse", WRONG),
+        of(&|verdict| verdict == FigureVerdict::Better, "better", super::chart::TRUTH),
+        of(&|verdict| !verdict.is_worse() && verdict != FigureVerdict::Better, "no worse", MEASURED),
+    ];
+    section
+        .chart(Chart::new(
+            "Result minus baseline with 95 % intervals, in units of each figure's tolerance. The table says which way is better.",
+            480,
+            table.clone(),
+            traces,
+            axes("", "difference ÷ tolerance"),
+        ))
+        .table(table)
+}
+
+/// Units that flipped.
+fn changed(report: &GateReport, frames: FlippedFrames) -> Section {
+    let section = Section::new("flips", format!("{} that flipped", capital(&report.units)));
+    let Some(flips) = &report.flips else {
+        return section.text("The frames are not the same: only blocks of them are compared, and none can be said to have flipped.");
+    };
+    let section = section.text(format!(
+        "{} were right and are not any more, {} are right and were not, {} changed otherwise.",
+        flips.lost, flips.won, flips.other
+    ));
+    if flips.units.is_empty() {
+        return section;
+    }
+    let section = match frames.reason {
+        Some(reason) => section.text(format!("There are no pictures: {reason}")),
+        None if frames.pictures.is_empty() => section,
+        None => section
+            .text(
+                "Of every change a frame, drawn anew from the result's run.toml, with the result's answer. Green: the truth; orange: the \
+                 answer; yellow: clusters or outlines, with what the pipeline took them for.",
+            )
+            .pictures(frames.pictures),
+    };
+    let mut table = DataTable::new(["number", "group", "how", "from", "cause", "to", "cause"]);
+    for flip in flips.units.iter().take(MOST_ROWS) {
+        let cause = |cause: &Option<String>| cause.clone().unwrap_or_default();
+        table.push([
+            flip.number.to_string(),
+            flip.group.clone(),
+            kind_words(flip.kind).to_lowercase(),
+            flip.baseline.clone(),
+            cause(&flip.baseline_cause),
+            flip.result.clone(),
+            cause(&flip.result_cause),
+        ]);
+    }
+    let section = if flips.units.len() > MOST_ROWS {
+        section.text(format!(
+            "The first {MOST_ROWS} of {}; `boresight gate --json` lists all.",
+            flips.units.len()
+        ))
+    } else {
+        section
+    };
+    section.folded("All that flipped", table)
+}
+
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

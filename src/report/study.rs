@@ -1,0 +1,375 @@
+//! The report of a study: figures with intervals, what they hang on, the worst cases.
+
+use std::path::Path;
+
+use plotly::common::{ColorScale, ColorScalePalette};
+use plotly::layout::Axis;
+use plotly::{HeatMap, Layout, Trace};
+
+use super::chart::{BESIDE, Chart, MEASURED, axes, intervals, intervals_across, plain, points, rounded};
+use super::figures::{cell, significant};
+use super::page::{DataTable, Page, Section};
+use super::read::read_json;
+use super::thin::{bins, summary as summed, thinned};
+use crate::failure::Failure;
+use crate::files::FileError;
+use crate::score::{Better, Kind, sense};
+use crate::study::{CaseTable, Estimate, FigureSummary, Summary};
+
+/// Cases that a chart shows one by one in the table behind it; of more, a summary.
+const TABLE_BINS: usize = 60;
+/// Drawn values that have a chart of their own, at most.
+const MOST_SCATTERS: usize = 24;
+
+/// What a study left in its directory.
+pub struct StudyResult {
+    /// `summary.json`.
+    pub summary: Summary,
+    /// `cases.parquet`.
+    pub table: CaseTable,
+}
+
+impl StudyResult {
+    /// Reads the directory of a study.
+    ///
+    /// # Errors
+    /// A [`Failure`] that names the file which is missing or cannot be read.
+    pub fn read(directory: &Path) -> Result<Self, Failure> {
+        let summary: Summary = read_json(&directory.join("summary.json"), "study summary")?;
+        let path = directory.join("cases.parquet");
+        if !path.is_file() {
+            return Err(Failure::Usage(format!(
+                "{}: is missing, expected beside summary.json: `boresight study merge` writes both",
+                path.display()
+            )));
+        }
+        let (table, _) = CaseTable::columns_of(&path)?.read(&path)?;
+        if table.rows.len() as u64 != summary.cases {
+            let reason = format!("it has {} rows, summary.json {} cases", table.rows.len(), summary.cases);
+            return Err(FileError::format(&path, "cases", reason).into());
+        }
+        Ok(Self { summary, table })
+    }
+}
+
+/// The page of a study.
+pub fn study_page(study: &StudyResult) -> Page {
+    let summary = &study.summary;
+    let worst_by = &summary.worst_by;
+    let lead = match summary.figures.get(worst_by).and_then(|figure| figure.all) {
+        Some(all) => format!(
+            "{} cases; {worst_by}, by which the worst are the worst, is {}.",
+            summary.cases,
+            shown(&all)
+        ),
+        None => format!("{} cases.", summary.cases),
+    };
+    let mut sections = vec![figures(study)];
+    if !summary.sweep.is_empty() {
+        sections.push(sweep(study));
+    }
+    sections.push(sensitivities(study));
+    if !summary.indices.is_empty() {
+        sections.push(indices(study));
+    }
+    sections.push(scatter(study));
+    sections.push(worst(study));
+    Page {
+        title: format!("Study {}", summary.study),
+        kind: "Study",
+        version: summary.version.clone(),
+        lead: vec![lead],
+        warnings: Vec::new(),
+        facts: vec![
+            ("Cases", format!("{} of {} at most", summary.cases, summary.of)),
+            ("Stopped by a figure", if summary.is_narrow_enough { "yes" } else { "no" }.to_owned()),
+            ("Drawn values", study.table.drawn.len().to_string()),
+            ("Figures", summary.figures.len().to_string()),
+            ("Hash", summary.hash.chars().take(12).collect()),
+            ("Boresight", summary.version.clone()),
+        ],
+        sections,
+        data: serde_json::json!({ "summary": summary }),
+    }
+}
+
+/// A value with its interval.
+fn shown(estimate: &Estimate) -> String {
+    let interval = estimate.low.zip(estimate.high);
+    let interval = interval.map(|(low, high)| format!(" ({} to {})", significant(low), significant(high)));
+    format!("{}{}", significant(estimate.value), interval.unwrap_or_default())
+}
+
+/// Every figure: over all cases, and its quantiles over them.
+fn figures(study: &StudyResult) -> Section {
+    let summary = &study.summary;
+    let mut table = DataTable::new(["figure", "cases", "all", "5 % of cases below", "median", "95 % of cases below"]).caption(
+        "With 95 % intervals. All: of a rate all frames of all cases together, of another figure the mean of the cases.",
+    );
+    let estimate = |estimate: &Option<Estimate>| estimate.as_ref().map_or_else(|| "–".to_owned(), shown);
+    for (name, figure) in &summary.figures {
+        table.push([
+            name.clone(),
+            figure.cases.to_string(),
+            estimate(&figure.all),
+            estimate(&figure.p05),
+            estimate(&figure.median),
+            estimate(&figure.p95),
+        ]);
+    }
+    let is_rate = |(name, _): &(&String, &FigureSummary)| sense(name).kind == Kind::Rate;
+    let rates = summary.figures.iter().filter(is_rate);
+    let rates: Vec<(&String, Estimate, &FigureSummary)> =
+        rates.filter_map(|(name, figure)| Some((name, figure.all?, figure))).collect();
+    let section = Section::new("figures", "Figures");
+    if rates.is_empty() {
+        return section.table(table);
+    }
+    // Upwards as the axis goes, so that the first is on top.
+    let column = |number: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
+        rates.iter().rev().map(|(_, all, figure)| rounded(number(all, figure), 6)).collect()
+    };
+    let names: Vec<String> = rates.iter().rev().map(|(name, _, _)| (*name).clone()).collect();
+    let quantile = |estimate: Option<Estimate>| estimate.map_or(f64::NAN, |estimate| estimate.value);
+    let traces: Vec<Box<dyn Trace>> = vec![
+        intervals_across(
+            "cases: median, 5 and 95 %",
+            column(&|_, figure| quantile(figure.median)),
+            &column(&|_, figure| quantile(figure.p05)),
+            &column(&|_, figure| quantile(figure.p95)),
+            names.clone(),
+            BESIDE,
+        ),
+        intervals_across(
+            "all frames, 95 % interval",
+            column(&|all, _| all.value),
+            &column(&|all, _| all.low.unwrap_or(all.value)),
+            &column(&|all, _| all.high.unwrap_or(all.value)),
+            names,
+            MEASURED,
+        ),
+    ];
+    let layout = Layout::new().x_axis(Axis::new().title("rate")).y_axis(Axis::new());
+    let mut data = DataTable::new(["rate", "all", "low", "high"]);
+    for (name, all, _) in &rates {
+        data.push([(*name).clone(), significant(all.value), cell(all.low), cell(all.high)]);
+    }
+    let height = 110 + 30 * rates.len() as u32;
+    let caption = "Rates over all frames, and how far the cases spread about them.";
+    section.chart(Chart::new(caption, height, data, traces, layout)).table(table)
+}
+
+/// The worst figure at each point of the sweep.
+fn sweep(study: &StudyResult) -> Section {
+    let summary = &study.summary;
+    let name = &summary.worst_by;
+    let label = |at: &indexmap::IndexMap<String, String>| {
+        at.iter().map(|(path, value)| format!("{path} = {value}")).collect::<Vec<_>>().join(", ")
+    };
+    let mut data = DataTable::new(["point", "cases", name.as_str()]);
+    let (mut x, mut y, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for point in &summary.sweep {
+        let estimate = point.figures.get(name).and_then(|figure| figure.all);
+        let text = estimate.as_ref().map_or_else(|| "–".to_owned(), shown);
+        data.push([label(&point.at), point.cases.to_string(), text]);
+        if let Some(estimate) = estimate {
+            x.push(plain(&label(&point.at)));
+            y.push(rounded(estimate.value, 9));
+            low.push(estimate.low.unwrap_or(estimate.value));
+            high.push(estimate.high.unwrap_or(estimate.value));
+        }
+    }
+    let traces: Vec<Box<dyn Trace>> = vec![intervals(name, x, y, &low, &high, MEASURED)];
+    Section::new("sweep", "Sweep").chart(Chart::new(
+        format!("{name} at every point of the sweep, with 95 % intervals."),
+        420,
+        data,
+        traces,
+        axes("", &plain(name)),
+    ))
+}
+
+/// How figures go with what was drawn.
+fn sensitivities(study: &StudyResult) -> Section {
+    let correlations = &study.summary.correlations;
+    let section = Section::new("sensitivities", "Sensitivities");
+    if correlations.is_empty() {
+        return section
+            .text("There is nothing to correlate: too few cases, or nothing drawn that is a number.");
+    }
+    let mut figures: Vec<&String> = Vec::new();
+    let mut parameters: Vec<&String> = Vec::new();
+    for correlation in correlations {
+        if !figures.contains(&&correlation.figure) {
+            figures.push(&correlation.figure);
+        }
+        if !parameters.contains(&&correlation.parameter) {
+            parameters.push(&correlation.parameter);
+        }
+    }
+    parameters.sort();
+    let of = |figure: &str, parameter: &str| {
+        let same = correlations.iter().find(|c| c.figure == figure && c.parameter == parameter);
+        same.map_or(f64::NAN, |c| rounded(c.correlation, 3))
+    };
+    let z: Vec<Vec<f64>> = figures
+        .iter()
+        .rev()
+        .map(|figure| parameters.iter().map(|parameter| of(figure, parameter)).collect())
+        .collect();
+    let names = |names: Vec<&&String>| names.into_iter().map(|name| plain(name)).collect::<Vec<_>>();
+    let map = HeatMap::new(names(parameters.iter().collect()), names(figures.iter().rev().collect()), z)
+        .zmin(-1.0)
+        .zmax(1.0)
+        .color_scale(ColorScale::Palette(ColorScalePalette::RdBu))
+        .hover_template("%{y}<br>with %{x}: %{z}<extra></extra>");
+    let mut data = DataTable::new(["figure", "drawn value", "correlation", "low", "high", "cases"]);
+    for c in correlations {
+        data.push([
+            c.figure.clone(),
+            c.parameter.clone(),
+            format!("{:.3}", c.correlation),
+            format!("{:.3}", c.low),
+            format!("{:.3}", c.high),
+            c.cases.to_string(),
+        ]);
+    }
+    section.chart(Chart::new(
+        "Spearman's rank correlation of figures with what was drawn: 1, the figure grows whenever the value does; −1, it falls. The \
+         table has the 95 % intervals.",
+        140 + 24 * figures.len() as u32,
+        data,
+        vec![map as Box<dyn Trace>],
+        Layout::new().x_axis(Axis::new()).y_axis(Axis::new()),
+    ))
+}
+
+/// Sobol indices of the figure that the worst cases are the worst by; all in the table.
+fn indices(study: &StudyResult) -> Section {
+    let summary = &study.summary;
+    let mut data = DataTable::new(["figure", "drawn value", "first", "low", "high", "total", "low", "high"]);
+    for index in &summary.indices {
+        let numbers = [
+            index.first,
+            index.first_interval[0],
+            index.first_interval[1],
+            index.total,
+            index.total_interval[0],
+            index.total_interval[1],
+        ];
+        let mut cells = vec![index.figure.clone(), index.parameter.clone()];
+        cells.extend(numbers.map(|number| format!("{number:.3}")));
+        data.push(cells);
+    }
+    let own: Vec<_> = summary.indices.iter().filter(|index| index.figure == summary.worst_by).collect();
+    let trace = |name: &str, value: fn(&crate::study::SobolIndex) -> (f64, [f64; 2]), colour| {
+        let names = own.iter().map(|index| plain(&index.parameter)).collect();
+        let values: Vec<(f64, [f64; 2])> = own.iter().map(|index| value(index)).collect();
+        let low: Vec<f64> = values.iter().map(|(_, interval)| interval[0]).collect();
+        let high: Vec<f64> = values.iter().map(|(_, interval)| interval[1]).collect();
+        intervals(
+            name,
+            names,
+            values.iter().map(|(value, _)| rounded(*value, 4)).collect(),
+            &low,
+            &high,
+            colour,
+        )
+    };
+    let traces: Vec<Box<dyn Trace>> = vec![
+        trace("first order", |index| (index.first, index.first_interval), MEASURED),
+        trace("total", |index| (index.total, index.total_interval), BESIDE),
+    ];
+    Section::new("indices", "Sobol indices").chart(Chart::new(
+        format!(
+            "Of {}: the part of its variance that is a value's alone, and with all in which it takes part.",
+            summary.worst_by
+        ),
+        400,
+        data,
+        traces,
+        axes("", "part of the variance"),
+    ))
+}
+
+/// The worst figure against every drawn value.
+fn scatter(study: &StudyResult) -> Section {
+    let (summary, table) = (&study.summary, &study.table);
+    let name = &summary.worst_by;
+    let section = Section::new("scatter", format!("{name} against what was drawn"));
+    let Some(values) = table.figure(name) else { return section.text("No case has the figure.") };
+    let mut charts = Vec::new();
+    for parameter in table.drawn.keys() {
+        let Some(numbers) = table.numbers(parameter) else { continue };
+        let rows: Vec<usize> = (0..numbers.len()).filter(|&row| values[row].value.is_some()).collect();
+        let value = |row: usize| values[row].value.unwrap_or(f64::NAN);
+        let kept = thinned(rows.len(), &[&|i| value(rows[i]), &|i| numbers[rows[i]]]);
+        let kept: Vec<usize> = kept.into_iter().map(|i| rows[i]).collect();
+        let x = kept.iter().map(|&row| numbers[row]).collect();
+        let y = kept.iter().map(|&row| rounded(value(row), 9)).collect();
+        let cases: Vec<u64> = kept.iter().map(|&row| table.rows[row].case).collect();
+        let cloud = points(name, x, y, MEASURED)
+            .custom_data(cases)
+            .hover_template("case %{customdata}<br>%{x}<br>%{y}<extra></extra>");
+        let mut sorted = rows.clone();
+        sorted.sort_by(|&a, &b| numbers[a].total_cmp(&numbers[b]).then(a.cmp(&b)));
+        let mut data = DataTable::new(["from", "to", "cases", "smallest", "mean", "largest"])
+            .caption("By stretches of the drawn value; cases.parquet has every case.");
+        for bin in bins(sorted.len(), TABLE_BINS.min(12)) {
+            let (first, last) = (sorted[bin.start], sorted[bin.end - 1]);
+            let mut cells = vec![significant(numbers[first]), significant(numbers[last])];
+            cells.extend(summed(bin.map(|i| value(sorted[i])), 4));
+            data.push(cells);
+        }
+        charts.push(Chart::new(
+            format!("{name} against {parameter}, a point a case."),
+            260,
+            data,
+            vec![cloud as Box<dyn Trace>],
+            axes(&plain(parameter), &plain(name)),
+        ));
+    }
+    let left_out = charts.len().saturating_sub(MOST_SCATTERS);
+    charts.truncate(MOST_SCATTERS);
+    let section = if left_out > 0 {
+        section.text(format!(
+            "Of so many drawn values the first {MOST_SCATTERS} are shown; cases.parquet has all."
+        ))
+    } else {
+        section
+    };
+    if charts.is_empty() {
+        section.text("Nothing that was drawn is a number.")
+    } else {
+        section.charts(charts)
+    }
+}
+
+/// The worst cases, with the commands that run them again.
+fn worst(study: &StudyResult) -> Section {
+    let summary = &study.summary;
+    let way = match sense(&summary.worst_by).better {
+        Better::More => "the smallest",
+        Better::Less => "the largest",
+        Better::Near(_) => "the farthest from what is best",
+    };
+    let section = Section::new("worst", "Worst cases");
+    if summary.worst.is_empty() {
+        return section.text("No case has the figure by which they would be the worst.");
+    }
+    let drawn: Vec<&String> = summary.worst[0].drawn.keys().collect();
+    let mut head = vec!["case".to_owned(), summary.worst_by.clone()];
+    head.extend(drawn.iter().map(|name| (*name).clone()));
+    head.push("runs it again".to_owned());
+    let mut table = DataTable::new(head).wordy();
+    for case in &summary.worst {
+        let mut cells = vec![case.case.to_string(), significant(case.value)];
+        cells.extend(drawn.iter().map(|name| match case.drawn.get(*name) {
+            Some(text) => text.parse::<f64>().map_or_else(|_| text.clone(), significant),
+            None => String::new(),
+        }));
+        cells.push(case.replay.clone());
+        table.push(cells);
+    }
+    section.text(format!("Those whose {} is {way}.", summary.worst_by)).table(table)
+}

@@ -1,0 +1,315 @@
+//! `boresight report`: what a page must hold, that its numbers are those of the files, and that it asks nothing of any network.
+
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
+mod support;
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use serde_json::Value;
+use support::Bench;
+
+/// Longest page, bytes.
+const MOST_BYTES: usize = 8_000_000;
+
+/// A page without the charting library in it, which has addresses of its own that it never asks for.
+struct PageText {
+    html: String,
+    bytes: usize,
+}
+
+impl PageText {
+    fn read(bench: &Bench, name: &str) -> Self {
+        let html = bench.read(name);
+        let bytes = html.len();
+        let start = html.find("<script>/**").or_else(|| html.find("<script>\n/**")).expect("plotly.js");
+        let end = start + html[start..].find("</script>").unwrap();
+        Self { html: html[..start].to_owned() + &html[end..], bytes }
+    }
+
+    /// The JSON of the script tags of a type, in their order.
+    fn documents(&self, tag: &str) -> Vec<Value> {
+        let parts = self.html.split(tag).skip(1);
+        parts
+            .map(|part| part.split_once('>').unwrap().1.split("</script>").next().unwrap())
+            .map(|json| serde_json::from_str(json).unwrap_or_else(|error| panic!("{error} in {json:.200}")))
+            .collect()
+    }
+
+    fn data(&self) -> Value {
+        self.documents(r#"<script type="application/json" id="report-data""#).remove(0)
+    }
+
+    fn charts(&self) -> Vec<Value> {
+        self.documents(r#"px"><script type="application/json""#)
+    }
+
+    /// Whatever every page must be.
+    fn check(&self, sections: &[&str]) {
+        assert!(self.bytes < MOST_BYTES, "{} bytes", self.bytes);
+        for section in sections {
+            assert!(self.html.contains(&format!("<section id=\"{section}\">")), "no section {section}");
+        }
+        self.check_asks_nothing();
+        assert!(self.html.contains("prefers-color-scheme: dark") && self.html.contains("@media print"));
+        let charts = self.charts();
+        assert!(!charts.is_empty());
+        let count = |text: &str| self.html.matches(text).count();
+        assert_eq!(count("<figure class=\"chart\">"), charts.len());
+        assert_eq!(count("<summary>Data</summary>"), charts.len(), "a table behind every chart");
+        for chart in charts {
+            assert!(!chart["data"].as_array().unwrap().is_empty() && chart["layout"].is_object());
+        }
+    }
+
+    /// No attribute and no style names anything outside of the page, and the browser is told to refuse it.
+    fn check_asks_nothing(&self) {
+        assert!(self.html.contains(
+            "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:;"
+        ));
+        for opening in ["src=\"", "href=\"", "srcset=\"", "action=\"", "url(", "@import", "data-src=\""] {
+            for (at, _) in self.html.match_indices(opening) {
+                let value = &self.html[at + opening.len()..];
+                assert!(value.starts_with("data:") || value.starts_with('#'), "{opening}{value:.80}");
+            }
+        }
+        for (at, tag) in self.html.match_indices("<link").chain(self.html.match_indices("<iframe")) {
+            assert!(self.html[at..].starts_with("<link rel=\"icon\" href=\"data:,\""), "{tag}");
+        }
+    }
+}
+
+#[test]
+fn the_page_of_a_far_range_run_has_the_papers_figures_and_the_numbers_of_its_score() {
+    let bench = Bench::new();
+    bench.boresight("run argon --frames 40..60 --out run").done();
+    let page = PageText::read(&bench, "run/report.html");
+    page.check(&["table-2", "fig-3", "fig-5", "fig-6", "fig-7", "fig-8", "fig-9", "causes", "frames"]);
+    let score = bench.json("run/score.json");
+    assert_eq!(page.data()["score"], score);
+    // Every kind of miss and of wrong answer has a picture.
+    for (kind, title) in [("misses", "Missed: "), ("wrong", "Wrong: ")] {
+        for cause in score[kind].as_object().unwrap().keys() {
+            let words = format!("<b>{title}{}", cause.replace('_', " "));
+            assert!(page.html.contains(&words), "no picture of {kind}: {cause}");
+        }
+    }
+    assert!(page.html.contains("<image href=\"data:image/png;base64,"));
+    assert!(page.html.contains("class=\"truth\"") && page.html.contains("class=\"measured\""));
+    // Published rates of day 1.
+    assert!(page.html.contains("<td>94.92</td>"));
+    // The chart of errors holds those of the detected, frame by frame.
+    let errors = page.charts().into_iter().find(|chart| chart.to_string().contains("RA error")).unwrap();
+    let drawn: usize = ["right", "wrong"]
+        .iter()
+        .map(|name| {
+            let traces = errors["data"].as_array().unwrap();
+            traces.iter().find(|trace| trace["name"] == *name).unwrap()["y"].as_array().unwrap().len()
+        })
+        .sum();
+    assert_eq!(drawn as u64, score["figures"]["ra_within_1px"]["of"].as_u64().unwrap());
+}
+
+#[test]
+fn a_report_is_the_same_bytes_from_the_same_directory_wherever_it_is_written() {
+    let bench = Bench::new();
+    bench.boresight("run argon --frames 300..306 --out run").done();
+    let answer = bench.boresight("report run --out again.html --json").done().json();
+    bench.check_same("run/report.html", "again.html");
+    assert_eq!(answer["report"], "again.html");
+    assert_eq!(answer["bytes"].as_u64().unwrap(), fs::metadata(bench.path("again.html")).unwrap().len());
+    fs::rename(bench.path("run"), bench.path("moved")).unwrap();
+    bench.boresight("report moved").done();
+    bench.check_same("moved/report.html", "again.html");
+    let names: BTreeSet<_> = bench.tree("moved").into_keys().collect();
+    assert!(names.iter().all(|name| !name.to_string_lossy().contains("partial")), "{names:?}");
+}
+
+#[test]
+fn no_report_leaves_none() {
+    let bench = Bench::new();
+    bench.boresight("run starting-point --frames 0..3 --out run --no-report").done();
+    assert!(!bench.path("run/report.html").exists());
+}
+
+#[test]
+fn a_run_with_injected_truth_says_so() {
+    let bench = Bench::new();
+    bench.boresight("run argon --frames 300..303 --inject roi --out run").done();
+    let page = PageText::read(&bench, "run/report.html");
+    page.check(&["fig-6"]);
+    assert!(page.html.contains("The truth was injected for roi"));
+    assert!(page.html.contains("sends whole images"));
+}
+
+#[test]
+fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
+    let bench = Bench::new();
+    bench.boresight("run argon --frames 220..240 --out honest --no-report").done();
+    for stage in ["roi", "attitude"] {
+        bench
+            .boresight(&format!("run argon --frames 220..240 --inject {stage} --out {stage} --no-report"))
+            .done();
+    }
+    bench.boresight("report honest --budget roi --budget attitude").done();
+    let page = PageText::read(&bench, "honest/report.html");
+    page.check(&["budget"]);
+    let chart = page.charts().into_iter().find(|chart| chart.to_string().contains("RMS error")).unwrap();
+    assert_eq!(chart["data"][0]["x"], serde_json::json!(["none: the honest run", "attitude", "roi"]));
+    let own = bench.json("attitude/score.json")["figures"]["ra_rms_deg"]["value"].as_f64().unwrap();
+    assert!((chart["data"][0]["y"][1].as_f64().unwrap() - own).abs() < 1e-6);
+
+    bench.boresight("report honest --budget honest").refused(&["honest/run.toml", "`inject` is missing"]);
+    bench.boresight("report roi --budget attitude").refused(&["--budget", "honest run"]);
+    bench.boresight("run argon --frames 220..239 --inject attitude --out short --no-report").done();
+    bench.boresight("report honest --budget short").refused(&["short/run.toml", "other frames"]);
+    bench.boresight("run argon --seed 5 --frames 220..240 --inject attitude --out seed --no-report").done();
+    bench.boresight("report honest --budget seed").refused(&["seed/run.toml", "`scenario`"]);
+    bench.boresight("report honest --budget nowhere").refused(&["nowhere/run.toml"]);
+}
+
+#[test]
+fn the_page_of_a_docking_run_has_the_papers_figures_and_the_numbers_of_its_score() {
+    let bench = Bench::new();
+    bench.boresight("run docking --frames 15000..15060 --out run").done();
+    let page = PageText::read(&bench, "run/report.html");
+    page.check(&["figures", "fig-5", "fig-6", "field-errors", "verdicts", "fields"]);
+    let score = bench.json("run/score.json");
+    assert_eq!(page.data()["score"], score);
+    assert!(page.html.contains("<b>Measured.</b>") && page.html.contains("cross, recognised"));
+    let motion = bench.csv("run/motion.csv");
+    let best = motion.iter().filter(|row| row["estimator"] == "best").count();
+    let parameters = page.charts().remove(0);
+    let rho = &parameters["data"].as_array().unwrap()[2];
+    assert_eq!((rho["name"].as_str(), rho["y"].as_array().unwrap().len()), (Some("best estimate"), best));
+}
+
+#[test]
+fn the_page_of_a_study_has_its_summary_and_the_commands_of_its_worst_cases() {
+    let bench = Bench::new();
+    bench.write(
+        "study.toml",
+        r#"
+title = "two frames of ARGON"
+scenario = "argon"
+seed = 5
+frames = "2000..2002"
+[stop]
+cases = 6
+[[vary]]
+path = "psf.sigma_px"
+law = { kind = "normal", mean = 0.8, sigma = 0.1 }
+"#,
+    );
+    bench.boresight("study run study.toml --out out --shards 1").done();
+    let page = PageText::read(&bench, "out/report.html");
+    page.check(&["figures", "sensitivities", "scatter", "worst"]);
+    let summary = bench.json("out/summary.json");
+    assert_eq!(page.data()["summary"], summary);
+    assert!(page.html.contains(summary["worst"][0]["replay"].as_str().unwrap()));
+    check_same_report(&bench, "out");
+
+    for i in 1..=2 {
+        bench.boresight(&format!("study run study.toml --out parts --shard {i}/2")).done();
+        assert!(!bench.path("parts/report.html").exists(), "a shard is no study");
+    }
+    bench.boresight("study merge study.toml --out parts --no-report").done();
+    assert!(!bench.path("parts/report.html").exists());
+    bench.boresight("study merge study.toml --out parts").done();
+    assert!(bench.path("parts/report.html").exists());
+}
+
+#[test]
+fn the_page_of_requirements_has_table_curves_and_sky() {
+    let bench = Bench::new();
+    bench.boresight("visibility uasc-far-range --frames 0 --out out --report beside.html");
+    let page = PageText::read(&bench, "out/report.html");
+    page.check(&[
+        "requirements",
+        "detection",
+        "limiting-magnitude",
+        "sky",
+        "exposure-window",
+        "target-range",
+    ]);
+    assert_eq!(page.data()["visibility"], bench.json("out/visibility.json"));
+    bench.check_same("out/report.html", "beside.html");
+    check_same_report(&bench, "out");
+    let map = page.charts().into_iter().find(|chart| chart["data"][0]["type"] == "scattergeo").unwrap();
+    let points = |i: usize| map["data"][i]["lat"].as_array().unwrap().len();
+    assert_eq!(points(0) + points(1), bench.csv("out/sky.csv").len());
+}
+
+#[test]
+fn the_page_of_a_gate_shows_what_flipped() {
+    let bench = Bench::new();
+    bench.boresight("run argon --frames 0..60 --out run --no-report").done();
+    bench.boresight("gate baseline run --out base --reason first --block-length 6").done();
+    bench.scenario("other.toml", "argon", |scenario| {
+        let table = scenario.entry("far_range").or_insert(toml::Value::Table(toml::Table::new()));
+        let identification: toml::Table = "radius_px = 0.3".parse().unwrap();
+        table.as_table_mut().unwrap().insert("identification".into(), identification.into());
+    });
+    bench.boresight("run other.toml --frames 0..60 --out other --no-report").done();
+    let report = bench.boresight("gate base other --report gate.html --json").json();
+    let page = PageText::read(&bench, "gate.html");
+    page.check(&["effects", "flips"]);
+    assert_eq!(page.data()["figures"], report["figures"]);
+    let flips = report["flips"]["units"].as_array().unwrap();
+    assert!(!flips.is_empty(), "the test needs a frame that flips");
+    assert!(page.html.contains("<figure class=\"picture\">") && page.html.contains(" → "));
+    assert_eq!(page.html.matches("<figure class=\"picture\">").count(), flips.len().min(12));
+}
+
+#[test]
+fn directories_that_are_no_results_are_refused_by_name() {
+    let bench = Bench::new();
+    bench.boresight("report nowhere").refused(&["nowhere", "expected a directory"]);
+    bench.write("empty/notes.txt", "nothing");
+    bench.boresight("report empty").refused(&["empty", "run.toml", "summary.json", "visibility.json"]);
+    bench.boresight("render argon --frames 300..302 --out set").done();
+    bench.boresight("report set").refused(&["set/score.json", "is missing"]);
+    bench.boresight("run argon --frames 300..302 --out run --no-report").done();
+    for (name, part) in [
+        ("measurements.csv", "is missing"),
+        ("truth/objects.parquet", "is missing"),
+        ("telemetry.csv", "is missing"),
+    ] {
+        let kept = fs::read(bench.path("run").join(name)).unwrap();
+        fs::remove_file(bench.path("run").join(name)).unwrap();
+        bench.boresight("report run").refused(&[name, part]);
+        assert!(!bench.path("run/report.html").exists());
+        bench.write(&format!("run/{name}"), kept);
+    }
+    let score = bench.read("run/score.json");
+    bench.write("run/score.json", &score[..score.len() / 2]);
+    bench.boresight("report run --json").refused(&["run/score.json", "score"]);
+    bench.write("run/score.json", score.replacen("\"frames\": 2", "\"frames\": 3", 1));
+    bench.boresight("report run").refused(&["run/score.json", "`frames` is 3", "truth/frames.parquet"]);
+    bench.write("run/score.json", &score);
+    bench.boresight("report run --out nowhere/report.html").refused(&["nowhere"]);
+    bench.boresight("report run").done();
+}
+
+#[test]
+fn hostile_text_is_shown_and_not_run() {
+    let hostile = "</script><script>alert(1)</script><img src=\"http://a.invalid/x\">";
+    let bench = Bench::new();
+    bench.scenario("hostile.toml", "argon", |scenario| {
+        scenario.insert("title".into(), hostile.into());
+        scenario["schedule"][0].as_table_mut().unwrap().insert("name".into(), hostile.into());
+    });
+    bench.boresight("run hostile.toml --frames 0..4 --out run").done();
+    let page = PageText::read(&bench, "run/report.html");
+    page.check(&["table-2"]);
+    assert!(!page.html.contains("<script>alert") && !page.html.contains("<img"), "markup of somebody else's");
+    assert!(page.html.contains("alert(1)"), "the title is shown");
+    assert_eq!(page.data()["score"], bench.json("run/score.json"));
+}
+
+/// What the command that made a directory wrote is what `report` writes of it.
+fn check_same_report(bench: &Bench, directory: &str) {
+    bench.boresight(&format!("report {directory} --out once-more.html")).done();
+    bench.check_same(&format!("{directory}/report.html"), "once-more.html");
+}
