@@ -1,6 +1,5 @@
 //! The smallest pipeline there is, scored: it calls the brightest pixel the target.
 
-use boresight::failure::Failure;
 use boresight::run::Prepared;
 use boresight::scenario::ScenarioSource;
 use boresight::table::{TableStyle, far_range};
@@ -38,7 +37,7 @@ impl PipelineFactory for BrightestFactory {
     }
 }
 
-fn main() -> Result<(), Failure> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let prepared = Prepared::new(&ScenarioSource::read("argon")?)?;
     let ran = prepared.score(8000..8200, &BrightestFactory)?;
     println!("{}", far_range(&ran.scored.score, TableStyle::default()));
