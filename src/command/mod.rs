@@ -2,6 +2,7 @@
 
 mod dataset;
 mod gate;
+mod monitor;
 mod options;
 mod output;
 mod run;
@@ -47,6 +48,8 @@ enum Command {
     Visibility(visibility::VisibilityArguments),
     /// Say whether a result is worse than a baseline; exit status 1 when it is
     Gate(gate::GateArguments),
+    /// The page of an operator, on loopback: camera, ground track, phase chart, model and parameters
+    Monitor(monitor::MonitorArguments),
     /// List, check and start scenarios
     #[command(subcommand)]
     Scenario(scenario::ScenarioCommand),
@@ -82,6 +85,7 @@ pub fn main() -> ExitCode {
         Command::Study(command) => study::study(&command, &output),
         Command::Visibility(arguments) => visibility::visibility(&arguments, &output),
         Command::Gate(arguments) => gate::gate(&arguments, &output),
+        Command::Monitor(arguments) => monitor::monitor(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
         Command::Completions(arguments) => shell::completions(&arguments, &output),
         Command::Man(arguments) => shell::man(&arguments, &output),
