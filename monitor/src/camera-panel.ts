@@ -46,7 +46,7 @@ export class CameraPanel {
   overlay = true;
   truth = false;
 
-  constructor(private readonly session: Session) {
+  constructor(session: Session) {
     const legend = element("#legend");
     for (const [kind, text, round] of LEGENDS[session.world]) {
       const item = document.createElement("span");
@@ -98,7 +98,7 @@ export class CameraPanel {
     context.beginPath();
     context.rect(-0.5, -0.5, columns, camera_rows);
     context.clip();
-    context.imageSmoothingQuality = "low";
+    context.imageSmoothingQuality = "medium";
     // Each row of a field stands about its own row of the camera.
     context.drawImage(this.picture, -0.5, first_row - row_step / 2, columns, rows * row_step);
     if (this.overlay) {
@@ -119,7 +119,7 @@ export class CameraPanel {
       const { x_px: x, y_px: y, size_px: size } = shape;
       context.strokeStyle = all ?? COLOURS[shape.kind] ?? "#ffffff";
       context.fillStyle = context.strokeStyle;
-      context.lineWidth = ((shape.kind === "target" || shape.kind === "cross" ? 1.8 : 1.2) * density) / scale;
+      context.lineWidth = ((shape.kind === "target" || shape.kind === "cross" ? 2 : 1.2) * density) / scale;
       context.setLineDash(all ? [(4 * density) / scale, (3 * density) / scale] : []);
       context.beginPath();
       if (shape.figure === "circle") {
@@ -137,8 +137,8 @@ export class CameraPanel {
         }
       }
       context.stroke();
-      if (shape.label && this.session.world === "far_range" && this.truth) {
-        context.font = `${(10 * density) / scale}px system-ui, sans-serif`;
+      if (shape.label) {
+        context.font = `${(9 * density) / scale}px system-ui, sans-serif`;
         context.fillText(shape.label, x + size + 2, y + size / 2);
       }
     }

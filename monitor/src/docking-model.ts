@@ -21,6 +21,8 @@ import { fieldOfView, placed, Stage, vector } from "./stage.js";
 
 const MEASURED = 0xffb84d;
 const TRUTH = 0xd9a7ff;
+// The middle of station's end and spacecraft lies behind that of target and camera, m.
+const BEHIND = new Vector3(0, -0.5, 1.5);
 
 export class DockingModel {
   readonly stage: Stage;
@@ -65,8 +67,8 @@ export class DockingModel {
         cone.scale.setScalar(range);
       });
     }
-    stage.centre.copy(where).multiplyScalar(0.55);
-    stage.distance = 1.15 * range + 9;
+    stage.centre.copy(where).multiplyScalar(0.5).add(BEHIND);
+    stage.distance = 1.1 * range + 15;
     if (model.sun) {
       stage.sun.position.copy(vector(model.sun)).multiplyScalar(100);
     }
@@ -84,7 +86,7 @@ function station({ facets }: Facets): Mesh {
     const v = new Vector3().crossVectors(up, u);
     const flat = (corner: Vector) => new Vector2(vector(corner).dot(u), vector(corner).dot(v));
     const corners = [...outer, ...(holes ?? []).flat()];
-    const shade = new Color().setScalar(Math.sqrt(reflectance) * 0.85);
+    const shade = new Color().setScalar(0.75 * reflectance ** 0.8 + 0.01);
     for (const face of ShapeUtils.triangulateShape(outer.map(flat), (holes ?? []).map((hole) => hole.map(flat)))) {
       for (const index of face) {
         places!.push(...corners[index]!);

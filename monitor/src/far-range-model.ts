@@ -14,7 +14,7 @@ import {
   Vector3,
 } from "three";
 import type { Model, Session } from "./api.js";
-import { fieldOfView, line, placed, Stage, vector } from "./stage.js";
+import { fieldOfView, label, line, placed, Stage, vector } from "./stage.js";
 
 const EARTH_RADIUS_KM = 6371;
 const ORBIT_RADIUS_KM = 7130;
@@ -31,6 +31,8 @@ export class FarRangeModel {
   private readonly sight: Line;
   private readonly chaser: Mesh;
   private readonly target: Mesh;
+  private readonly targetLabel = label("target", "#ff8f8f");
+  private readonly chaserLabel = label("chaser", "#ffffff");
 
   constructor(session: Session, onTurn: () => void) {
     this.stage = new Stage(0.02, 30000, 0.55, 0.3, onTurn);
@@ -48,7 +50,9 @@ export class FarRangeModel {
     const orbit = (session.orbit_rtn_km ?? []).map(vector);
     world.add(line(orbit, 0x57c7ff, 0.55));
     for (const radius of [1, 5, 10, 20, 30]) {
-      world.add(ring(radius));
+      const mark = label(`${radius} km`, "#8496a8");
+      mark.position.set(0, -radius, 0);
+      world.add(ring(radius), mark);
     }
     this.target = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({ color: 0xff6b6b }));
     this.chaser = new Mesh(new ConeGeometry(0.6, 1.8, 16).rotateX(Math.PI / 2), new MeshBasicMaterial({ color: 0xffffff }));
@@ -59,7 +63,7 @@ export class FarRangeModel {
     for (const body of [this.chaser, this.field, this.ghost]) {
       body.matrixAutoUpdate = false;
     }
-    world.add(this.target, this.chaser, this.field, this.ghost, this.sight);
+    world.add(this.target, this.chaser, this.field, this.ghost, this.sight, this.targetLabel, this.chaserLabel);
   }
 
   show(model: Model): void {
@@ -77,6 +81,7 @@ export class FarRangeModel {
     }
     this.ghost.visible = this.truth;
     this.ghost.matrix.copy(placed(model.truth)).scale(new Vector3(range, range, range));
+    this.chaserLabel.position.copy(position);
     this.sight.visible = model.line_of_sight !== null;
     if (model.line_of_sight) {
       const end = vector(model.line_of_sight).multiplyScalar(range).add(position);
@@ -85,7 +90,7 @@ export class FarRangeModel {
     }
     const { stage } = this;
     stage.centre.copy(position).multiplyScalar(0.5).applyMatrix4(this.world.matrix);
-    stage.distance = 1.25 * range;
+    stage.distance = 1.75 * range;
     stage.sun.position.copy(vector(model.sun)).applyMatrix4(this.world.matrix).multiplyScalar(1e5);
     stage.invalidate();
   }

@@ -44,6 +44,7 @@ export class GroundPanel {
     if (fit(canvas) || this.base.width !== canvas.width) {
       this.drawBase();
     }
+    context.clearRect(0, 0, canvas.width, canvas.height);
     context.drawImage(this.base, 0, 0);
     const ground = this.last?.ground;
     if (!ground) {

@@ -81,7 +81,7 @@ async function start(): Promise<void> {
       number.value = String(player.frame);
     }
     speed.value = String(player.speed);
-    element("#play").textContent = player.playing ? "⏸" : "▶";
+    element("#play-icon").setAttribute("d", player.playing ? "M4 3h3v10H4zM9 3h3v10H9z" : "M4 2v12l9-6z");
   }
 
   function toggleTruth(): void {

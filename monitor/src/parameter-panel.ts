@@ -82,7 +82,7 @@ export class ParameterPanel {
       cell.dataset["value"] = value === null ? "" : String(value);
     };
     set(row.measured, measured, decimals);
-    set(row.sigma, sigma, decimals);
+    set(row.sigma, sigma, decimals + 1);
     set(row.truth, truth, decimals);
     const error = measured === null || truth === null ? null : measured - truth;
     set(row.error, error, decimals);

@@ -3,6 +3,7 @@
 import {
   AmbientLight,
   BufferGeometry,
+  CanvasTexture,
   Color,
   DirectionalLight,
   Float32BufferAttribute,
@@ -12,11 +13,13 @@ import {
   Matrix4,
   PerspectiveCamera,
   Scene,
+  Sprite,
+  SpriteMaterial,
   Vector3,
   WebGLRenderer,
 } from "three";
 import type { Camera, Vector, View } from "./api.js";
-import { element, fit } from "./canvas.js";
+import { context, element, fit } from "./canvas.js";
 
 export class Stage {
   readonly scene = new Scene();
@@ -125,6 +128,28 @@ export function fieldOfView(camera: Camera, colour: number): LineSegments {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new Float32BufferAttribute(places, 3));
   return new LineSegments(geometry, new LineBasicMaterial({ color: colour, transparent: true, opacity: 0.8 }));
+}
+
+/** A word at a place, always of the same size on the screen. */
+export function label(text: string, style: string): Sprite {
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [256, 64];
+  const onto = context(canvas);
+  onto.font = "30px system-ui, sans-serif";
+  onto.fillStyle = style;
+  onto.textBaseline = "middle";
+  onto.fillText(text, 12, 32);
+  const material = new SpriteMaterial({
+    map: new CanvasTexture(canvas),
+    sizeAttenuation: false,
+    depthTest: false,
+    transparent: true,
+  });
+  const sprite = new Sprite(material);
+  // From the place to the right of it.
+  sprite.center.set(0, 0.5);
+  sprite.scale.set(0.24, 0.06, 1);
+  return sprite;
 }
 
 export function line(points: Vector3[], colour: number, opacity = 1): Line {

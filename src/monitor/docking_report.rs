@@ -59,6 +59,7 @@ impl<'a> DockingReporter<'a> {
         }
         let measured = outcome.and_then(DockingOutcome::measurement).map(|measured| &measured.best);
         let mut parameters = pose_parameters(
+            &BEST,
             measured.map(|best| &best.pose),
             measured.map(|best| [0, 1, 2, 3, 4, 5].map(|i| best.covariance[(i, i)].max(0.0).sqrt())),
             &truth.pose,
@@ -76,6 +77,8 @@ impl<'a> DockingReporter<'a> {
             });
         }
         parameters.extend(self.portion_parameters());
+        let paper = outcome.and_then(DockingOutcome::measurement).and_then(|measured| measured.paper.as_ref());
+        parameters.extend(pose_parameters(&PAPER, paper, None, &truth.pose));
         FrameReport {
             frame: truth.field,
             time_utc: format_utc(truth.time),
@@ -165,10 +168,10 @@ impl<'a> DockingReporter<'a> {
 
     fn portion_parameters(&self) -> impl Iterator<Item = Parameter> {
         const ROWS: [(&str, &str, &str, u8); 4] = [
-            ("rho_m", "ρ", "m", 3),
-            ("u_m_s", "u", "m/s", 4),
-            ("alpha_deg", "α", "°", 3),
-            ("beta_deg", "β", "°", 3),
+            ("rho_m", "ρ range", "m", 3),
+            ("u_m_s", "u range rate", "m/s", 4),
+            ("alpha_deg", "α passive pitch", "°", 3),
+            ("beta_deg", "β passive yaw", "°", 3),
         ];
         let four = |shown: &Shown| {
             [shown.rho_m, shown.u_m_s, shown.alpha_rad.to_degrees(), shown.beta_rad.to_degrees()]
@@ -177,7 +180,7 @@ impl<'a> DockingReporter<'a> {
         let truth = self.portion.as_ref().map(|portion| four(&portion.truth));
         let sigmas = self.portion.as_ref().and_then(|portion| portion.sigmas);
         ROWS.into_iter().enumerate().map(move |(i, (name, label, unit, decimals))| Parameter {
-            section: "Portion",
+            section: "Portion, best estimator",
             name,
             label,
             unit,
@@ -199,24 +202,47 @@ fn true_at(truth: &FieldTruth, motion: &Motion) -> Shown {
     Shown::of(&pose, &truth.velocity_m_s)
 }
 
-fn pose_parameters(pose: Option<&Pose>, sigmas: Option<[f64; 6]>, truth: &Pose) -> Vec<Parameter> {
-    const ROWS: [(&str, &str); 6] = [
+/// A section of six parameters: its title, and the name and label of each.
+type Section = (&'static str, [(&'static str, &'static str); 6]);
+
+const BEST: Section = (
+    "Field, best estimator",
+    [
         ("d1_m", "d₁"),
         ("d2_m", "d₂"),
         ("d3_m", "d₃"),
         ("phi1_deg", "φ₁ pitch"),
         ("phi2_deg", "φ₂ yaw"),
         ("phi3_deg", "φ₃ roll"),
-    ];
+    ],
+);
+const PAPER: Section = (
+    "Field, the paper's formulas",
+    [
+        ("paper_d1_m", "d₁"),
+        ("paper_d2_m", "d₂"),
+        ("paper_d3_m", "d₃"),
+        ("paper_phi1_deg", "φ₁ pitch"),
+        ("paper_phi2_deg", "φ₂ yaw"),
+        ("paper_phi3_deg", "φ₃ roll"),
+    ],
+);
+
+fn pose_parameters(
+    (section, rows): &Section,
+    pose: Option<&Pose>,
+    sigmas: Option<[f64; 6]>,
+    truth: &Pose,
+) -> Vec<Parameter> {
     let six = |pose: &Pose| {
         let (d, phi) = (&pose.position_m, &pose.phi_rad);
         [d.x, d.y, d.z, phi.x.to_degrees(), phi.y.to_degrees(), phi.z.to_degrees()]
     };
     let (measured, truth) = (pose.map(six), six(truth));
-    let row = |(i, (name, label)): (usize, (&'static str, &'static str))| {
+    let row = |(i, &(name, label)): (usize, &(&'static str, &'static str))| {
         let is_angle = i >= 3;
         Parameter {
-            section: "Field",
+            section,
             name,
             label,
             unit: if is_angle { "°" } else { "m" },
@@ -226,7 +252,7 @@ fn pose_parameters(pose: Option<&Pose>, sigmas: Option<[f64; 6]>, truth: &Pose) 
             truth: Some(truth[i]),
         }
     };
-    ROWS.into_iter().enumerate().map(row).collect()
+    rows.iter().enumerate().map(row).collect()
 }
 
 fn status(outcome: Option<&DockingOutcome>) -> String {

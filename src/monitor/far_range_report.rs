@@ -15,6 +15,8 @@ const CLUSTER_PX: f64 = 5.0;
 const TRUTH_PX: f64 = 7.0;
 /// Most true objects that are drawn: a picture full of particles says no more with all of them.
 const MOST_TRUTHS: usize = 300;
+/// Of an object's light, what the regions may cut away before it counts as not in the picture.
+const MOST_CUT: f64 = 0.5;
 
 /// Makes the reports of frames.
 pub(super) struct FarRangeReporter<'a> {
@@ -106,10 +108,6 @@ fn parameters(truth: &FrameTruth, objects: &[ObjectTruth], outcome: Option<&Outc
     };
     let los = line_of_sight.as_ref().map(contract::Direction::vector);
     let true_los = truth.line_of_sight.vector();
-    let stars = objects
-        .iter()
-        .filter(|o| o.kind == ObjectKind::Star && Visibility::of_snr(o.snr) == Visibility::Detectable)
-        .count();
     let n_stars = outcome.and_then(|outcome| outcome.n_stars).map(f64::from);
     vec![
         row(TARGET, "x_px", "x", "px", 2, measurement.map(|m| m.position.x), place.map(|p| p.x)),
@@ -135,7 +133,7 @@ fn parameters(truth: &FrameTruth, objects: &[ObjectTruth], outcome: Option<&Outc
         row("Line of sight, J2000", "los_j2000_x", "lx", "", 6, los.map(|v| v.x), Some(true_los.x)),
         row("Line of sight, J2000", "los_j2000_y", "ly", "", 6, los.map(|v| v.y), Some(true_los.y)),
         row("Line of sight, J2000", "los_j2000_z", "lz", "", 6, los.map(|v| v.z), Some(true_los.z)),
-        row("Scene", "n_stars", "Stars", "", 0, n_stars, Some(stars as f64)),
+        row("Scene", "n_stars", "Stars identified", "", 0, n_stars, None),
         row("Scene", "range_km", "Range", "km", 3, None, Some(truth.range_km)),
         row("Scene", "phase_deg", "Phase angle", "°", 1, None, Some(truth.phase_deg)),
         row("Scene", "snr", "Target SNR", "", 1, None, target.map(|target| target.snr)),
@@ -158,7 +156,7 @@ fn recognised(outcome: Option<&Outcome>) -> Vec<Shape> {
     let clusters = outcome.clusters.iter().filter(|cluster| cluster.label != Label::Target);
     let target = outcome
         .measurement()
-        .map(|m| Shape::new("cross", "target", [m.position.x, m.position.y], 2.4 * CLUSTER_PX));
+        .map(|m| Shape::new("cross", "target", [m.position.x, m.position.y], 4.0 * CLUSTER_PX));
     clusters
         .map(|cluster| {
             let place = [cluster.position.x, cluster.position.y];
@@ -175,7 +173,7 @@ fn recognised(outcome: Option<&Outcome>) -> Vec<Shape> {
 fn true_places(objects: &[ObjectTruth]) -> Vec<Shape> {
     objects
         .iter()
-        .filter(|object| Visibility::of_snr(object.snr) != Visibility::Invisible)
+        .filter(|object| Visibility::of_snr(object.snr) != Visibility::Invisible && object.cut < MOST_CUT)
         .take(MOST_TRUTHS)
         .map(|object| {
             let kind = format!("truth {}", object.kind.code());
