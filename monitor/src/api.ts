@@ -101,7 +101,7 @@ export class NotYet extends Error {
 
 async function ask(path: string, signal?: AbortSignal): Promise<Response> {
   const response = await fetch(path, { signal: signal ?? null });
-  if (response.status === 503 || response.status === 500) {
+  if (response.status === 202 || response.status === 500) {
     throw new NotYet((await response.json()) as Progress);
   }
   if (!response.ok) {

@@ -20,6 +20,8 @@ const COLOURS: Record<string, string> = {
   candidate: "#9be564",
 };
 const TRUTH = "#d9a7ff";
+/** Side of what is enlarged about a distant target, px of the camera. */
+const MAGNIFIED_PX = 32;
 
 const LEGENDS: Record<Session["world"], [string, string, boolean][]> = {
   docking: [
@@ -46,7 +48,7 @@ export class CameraPanel {
   overlay = true;
   truth = false;
 
-  constructor(session: Session) {
+  constructor(private readonly session: Session) {
     const legend = element("#legend");
     for (const [kind, text, round] of LEGENDS[session.world]) {
       const item = document.createElement("span");
@@ -108,8 +110,48 @@ export class CameraPanel {
       this.shapes(report.truth_overlay, scale, TRUTH);
     }
     context.restore();
+    if (this.session.world === "far_range") {
+      this.magnify(scale);
+    }
     // For whoever reads the picture from the page: camera pixel (x, y) is at left + scale x, top + scale y.
     Object.assign(canvas.dataset, { frame: report.frame, scale, left, top });
+  }
+
+  /** The target's surroundings, enlarged, in the lower left corner: a region of interest is a few pixels of the page. */
+  private magnify(scale: number): void {
+    const target = this.last?.report.overlay.find((shape) => shape.kind === "target");
+    if (!target) {
+      return;
+    }
+    const { context, canvas } = this;
+    const density = Math.min(devicePixelRatio, 2);
+    const side = Math.min(130 * density, canvas.height / 3);
+    const enlarged = side / MAGNIFIED_PX;
+    const [x, y] = [Math.round(target.x_px) - MAGNIFIED_PX / 2, Math.round(target.y_px) - MAGNIFIED_PX / 2];
+    context.save();
+    context.setTransform(1, 0, 0, 1, 8 * density, canvas.height - side - 8 * density);
+    context.fillStyle = "#000";
+    context.fillRect(0, 0, side, side);
+    context.imageSmoothingEnabled = false;
+    // From the first pixel's corner: the pixel (x, y) covers x to x + 1 of the picture.
+    context.drawImage(this.picture, x, y, MAGNIFIED_PX, MAGNIFIED_PX, 0, 0, side, side);
+    context.strokeStyle = COLOURS["target"]!;
+    context.lineWidth = density;
+    context.strokeRect(0, 0, side, side);
+    if (this.overlay) {
+      const [u, v] = [(target.x_px + 0.5 - x) * enlarged, (target.y_px + 0.5 - y) * enlarged];
+      const [near, far] = [side / 8, side / 4];
+      context.beginPath();
+      for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]] as const) {
+        context.moveTo(u + near * dx, v + near * dy);
+        context.lineTo(u + far * dx, v + far * dy);
+      }
+      context.stroke();
+    }
+    context.font = `${10 * density}px system-ui, sans-serif`;
+    context.fillStyle = COLOURS["target"]!;
+    context.fillText(`target ${(enlarged / scale).toFixed(0)}×`, 5 * density, 13 * density);
+    context.restore();
   }
 
   private shapes(shapes: Shape[], scale: number, all: string | null): void {

@@ -51,7 +51,7 @@ export class FarRangeModel {
     world.add(line(orbit, 0x57c7ff, 0.55));
     for (const radius of [1, 5, 10, 20, 30]) {
       const mark = label(`${radius} km`, "#8496a8");
-      mark.position.set(0, -radius, 0);
+      mark.position.set(radius, 0, 0);
       world.add(ring(radius), mark);
     }
     this.target = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({ color: 0xff6b6b }));

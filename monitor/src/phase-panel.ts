@@ -66,7 +66,7 @@ export class PhasePanel {
         // The approach goes to the right.
         x: { time: false, dir: -1, ...(isWide ? { distr: 3 as const } : {}), range: [least * 0.95, greatest * 1.05] },
       },
-      axes: [axis(`range, ${range_unit}`, 34), axis("rate, m/s", 50)],
+      axes: [axis(`range, ${range_unit}`, 22), axis("rate, m/s", 44)],
       series: [{}, edge, edge],
       bands: [{ series: [2, 1], fill: colour("corridor") }],
       hooks: { draw: [(chart) => this.drawFlight(chart)] },

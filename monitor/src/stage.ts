@@ -63,7 +63,8 @@ export class Stage {
       this.eye.aspect = this.canvas.width / this.canvas.height;
       this.eye.updateProjectionMatrix();
     }
-    const away = this.distance * this.zoom;
+    // In a narrow place from farther away, so that as much is seen from left to right.
+    const away = this.distance * this.zoom * Math.max(1, 1.25 / this.eye.aspect);
     const [c, s] = [Math.cos(this.elevation), Math.sin(this.elevation)];
     this.eye.position
       .set(c * Math.sin(this.azimuth), s, c * Math.cos(this.azimuth))

@@ -290,13 +290,13 @@ async fn is_processed(session: &Session, frame: u64) -> bool {
     timeout(PATIENCE, arrived).await.unwrap_or(false)
 }
 
-/// How far the run is, and that it is worth asking again, unless it has failed.
+/// How far the run is, and that it is worth asking again, unless it has failed. No error: a browser would log each.
 fn not_yet(session: &Session) -> Response {
     let progress = session.progress();
     if progress.failure.is_some() {
         return document(StatusCode::INTERNAL_SERVER_ERROR, &progress);
     }
-    let mut response = document(StatusCode::SERVICE_UNAVAILABLE, &progress);
+    let mut response = document(StatusCode::ACCEPTED, &progress);
     response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from_static("1"));
     response
 }
