@@ -191,14 +191,15 @@ for (const [scenario, { frames, feature, good }] of Object.entries(WORLDS)) {
   }
 }
 
-test("a tablet has every panel on its screen", async () => {
+test("a tablet has every panel on its screen", async (context) => {
   const served = await monitor(join(directory, "docking"));
+  context.after(() => served.stop());
   const { page, problems } = await open(chromium, served.url, { viewport: { width: 1024, height: 768 } });
+  context.after(() => page.close());
   for (const id of ["camera", "model", "parameters", "ground", "phase"]) {
     const { x, y, width, height } = await page.locator(`#${id}`).boundingBox();
-    assert.ok(x >= 0 && y >= 0 && x + width <= 1024 && y + height <= 768 && width > 200 && height > 150, id);
+    const isThere = x >= 0 && y >= 0 && x + width <= 1024 && y + height <= 768 && width > 200 && height > 150;
+    assert.ok(isThere, `#${id}: ${[x, y, width, height]}`);
   }
   assert.deepEqual(problems, []);
-  await page.close();
-  await served.stop();
 });
