@@ -12,7 +12,6 @@ use std::time::{Duration, Instant};
 
 use boresight::docking_renderer::DockingRenderer;
 use boresight::docking_run::PreparedDocking;
-use boresight::failure::Failure;
 use boresight::monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::Prepared;
@@ -27,7 +26,7 @@ const HANGS: Duration = Duration::from_secs(60);
 struct Monitor {
     address: SocketAddr,
     stop: Option<tokio::sync::oneshot::Sender<()>>,
-    thread: Option<JoinHandle<Result<(), Failure>>>,
+    thread: Option<JoinHandle<Result<(), String>>>,
 }
 
 impl Monitor {
@@ -35,14 +34,11 @@ impl Monitor {
         let (told, address) = mpsc::channel();
         let (stop, stopped) = tokio::sync::oneshot::channel();
         let thread = std::thread::spawn(move || {
-            let ready = |address| {
-                told.send(address).unwrap();
-                Ok(())
-            };
+            let ready = |address| told.send(address).unwrap();
             let stop = async {
                 let _ = stopped.await;
             };
-            serve(&feed(), "127.0.0.1:0".parse().unwrap(), ready, stop)
+            serve(&feed(), "127.0.0.1:0".parse().unwrap(), ready, stop).map_err(|error| error.to_string())
         });
         let address = address.recv_timeout(HANGS).unwrap();
         Self { address, stop: Some(stop), thread: Some(thread) }
@@ -154,7 +150,10 @@ fn check_parameters(report: &Value, row: &std::collections::BTreeMap<String, Str
             let Some(cell) = row.get(&column).filter(|cell| !cell.is_empty()) else { continue };
             let (expected, got): (f64, f64) = (cell.parse().unwrap(), value.as_f64().unwrap_or(f64::NAN));
             let scale = expected.abs().max(1e-300);
-            assert!((got - expected).abs() <= 4.0 * f64::EPSILON * scale, "{column}: {got}, expected {expected}");
+            assert!(
+                (got - expected).abs() <= 4.0 * f64::EPSILON * scale,
+                "{column}: {got}, expected {expected}"
+            );
             compared += 1;
         }
     }
@@ -295,7 +294,8 @@ fn clients_that_leave_in_the_middle_are_survived() {
         let mut stream = TcpStream::connect(monitor.address).unwrap();
         let number = 24000 + 2 * i;
         let kind = if i % 2 == 0 { "gray" } else { "json" };
-        write!(stream, "GET /api/frames/{number}.{kind} HTTP/1.1\r\nHost: {}\r\n\r\n", monitor.address).unwrap();
+        write!(stream, "GET /api/frames/{number}.{kind} HTTP/1.1\r\nHost: {}\r\n\r\n", monitor.address)
+            .unwrap();
         if i % 3 == 0 {
             let _ = stream.read(&mut [0; 100]);
         }

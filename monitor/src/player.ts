@@ -5,8 +5,8 @@ import * as api from "./api.js";
 /** Pictures a second. */
 const SHOWN_HZ = 25;
 const TICK_MS = 1000 / SHOWN_HZ;
-/** Frames that are fetched ahead. */
-const AHEAD = 12;
+/** Frames that are fetched ahead: a second of pictures. */
+const AHEAD = 25;
 /** Frames kept behind, for a step back. */
 const BEHIND = 4;
 const RETRY_MS = 250;

@@ -62,11 +62,9 @@ export async function open(browser, url, options = {}) {
 }
 
 /** Goes to a frame, waits until it is shown, and until the panels that are drawn less often show it too. */
-export async function goTo(page, frame) {
+export async function goTo(page, frame, patience = PATIENCE_MS) {
   await page.fill("#frame", String(frame));
   await page.keyboard.press("Enter");
-  await page.waitForFunction((wanted) => document.body.dataset.frame === wanted, String(frame), {
-    timeout: PATIENCE_MS,
-  });
+  await page.waitForFunction((wanted) => document.body.dataset.frame === wanted, String(frame), { timeout: patience });
   await page.waitForTimeout(1200);
 }

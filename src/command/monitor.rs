@@ -49,12 +49,14 @@ pub(super) fn monitor(arguments: &MonitorArguments, output: &Output) -> Result<A
              boresight again"
         )));
     }
+    let mut told = Ok(());
     let ready = |address: SocketAddr| {
         let url = format!("http://{address}/");
         output.note(format!("{name}: {url} (Ctrl-C ends)"));
-        output.document(&json!({ "url": url, "scenario": name }))
+        told = output.document(&json!({ "url": url, "scenario": name }));
     };
     serve(&feed, arguments.bind, ready, interrupted())?;
+    told?;
     Ok(Answer::Yes)
 }
 

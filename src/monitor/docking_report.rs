@@ -35,11 +35,7 @@ struct Portion {
 
 impl<'a> DockingReporter<'a> {
     /// For the cameras of these names.
-    pub(super) fn new(
-        setup: &'a DockingSetup,
-        names: Vec<String>,
-        ground: Option<&'a GroundTrack>,
-    ) -> Self {
+    pub(super) fn new(setup: &'a DockingSetup, names: Vec<String>, ground: Option<&'a GroundTrack>) -> Self {
         Self { setup, names, ground, portion: None }
     }
 
@@ -64,7 +60,9 @@ impl<'a> DockingReporter<'a> {
             measured.map(|best| [0, 1, 2, 3, 4, 5].map(|i| best.covariance[(i, i)].max(0.0).sqrt())),
             &truth.pose,
         );
-        if let Some(DockingOutcome { solution: DockingSolution::RangeOnly { range_m, sigma_m }, .. }) = outcome {
+        if let Some(DockingOutcome { solution: DockingSolution::RangeOnly { range_m, sigma_m }, .. }) =
+            outcome
+        {
             parameters.push(Parameter {
                 section: "Range of the outline",
                 name: "range_m",
@@ -77,7 +75,8 @@ impl<'a> DockingReporter<'a> {
             });
         }
         parameters.extend(self.portion_parameters());
-        let paper = outcome.and_then(DockingOutcome::measurement).and_then(|measured| measured.paper.as_ref());
+        let paper =
+            outcome.and_then(DockingOutcome::measurement).and_then(|measured| measured.paper.as_ref());
         parameters.extend(pose_parameters(&PAPER, paper, None, &truth.pose));
         FrameReport {
             frame: truth.field,
@@ -168,7 +167,7 @@ impl<'a> DockingReporter<'a> {
 
     fn portion_parameters(&self) -> impl Iterator<Item = Parameter> {
         const ROWS: [(&str, &str, &str, u8); 4] = [
-            ("rho_m", "ρ range", "m", 3),
+            ("rho_m", "ρ range", "m", 4),
             ("u_m_s", "u range rate", "m/s", 4),
             ("alpha_deg", "α passive pitch", "°", 3),
             ("beta_deg", "β passive yaw", "°", 3),
@@ -266,7 +265,10 @@ fn status(outcome: Option<&DockingOutcome>) -> String {
 
 fn view(pose: &Pose) -> View {
     let axes = target_from_camera(pose);
-    View { position: pose.position_m.into(), axes: [0, 1, 2].map(|axis| axes.column(axis).into_owned().into()) }
+    View {
+        position: pose.position_m.into(),
+        axes: [0, 1, 2].map(|axis| axes.column(axis).into_owned().into()),
+    }
 }
 
 /// The moment of a field, without drawing it.

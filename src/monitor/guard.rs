@@ -58,7 +58,9 @@ mod tests {
 
     #[test]
     fn other_names_ports_and_addresses_are_not() {
-        for host in ["evil.example:8080", "127.0.0.1:8081", "127.0.0.1", "", ":8080", "127.0.0.1.evil.example:8080"] {
+        for host in
+            ["evil.example:8080", "127.0.0.1:8081", "127.0.0.1", "", ":8080", "127.0.0.1.evil.example:8080"]
+        {
             check("127.0.0.1:8080", host, false);
         }
         check("192.0.2.7:80", "localhost:80", false);

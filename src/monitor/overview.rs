@@ -6,9 +6,11 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::far_range_report::range_and_rate;
-use super::feed::{Feed, Surroundings};
+use super::feed::{Feed, Measurements, Surroundings};
 use super::plan::Plan;
 use crate::failure::Failure;
+use crate::run_file::RunFile;
+use crate::scenario::DockingScenario;
 
 /// Frames a second at which a far-range sequence is played: its own cadence is many seconds a frame.
 const FAR_RANGE_RATE_HZ: f64 = 25.0;
@@ -63,10 +65,19 @@ impl Overview {
                     let state = simulator.moment(field).ok()?.state;
                     Some([state.range_m(), state.range_rate_m_s()])
                 });
-                let cameras: Vec<Value> = scenario.cameras.iter().map(|c| camera(&c.name, &c.camera)).collect();
+                let cameras: Vec<Value> =
+                    scenario.cameras.iter().map(|c| camera(&c.name, &c.camera)).collect();
                 let mut notes = Vec::new();
+                if let Measurements::Replay(directory) = measurements
+                    && RunFile::<DockingScenario>::read(&directory.join("run.toml"))?.mitsuba.is_some()
+                {
+                    notes.push("The run's pictures were Mitsuba's; these are the fast renderer's.");
+                }
                 if surroundings.ground.is_some() {
-                    notes.push("The scenario names no orbit: the track is that of 51.6° and 370 km on which the Sun stands where the scene has it.");
+                    notes.push(
+                        "The scenario names no orbit: the track is that of 51.6° and 370 km on which the Sun stands where the \
+                         scene has it.",
+                    );
                 }
                 let session = json!({
                     "world": "docking",

@@ -14,9 +14,7 @@ pub(super) fn paint(feed: &Feed, surroundings: &Surroundings, session: &Session)
     match feed {
         Feed::FarRange(prepared, _) => {
             let mut camera = prepared.simulator().camera()?;
-            serve(session, |order| {
-                Ok(surroundings.stretch.picture(&camera.expose(order.frame)?.frame))
-            })
+            serve(session, |order| Ok(surroundings.stretch.picture(&camera.expose(order.frame)?.frame)))
         }
         Feed::Docking(prepared, _) => {
             let simulator = prepared.simulator();
@@ -30,10 +28,7 @@ pub(super) fn paint(feed: &Feed, surroundings: &Surroundings, session: &Session)
     }
 }
 
-fn serve(
-    session: &Session,
-    mut draw: impl FnMut(&Order) -> Result<Bytes, Failure>,
-) -> Result<(), Failure> {
+fn serve(session: &Session, mut draw: impl FnMut(&Order) -> Result<Bytes, Failure>) -> Result<(), Failure> {
     while let Some(order) = session.next_order() {
         let picture = draw(&order)?;
         session.deliver(order, picture);

@@ -56,7 +56,7 @@ const HEADERS: [(HeaderName, &str); 5] = [
 pub fn serve(
     monitored: &Feed,
     bind: SocketAddr,
-    ready: impl FnOnce(SocketAddr) -> Result<(), Failure>,
+    ready: impl FnOnce(SocketAddr),
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> Result<(), Failure> {
     let surroundings = Surroundings::of(monitored)?;
@@ -114,7 +114,7 @@ struct Shared {
 fn answer_requests(
     shared: &Arc<Shared>,
     bind: SocketAddr,
-    ready: impl FnOnce(SocketAddr) -> Result<(), Failure>,
+    ready: impl FnOnce(SocketAddr),
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> Result<(), Failure> {
     let runtime = tokio::runtime::Builder::new_multi_thread()
@@ -123,10 +123,11 @@ fn answer_requests(
         .build()
         .map_err(|error| Failure::Usage(format!("the server's threads cannot be started: {error}")))?;
     let served = runtime.block_on(async {
-        let refused = |error| Failure::Usage(format!("--bind is {bind}, expected an address that is free: {error}"));
+        let refused =
+            |error| Failure::Usage(format!("--bind is {bind}, expected an address that is free: {error}"));
         let listener = TcpListener::bind(bind).await.map_err(refused)?;
         let address = listener.local_addr().map_err(refused)?;
-        ready(address)?;
+        ready(address);
         let (session, (ended, end)) = (Arc::clone(&shared.session), tokio::sync::oneshot::channel::<()>());
         let goodbye = async move {
             stop.await;
