@@ -17,7 +17,9 @@ export interface Session {
   rate_hz: number;
   cameras: Camera[];
   plan: { range_unit: string; points: [number, number][]; corridor: [number, number, number][] };
+  /** The chaser's way in the axes of the target's orbit, and the target's distance from the centre of the Earth at the beginning. */
   orbit_rtn_km?: [number, number, number][];
+  orbit_radius_km?: number;
   /** Centre of the docking unit from the target's, m. */
   docking_unit_m?: [number, number];
   notes: string[];

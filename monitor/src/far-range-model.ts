@@ -17,7 +17,6 @@ import type { Model, Session } from "./api.js";
 import { fieldOfView, label, line, placed, Stage, vector } from "./stage.js";
 
 const EARTH_RADIUS_KM = 6371;
-const ORBIT_RADIUS_KM = 7130;
 const MEASURED = 0xffb84d;
 const TRUTH = 0xd9a7ff;
 
@@ -45,7 +44,7 @@ export class FarRangeModel {
       new SphereGeometry(EARTH_RADIUS_KM, 160, 120),
       new MeshLambertMaterial({ color: 0x1d4a7a }),
     );
-    earth.position.set(-ORBIT_RADIUS_KM, 0, 0);
+    earth.position.set(-(session.orbit_radius_km ?? 2 * EARTH_RADIUS_KM), 0, 0);
     world.add(earth);
     const orbit = (session.orbit_rtn_km ?? []).map(vector);
     world.add(line(orbit, 0x57c7ff, 0.55));

@@ -6,7 +6,7 @@ import { browser, goTo, monitor, open } from "./browser.js";
 /** Thousands of frames are processed before. */
 const PATIENCE_MS = 600_000;
 const PICTURES = [
-  { words: ["docking", "--from", "17500"], frame: 21250, name: "monitor-docking", keys: [] },
+  { words: ["docking", "--from", "17500"], frame: 21115, name: "monitor-docking", keys: [] },
   { words: ["argon", "--frames", "9000..12000"], frame: 10200, name: "monitor-far-range", keys: ["t"] },
 ];
 

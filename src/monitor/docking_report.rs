@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use contract::docking::{DockingOutcome, DockingSetup, DockingSolution, Lines, Motion, Pose};
-use hifitime::Epoch;
 use sim::docking::FieldTruth;
 use sim::truth::approach::target_from_camera;
 
@@ -269,9 +268,4 @@ fn view(pose: &Pose) -> View {
         position: pose.position_m.into(),
         axes: [0, 1, 2].map(|axis| axes.column(axis).into_owned().into()),
     }
-}
-
-/// The moment of a field, without drawing it.
-pub(super) fn time_of(simulator: &sim::docking::DockingSimulator, field: u64) -> Option<Epoch> {
-    simulator.moment(field).ok().map(|moment| moment.time)
 }

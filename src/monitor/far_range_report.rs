@@ -12,7 +12,7 @@ use crate::files::format_utc;
 /// Half side of the box about a cluster, px.
 const CLUSTER_PX: f64 = 5.0;
 /// Smallest circle about a true place, px.
-const TRUTH_PX: f64 = 7.0;
+const TRUTH_PX: f64 = 9.0;
 /// Most true objects that are drawn: a picture full of particles says no more with all of them.
 const MOST_TRUTHS: usize = 300;
 /// Of an object's light, what the regions may cut away before it counts as not in the picture.
@@ -144,7 +144,13 @@ fn facts(truth: &FrameTruth, outcome: Option<&Outcome>) -> Vec<Fact> {
     let attitude = outcome
         .and_then(|outcome| outcome.attitude_source)
         .map_or("—".to_owned(), |source| source.code().replace('_', " "));
+    let clusters = outcome.map_or(&[][..], |outcome| &outcome.clusters);
+    let count = |of: fn(&Label) -> bool| clusters.iter().filter(|cluster| of(&cluster.label)).count();
+    let stars = count(|label| matches!(label, Label::Star(_)));
+    let hotspots = count(|label| *label == Label::Hotspot);
+    let counts = format!("{}: {stars} stars, {hotspots} hotspots", clusters.len());
     vec![
+        Fact { label: "Clusters", value: counts },
         Fact { label: "Exposure", value: format!("{:.1} ms", truth.exposure_s * 1000.0) },
         Fact { label: "Attitude from", value: attitude },
         Fact { label: "Shadow", value: truth.shadow.code().to_owned() },

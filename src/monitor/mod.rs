@@ -1,8 +1,8 @@
 //! The monitor: what an operator sees of an approach, as a page served on loopback.
 //!
 //! One frame after the other is simulated and processed ahead of what the page shows, or read from a run directory
-//! ([`feed`]); what is known of each is kept ([`session`]), its picture as long as there is room, and drawn anew after that
-//! ([`painter`]): frame N alone is the frame N of the run. The server ([`server`]) gives any frame by its number and keeps
+//! (`feed`); what is known of each is kept (`session`), its picture as long as there is room, and drawn anew after that
+//! (`painter`): frame N alone is the frame N of the run. The server (`server`) gives any frame by its number and keeps
 //! nothing of its clients.
 
 mod assets;

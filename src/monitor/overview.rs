@@ -39,6 +39,8 @@ impl Overview {
                 let plan = Plan::new("km", frames, FAR_RANGE_MARGIN_M_S, |frame| {
                     at(frame).map(|((_, time), trajectory)| range_and_rate(trajectory, time))
                 });
+                let radius_km =
+                    at(frames.start).map(|((_, time), track)| track.at(time).target.position_km.norm());
                 let step = ((frames.end - frames.start) / ORBIT_POINTS).max(1);
                 let orbit: Vec<[f64; 3]> = frames
                     .clone()
@@ -55,6 +57,7 @@ impl Overview {
                     "cameras": [camera("", &scenario.camera)],
                     "plan": plan,
                     "orbit_rtn_km": orbit,
+                    "orbit_radius_km": radius_km,
                     "notes": [],
                 });
                 (session, json!({ "facets": [] }))

@@ -19,7 +19,6 @@ use tokio::net::TcpListener;
 use tokio::time::timeout;
 
 use super::assets::asset;
-use super::docking_report;
 use super::feed::{Feed, Surroundings, feed};
 use super::ground::GroundTrack;
 use super::guard::Guard;
@@ -97,7 +96,7 @@ fn times(monitored: &Feed, surroundings: &Surroundings) -> Vec<Epoch> {
             frames.filter_map(|frame| schedule.frame(frame).map(|(_, time)| time)).collect()
         }
         Feed::Docking(prepared, _) => {
-            frames.filter_map(|field| docking_report::time_of(prepared.simulator(), field)).collect()
+            frames.filter_map(|field| Some(prepared.simulator().moment(field).ok()?.time)).collect()
         }
     }
 }
