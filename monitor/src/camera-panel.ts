@@ -100,7 +100,7 @@ export class CameraPanel {
     context.beginPath();
     context.rect(-0.5, -0.5, columns, camera_rows);
     context.clip();
-    context.imageSmoothingQuality = "medium";
+    context.imageSmoothingQuality = "low";
     // Each row of a field stands about its own row of the camera.
     context.drawImage(this.picture, -0.5, first_row - row_step / 2, columns, rows * row_step);
     if (this.overlay) {

@@ -1,10 +1,29 @@
 // A canvas as large as its place on the page, in the screen's own pixels.
 
+/** Sizes on the page. Asked of the page at every picture, they would have it laid out again each time. */
+const sizes = new WeakMap<Element, { width: number; height: number }>();
+const observer = new ResizeObserver((entries) => {
+  for (const { target, contentRect } of entries) {
+    sizes.set(target, contentRect);
+  }
+});
+
+function sizeOf(canvas: HTMLCanvasElement): { width: number; height: number } {
+  let size = sizes.get(canvas);
+  if (!size) {
+    size = { width: canvas.clientWidth, height: canvas.clientHeight };
+    sizes.set(canvas, size);
+    observer.observe(canvas);
+  }
+  return size;
+}
+
 /** Fits the canvas to its place; true when its size has changed. The screen's density counts up to 2. */
 export function fit(canvas: HTMLCanvasElement): boolean {
   const density = Math.min(devicePixelRatio, 2);
-  const width = Math.max(1, Math.round(canvas.clientWidth * density));
-  const height = Math.max(1, Math.round(canvas.clientHeight * density));
+  const size = sizeOf(canvas);
+  const width = Math.max(1, Math.round(size.width * density));
+  const height = Math.max(1, Math.round(size.height * density));
   if (canvas.width === width && canvas.height === height) {
     return false;
   }

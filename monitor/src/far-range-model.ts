@@ -41,7 +41,7 @@ export class FarRangeModel {
     this.stage.scene.add(world);
 
     const earth = new Mesh(
-      new SphereGeometry(EARTH_RADIUS_KM, 160, 120),
+      new SphereGeometry(EARTH_RADIUS_KM, 128, 64),
       new MeshLambertMaterial({ color: 0x1d4a7a }),
     );
     earth.position.set(-(session.orbit_radius_km ?? 2 * EARTH_RADIUS_KM), 0, 0);

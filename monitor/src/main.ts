@@ -13,7 +13,7 @@ import { onThemeChange } from "./theme.js";
 
 /** The picture and the numbers change with every frame; these panels, which change slowly, less often. */
 const SLOW_MS = 200;
-const MODEL_MS = 90;
+const MODEL_MS = 40;
 const PROGRESS_MS = 500;
 
 async function start(): Promise<void> {

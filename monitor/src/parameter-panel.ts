@@ -17,6 +17,7 @@ export class ParameterPanel {
   private readonly facts = element("#facts");
   private readonly rows = new Map<string, Row>();
   private names = "";
+  private said = "";
 
   show(report: Report): void {
     const names = report.parameters.map((parameter) => parameter.name).join();
@@ -27,6 +28,11 @@ export class ParameterPanel {
     for (const parameter of report.parameters) {
       this.fill(parameter);
     }
+    const said = JSON.stringify(report.facts);
+    if (said === this.said) {
+      return;
+    }
+    this.said = said;
     this.facts.replaceChildren(
       ...report.facts.flatMap(({ label, value }) => {
         const [term, detail] = [document.createElement("dt"), document.createElement("dd")];

@@ -21,6 +21,9 @@ import {
 import type { Camera, Vector, View } from "./api.js";
 import { context, element, fit } from "./canvas.js";
 
+/** How much longer the pause from one drawing of the model to the next is than the drawing. */
+const PAUSE = 4;
+
 export class Stage {
   readonly scene = new Scene();
   readonly sun = new DirectionalLight(0xffffff, 2.6);
@@ -33,6 +36,10 @@ export class Stage {
   private readonly eye: PerspectiveCamera;
   private zoom = 1;
   private isStale = true;
+  /** The drawing that is under way, when it began, and when the next one may. */
+  private underWay: WebGLSync | null = null;
+  private began = 0;
+  private next = 0;
 
   constructor(
     near: number,
@@ -54,7 +61,7 @@ export class Stage {
 
   draw(): void {
     const resized = fit(this.canvas);
-    if (!resized && !this.isStale) {
+    if (!resized && (!this.isStale || this.isBusy())) {
       return;
     }
     this.isStale = false;
@@ -72,6 +79,25 @@ export class Stage {
       .add(this.centre);
     this.eye.lookAt(this.centre);
     this.renderer.render(this.scene, this.eye);
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    this.underWay = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    this.began = performance.now();
+  }
+
+  /** Whether it is too early to draw again. Where software draws, the model takes a share of the time and no more: the picture comes first. */
+  private isBusy(): boolean {
+    const now = performance.now();
+    if (this.underWay) {
+      const gl = this.renderer.getContext() as WebGL2RenderingContext;
+      if (gl.getSyncParameter(this.underWay, gl.SYNC_STATUS) !== gl.SIGNALED) {
+        return true;
+      }
+      gl.deleteSync(this.underWay);
+      this.underWay = null;
+      this.next = this.began + (now - this.began) * PAUSE;
+    }
+    return now < this.next;
   }
 
   private follow(): void {
