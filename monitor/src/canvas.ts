@@ -6,7 +6,14 @@ const observer = new ResizeObserver((entries) => {
   for (const { target, contentRect } of entries) {
     sizes.set(target, contentRect);
   }
+  resized();
 });
+let resized: () => void = () => undefined;
+
+/** Calls back when a canvas has another size on the page than it was drawn with. */
+export function onResize(callback: () => void): void {
+  resized = callback;
+}
 
 function sizeOf(canvas: HTMLCanvasElement): { width: number; height: number } {
   let size = sizes.get(canvas);

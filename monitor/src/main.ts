@@ -2,7 +2,7 @@
 
 import * as api from "./api.js";
 import { CameraPanel } from "./camera-panel.js";
-import { element } from "./canvas.js";
+import { element, onResize } from "./canvas.js";
 import { DockingModel } from "./docking-model.js";
 import { FarRangeModel } from "./far-range-model.js";
 import { GroundPanel } from "./ground-panel.js";
@@ -151,7 +151,7 @@ async function start(): Promise<void> {
     player.speed = Number(speed.value);
     speed.blur();
   });
-  addEventListener("resize", again);
+  onResize(again);
   onThemeChange(() => {
     ground.restyle();
     phase.build();

@@ -21,8 +21,10 @@ import {
 import type { Camera, Vector, View } from "./api.js";
 import { context, element, fit } from "./canvas.js";
 
-/** How much longer the pause from one drawing of the model to the next is than the drawing. */
+/** From the beginning of one drawing of the model to that of the next, in times that the first takes. */
 const PAUSE = 4;
+/** How often is asked whether a drawing is done. */
+const POLL_MS = 3;
 
 export class Stage {
   readonly scene = new Scene();
@@ -36,9 +38,7 @@ export class Stage {
   private readonly eye: PerspectiveCamera;
   private zoom = 1;
   private isStale = true;
-  /** The drawing that is under way, when it began, and when the next one may. */
-  private underWay: WebGLSync | null = null;
-  private began = 0;
+  /** When the next drawing may begin. */
   private next = 0;
 
   constructor(
@@ -61,7 +61,7 @@ export class Stage {
 
   draw(): void {
     const resized = fit(this.canvas);
-    if (!resized && (!this.isStale || this.isBusy())) {
+    if (!resized && (!this.isStale || performance.now() < this.next)) {
       return;
     }
     this.isStale = false;
@@ -79,25 +79,29 @@ export class Stage {
       .add(this.centre);
     this.eye.lookAt(this.centre);
     this.renderer.render(this.scene, this.eye);
-    const gl = this.renderer.getContext() as WebGL2RenderingContext;
-    this.underWay = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-    gl.flush();
-    this.began = performance.now();
+    this.pause();
   }
 
-  /** Whether it is too early to draw again. Where software draws, the model takes a share of the time and no more: the picture comes first. */
-  private isBusy(): boolean {
-    const now = performance.now();
-    if (this.underWay) {
-      const gl = this.renderer.getContext() as WebGL2RenderingContext;
-      if (gl.getSyncParameter(this.underWay, gl.SYNC_STATUS) !== gl.SIGNALED) {
-        return true;
+  /**
+   * Lets the next drawing wait for some times as long as this one takes. Where software draws, the model so takes a share of the
+   * time and no more: the picture comes first.
+   */
+  private pause(): void {
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    const drawing = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    const began = performance.now();
+    this.next = Infinity;
+    const look = () => {
+      // Without a fence, or when the context is lost, there is nothing to wait for.
+      if (drawing && !gl.isContextLost() && gl.getSyncParameter(drawing, gl.SYNC_STATUS) !== gl.SIGNALED) {
+        setTimeout(look, POLL_MS);
+        return;
       }
-      gl.deleteSync(this.underWay);
-      this.underWay = null;
-      this.next = this.began + (now - this.began) * PAUSE;
-    }
-    return now < this.next;
+      gl.deleteSync(drawing);
+      this.next = began + PAUSE * (performance.now() - began);
+    };
+    setTimeout(look, POLL_MS);
   }
 
   private follow(): void {
