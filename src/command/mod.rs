@@ -49,6 +49,9 @@ enum Command {
     /// Say whether a result is worse than a baseline; exit status 1 when it is
     Gate(gate::GateArguments),
     /// The page of an operator, on loopback: camera, ground track, phase chart, model and parameters
+    #[command(
+        after_help = "SCENARIO may be the directory of a run: it is then replayed, its pictures drawn anew."
+    )]
     Monitor(monitor::MonitorArguments),
     /// List, check and start scenarios
     #[command(subcommand)]

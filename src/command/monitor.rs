@@ -21,7 +21,6 @@ const DEFAULT: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 732
 
 #[derive(Debug, Args)]
 pub(super) struct MonitorArguments {
-    /// A built-in scenario, a TOML file, or the directory of a run to be replayed
     #[command(flatten)]
     selection: Selection,
     /// Begin at this frame (docking: field): --frames N.. up to the last one
