@@ -93,11 +93,6 @@ impl PreparedDocking {
         &self.run_file.scenario
     }
 
-    /// The simulator.
-    pub fn simulator(&self) -> &DockingSimulator {
-        &self.simulator
-    }
-
     /// Who draws the scene.
     pub fn renderer(&self) -> &DockingRenderer {
         &self.renderer
