@@ -8,7 +8,9 @@ use std::ops::Range;
 use std::path::Path;
 
 use contract::Camera;
-use contract::docking::{Digitiser, DockingPipelineFactory, DockingSetup};
+use contract::docking::{
+    Digitiser, DockingOutcome, DockingPipelineFactory, DockingSetup, Field, FieldTelemetry,
+};
 use sim::docking::{DockingSimulator, DockingWorkspace, FieldExposure, FieldTruth};
 
 use crate::docking_renderer::DockingRenderer;
@@ -40,6 +42,19 @@ pub struct DockingRan {
     pub score: DockingScore,
     /// The first failure of the pipeline, if it failed at all.
     pub first_failure: Option<FirstFailure>,
+}
+
+/// A field of a run, and what the pipeline said about it.
+#[derive(Debug)]
+pub struct ProcessedField {
+    /// The field, as it was digitised.
+    pub field: Field,
+    /// What the pipeline was told of it.
+    pub telemetry: FieldTelemetry,
+    /// The pipeline's answer.
+    pub outcome: DockingOutcome,
+    /// The truth about it.
+    pub truth: FieldTruth,
 }
 
 /// A docking scenario with its simulator, ready to fly.
@@ -76,6 +91,11 @@ impl PreparedDocking {
     /// The scenario.
     pub fn scenario(&self) -> &DockingScenario {
         &self.run_file.scenario
+    }
+
+    /// Who draws the scene.
+    pub fn renderer(&self) -> &DockingRenderer {
+        &self.renderer
     }
 
     /// What a pipeline is told before the first field.
@@ -159,22 +179,16 @@ impl PreparedDocking {
     ) -> Result<DockingRan, Failure> {
         let setup = &self.setup;
         let mut dataset = FieldDataset::create(&self.run_file, setup, directory, flight.images)?;
-        let mut pipeline = factory.build(setup)?;
         let mut answers =
             Answers::create(&directory.measurements(), &directory.motion(), &directory.features())?;
         let mut scorer = DockingScorer::new(context(&self.run_file, setup));
-        let mut digitiser = Digitiser::default();
-        self.fly(flight, |exposure| {
-            let telemetry = exposure.telemetry(digitiser);
-            let field = exposure.video.digitise(&digitiser);
-            let outcome = pipeline.process(&field, &telemetry);
-            // A wish that no digitiser has leaves it as it is.
-            digitiser = outcome.digitiser.filter(|wish| wish.check().is_ok()).unwrap_or(digitiser);
+        self.follow(flight, factory, |processed| {
+            let ProcessedField { field, telemetry, outcome, truth } = processed;
             let answered = answers.add(field.number(), &outcome)?;
             // The file gets the truth itself, and the score what comes back from the file.
-            let truth = truth_as_filed(exposure.truth.clone());
-            scorer.add(&true_field(&truth, setup), Some(&answered)).map_err(unscorable)?;
-            dataset.add(&field, telemetry, exposure.truth)?;
+            let filed = truth_as_filed(truth.clone());
+            scorer.add(&true_field(&filed, setup), Some(&answered)).map_err(unscorable)?;
+            dataset.add(&field, telemetry, truth)?;
             go_on()
         })?;
         dataset.finish()?;
@@ -182,6 +196,29 @@ impl PreparedDocking {
         let score = scorer.finish();
         write_score(&directory.score(), &score)?;
         Ok(DockingRan { score, first_failure })
+    }
+
+    /// Makes fields, has a fresh pipeline process them, and hands each with its answer to `take`, in order, on the caller's
+    /// thread. Nothing is written.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the pipeline cannot be built, and the first one of `take`.
+    pub fn follow(
+        &self,
+        flight: &DockingFlight,
+        factory: &dyn DockingPipelineFactory,
+        mut take: impl FnMut(ProcessedField) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let mut pipeline = factory.build(&self.setup)?;
+        let mut digitiser = Digitiser::default();
+        self.fly(flight, |exposure| {
+            let telemetry = exposure.telemetry(digitiser);
+            let field = exposure.video.digitise(&digitiser);
+            let outcome = pipeline.process(&field, &telemetry);
+            // A wish that no digitiser has leaves it as it is.
+            digitiser = outcome.digitiser.filter(|wish| wish.check().is_ok()).unwrap_or(digitiser);
+            take(ProcessedField { field, telemetry, outcome, truth: exposure.truth })
+        })
     }
 
     /// Makes fields on this thread, has the pipeline process them and judges its answers; nothing is written. What is given back beside

@@ -14,6 +14,7 @@ pub mod gate;
 pub mod gate_table;
 pub mod inject;
 pub mod mitsuba;
+pub mod monitor;
 pub mod pipeline_choice;
 pub mod report;
 pub mod run;

@@ -194,6 +194,26 @@ impl Prepared {
         Ok(Ran { scored, first_failure })
     }
 
+    /// Makes frames on `jobs` threads, has a fresh pipeline process them, and hands each with its answer to `take`, in order, on
+    /// the caller's thread. Nothing is written.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the pipeline cannot be built, and the first one of `take`.
+    pub fn follow(
+        &self,
+        frames: Range<u64>,
+        jobs: usize,
+        factory: &dyn PipelineFactory,
+        mut take: impl FnMut(sim::Exposure, Outcome) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let mut pipeline = factory.build(&self.setup())?;
+        let make = |camera: &mut sim::SimulatedCamera<'_>, frame| Ok(camera.expose(frame)?);
+        fly(&self.simulator, frames, jobs, make, |exposure| {
+            let outcome = pipeline.process(&exposure.frame, &exposure.telemetry);
+            take(exposure, outcome)
+        })
+    }
+
     /// Makes frames on this thread, has the pipeline process them and scores its answers; nothing is written.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 
 mod dataset;
 mod gate;
+mod monitor;
 mod options;
 mod output;
 mod report;
@@ -50,6 +51,11 @@ enum Command {
     Gate(gate::GateArguments),
     /// One HTML file of what a directory of results holds: charts, tables, frames; it needs no network
     Report(report::ReportArguments),
+    /// The page of an operator, on loopback: camera, ground track, phase chart, model and parameters
+    #[command(
+        after_help = "SCENARIO may be the directory of a run: it is then replayed, its pictures drawn anew."
+    )]
+    Monitor(monitor::MonitorArguments),
     /// List, check and start scenarios
     #[command(subcommand)]
     Scenario(scenario::ScenarioCommand),
@@ -86,6 +92,7 @@ pub fn main() -> ExitCode {
         Command::Visibility(arguments) => visibility::visibility(&arguments, &output),
         Command::Gate(arguments) => gate::gate(&arguments, &output),
         Command::Report(arguments) => report::report(&arguments, &output),
+        Command::Monitor(arguments) => monitor::monitor(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
         Command::Completions(arguments) => shell::completions(&arguments, &output),
         Command::Man(arguments) => shell::man(&arguments, &output),

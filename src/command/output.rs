@@ -32,6 +32,11 @@ impl Output {
         }
     }
 
+    /// Prints `document` where `--json` asks for it: of a command that has nothing else for stdout.
+    pub(super) fn document(&self, document: &impl Serialize) -> Result<(), Failure> {
+        if self.json { self.answer(document, "") } else { Ok(()) }
+    }
+
     /// Refuses an argument that needs stdout for itself where `--json` has it.
     pub(super) fn check_free(&self, argument: &str) -> Result<(), Failure> {
         if self.json {

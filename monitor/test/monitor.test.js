@@ -1,0 +1,205 @@
+// The page in a browser: it opens, its panels change, its numbers are those of the run, its overlay lies on the features.
+// Run by `npm test --prefix monitor`, with BORESIGHT naming the command.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, describe, test } from "node:test";
+import { browser, goTo, monitor, open, PATIENCE_MS, run } from "./browser.js";
+
+/** How far the middle of what is drawn may lie from that of what it marks, px of the camera. */
+const OVERLAY_PX = 1.5;
+
+const WORLDS = {
+  docking: { frames: [24000, 24050], feature: "cross", good: "measured" },
+  argon: { frames: [2000, 2040], feature: "target", good: "detected" },
+};
+
+let chromium;
+let directory;
+before(async () => {
+  directory = mkdtempSync(join(tmpdir(), "boresight-monitor-"));
+  for (const [scenario, { frames }] of Object.entries(WORLDS)) {
+    run("run", scenario, "--frames", frames.join(".."), "--out", join(directory, scenario));
+  }
+  chromium = await browser();
+});
+after(async () => {
+  await chromium?.close();
+  rmSync(directory, { recursive: true, force: true });
+});
+
+/** The rows of a CSV table without quotes, by the first column. */
+function table(path) {
+  const [head, ...lines] = readFileSync(path, "utf8").trim().split("\n");
+  const names = head.split(",");
+  return new Map(
+    lines.map((line) => {
+      const cells = line.split(",");
+      return [Number(cells[0]), Object.fromEntries(names.map((name, i) => [name, cells[i]]))];
+    }),
+  );
+}
+
+/** The numbers and texts of the panel of parameters. */
+function panel(page) {
+  return page.$$eval("#parameters tr[data-name]", (rows) =>
+    rows.map((row) => ({
+      name: row.dataset.name,
+      value: row.querySelector(".measured").dataset.value,
+      text: row.querySelector(".measured").textContent,
+      sigma: row.querySelector(".sigma").dataset.value,
+    })),
+  );
+}
+
+const shot = async (page, selector) => (await page.locator(selector).screenshot()).toString("base64");
+
+/** Grey of the camera's canvas within a box of camera pixels, with the place of each in camera pixels. */
+function pixels(page, { x, y, reach }) {
+  return page.$eval(
+    "#camera > canvas",
+    (canvas, { x, y, reach }) => {
+      const [scale, left, top] = ["scale", "left", "top"].map((name) => Number(canvas.dataset[name]));
+      const first = [Math.round(left + scale * (x - reach)), Math.round(top + scale * (y - reach))];
+      const side = Math.round(2 * reach * scale);
+      const { data } = canvas.getContext("2d").getImageData(...first, side, side);
+      return Array.from({ length: side * side }, (_, i) => ({
+        // The middle of a canvas pixel is half a pixel from its corner.
+        x: (first[0] + (i % side) + 0.5 - left) / scale,
+        y: (first[1] + Math.floor(i / side) + 0.5 - top) / scale,
+        rgb: [...data.slice(4 * i, 4 * i + 3)],
+      }));
+    },
+    { x, y, reach },
+  );
+}
+
+function middle(points, weight) {
+  const total = points.reduce((sum, point) => sum + weight(point), 0);
+  assert.ok(total > 0, "there is nothing to take the middle of");
+  return ["x", "y"].map((axis) => points.reduce((sum, point) => sum + weight(point) * point[axis], 0) / total);
+}
+
+for (const [scenario, { frames, feature, good }] of Object.entries(WORLDS)) {
+  for (const mode of ["live", "replay"]) {
+    describe(`${scenario}, ${mode}`, () => {
+      let served;
+      let page;
+      let problems;
+      let measurements;
+      before(async () => {
+        const words = mode === "live" ? [scenario, "--frames", frames.join("..")] : [join(directory, scenario)];
+        served = await monitor(...words);
+        ({ page, problems } = await open(chromium, served.url, { viewport: { width: 1600, height: 1200 } }));
+        measurements = table(join(directory, scenario, "measurements.csv"));
+      });
+      after(async () => {
+        await page?.close();
+        assert.equal(await served?.stop(), 0, "Ctrl-C ends the monitor in order");
+      });
+
+      test("the parameters on the page are those of the run", async () => {
+        for (const frame of [frames[0] + 3, frames[1] - 1]) {
+          await goTo(page, frame);
+          const row = measurements.get(frame);
+          assert.equal(row.status, good, "the test needs a frame that was measured");
+          assert.equal((await page.textContent("#status")).replaceAll(" ", "_"), good);
+          let compared = 0;
+          for (const { name, value, text, sigma } of await panel(page)) {
+            for (const [column, shown] of [[name, value], [`sigma_${name}`, sigma]]) {
+              const written = row[column];
+              if (written) {
+                // Angles of a replay have been in radians and back: a few units in the last place.
+                const tolerance = mode === "live" ? 0 : 1e-15 * Math.abs(Number(written)) * 8;
+                assert.ok(Math.abs(Number(shown) - Number(written)) <= tolerance, `${column}: ${shown}, ${written}`);
+                compared += 1;
+              }
+            }
+            if (value) {
+              const decimals = (text.split(".")[1] ?? "").length;
+              assert.equal(text, Number(value).toFixed(decimals), name);
+            }
+          }
+          assert.ok(compared >= 6, `${compared} numbers were compared`);
+        }
+      });
+
+      test("every panel shows something that changes from frame to frame", async () => {
+        const panels = ["#camera > canvas", "#model > canvas", "#parameters", "#phase .chart"];
+        // In a second of docking the station moves by less than a pixel of the map.
+        panels.push(...(scenario === "argon" ? ["#ground > canvas"] : []));
+        const looks = [];
+        for (const frame of [frames[0] + 5, frames[1] - 2]) {
+          await goTo(page, frame);
+          looks.push(await Promise.all(panels.map((selector) => shot(page, selector))));
+        }
+        panels.forEach((selector, i) => assert.notEqual(looks[0][i], looks[1][i], selector));
+        const colours = await page.$eval("#ground > canvas", (canvas) => {
+          const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+          return new Set(new Uint32Array(data.buffer)).size;
+        });
+        assert.ok(colours > 8, `the map has ${colours} colours`);
+      });
+
+      test("the overlay lies on what it marks", async () => {
+        await goTo(page, frames[1] - 1);
+        const { overlay } = await page.evaluate((n) => fetch(`api/frames/${n}.json`).then((r) => r.json()), frames[1] - 1);
+        const shape = overlay.find(({ kind }) => kind === feature);
+        const box = { x: shape.x_px, y: shape.y_px, reach: shape.size_px * 1.05 };
+        const drawn = await pixels(page, box);
+        await page.keyboard.press("o");
+        const bare = await pixels(page, box);
+        await page.keyboard.press("o");
+        const grey = (point) => point.rgb[0];
+        const peak = Math.max(...bare.map(grey));
+        const bright = middle(bare, (point) => (grey(point) > 0.6 * peak ? 1 : 0));
+        const changed = new Set(drawn.filter(({ rgb }, i) => rgb.some((v, c) => Math.abs(v - bare[i].rgb[c]) > 40)));
+        const figure = middle([...changed], () => 1);
+        const off = Math.hypot(bright[0] - figure[0], bright[1] - figure[1]);
+        assert.ok(off < OVERLAY_PX, `${off.toFixed(2)} px between the ${feature} and what is drawn`);
+        // And both are where the pipeline says.
+        assert.ok(Math.hypot(figure[0] - shape.x_px, figure[1] - shape.y_px) < OVERLAY_PX, `${figure}`);
+      });
+
+      test("keys play, step, seek and show the truth", async () => {
+        await page.keyboard.press("Home");
+        await page.waitForFunction((n) => document.body.dataset.frame === n, String(frames[0]));
+        await page.keyboard.press("ArrowRight");
+        await page.waitForFunction((n) => document.body.dataset.frame === n, String(frames[0] + 1));
+        await page.keyboard.press("+");
+        assert.equal(await page.inputValue("#speed"), "2");
+        await page.keyboard.press("-");
+        await page.keyboard.press("t");
+        assert.ok(await page.locator("#parameters td.truth").first().isVisible());
+        await page.keyboard.press("t");
+        assert.ok(!(await page.locator("#parameters td.truth").first().isVisible()));
+        await page.keyboard.press("?");
+        assert.ok(await page.locator("#keys").isVisible());
+        await page.keyboard.press("Escape");
+        await page.keyboard.press("Space");
+        await page.waitForFunction((n) => document.body.dataset.frame === n, String(frames[1] - 1), {
+          timeout: PATIENCE_MS,
+        });
+        const { shown } = await page.evaluate(() => boresight.counts);
+        assert.ok(shown > 15, `${shown} pictures were shown while playing`);
+      });
+
+      test("there was no error and no request to anywhere else", () => assert.deepEqual(problems, []));
+    });
+  }
+}
+
+test("a tablet has every panel on its screen", async (context) => {
+  const served = await monitor(join(directory, "docking"));
+  context.after(() => served.stop());
+  const { page, problems } = await open(chromium, served.url, { viewport: { width: 1024, height: 768 } });
+  context.after(() => page.close());
+  for (const id of ["camera", "model", "parameters", "ground", "phase"]) {
+    const { x, y, width, height } = await page.locator(`#${id}`).boundingBox();
+    const isThere = x >= 0 && y >= 0 && x + width <= 1024 && y + height <= 768 && width > 200 && height > 150;
+    assert.ok(isThere, `#${id}: ${[x, y, width, height]}`);
+  }
+  assert.deepEqual(problems, []);
+});
