@@ -44,7 +44,7 @@ def main():
         objects = frame.objects
         is_star = np.array([kind == "star" for kind in objects["kind"]])
         stars = int(np.sum(is_star & (np.nan_to_num(np.asarray(objects["snr"])) >= DETECTABLE_SNR)))
-        found = tetra3rs.extract_centroids(frame.pixels, max_centroids=100)
+        found = tetra3rs.extract_centroids(frame.pixels, max_centroids=100, min_pixels=2, local_bg_block_size=48, matched_filter_sigma=0.85)
         if stars < LEAST_STARS:
             continue
         detectable += 1

@@ -9,6 +9,8 @@ from astropy.time import Time
 
 import boresight
 
+EARTH_RADIUS_KM = 6378.1
+SUN_EXCLUSION_DEG, EARTH_EXCLUSION_DEG = 50.0, 35.0
 GOLDEN_TURN = math.pi * (3.0 - math.sqrt(5.0))
 
 
@@ -19,22 +21,48 @@ def lattice(count):
         yield math.degrees(k * GOLDEN_TURN) % 360.0, math.degrees(declination), (k * math.sqrt(2.0) * 360.0) % 360.0
 
 
-def scenario_at(base, ra_deg, dec_deg, roll_deg):
-    """ARGON's camera looking there, whole images at its longest exposure: no regions, no shutter control."""
-    guidance = {"mode": "inertial", "ra_deg": ra_deg, "dec_deg": dec_deg, "roll_deg": roll_deg}
+def scenario_at(base, start_utc, ra_deg, dec_deg, roll_deg):
+    """ARGON's camera looking there at that time, whole images at its longest exposure: no regions, no shutter control."""
     return base.with_values({
-        "attitude.guidance": guidance,
+        "attitude.guidance": {"mode": "inertial", "ra_deg": ra_deg, "dec_deg": dec_deg, "roll_deg": roll_deg},
         "roi": None,
         "shutter": {"mode": "fixed", "exposure_s": 0.25},
-        "schedule[0].count": 1,
+        "schedule": [{"name": "witness", "start_utc": start_utc, "cadence_s": 1.0, "count": 1}],
     })
 
 
+def moments(base):
+    """Times with the directions to the Sun and to the centre of the Earth: eight along an orbit, in April and in October."""
+    for day in ("2012-04-23T07", "2012-10-23T07"):
+        for eighth in range(8):
+            seconds = eighth * 741
+            start_utc = f"{day}:{seconds // 60:02d}:{seconds % 60:02d}Z" if seconds < 3600 else f"{day[:-1]}8:{seconds // 60 - 60:02d}:{seconds % 60:02d}Z"
+            truth = scenario_at(base, start_utc, 0.0, 0.0, 0.0).frame(0).truth
+            earth = -np.array([truth[f"position_{axis}_km"] for axis in "xyz"])
+            sun = np.array([truth[f"sun_j2000_{axis}"] for axis in "xyz"])
+            limb_deg = math.degrees(math.asin(EARTH_RADIUS_KM / np.linalg.norm(earth)))
+            yield start_utc, sun, earth / np.linalg.norm(earth), limb_deg
+
+
+def clear_moment(known, ra_deg, dec_deg):
+    """The time at which Sun and limb of the Earth are farthest from a boresight, each beyond its exclusion angle."""
+    ra, dec = math.radians(ra_deg), math.radians(dec_deg)
+    boresight = np.array([math.cos(dec) * math.cos(ra), math.cos(dec) * math.sin(ra), math.sin(dec)])
+    angle = lambda other: math.degrees(math.acos(float(np.clip(boresight @ other, -1.0, 1.0))))
+    room = [min(angle(sun) - SUN_EXCLUSION_DEG, angle(earth) - limb_deg - EARTH_EXCLUSION_DEG) for _, sun, earth, limb_deg in known]
+    best = int(np.argmax(room))
+    return known[best][0], room[best]
+
+
 def frames(count):
-    """A frame a boresight, with its number, until there are `count` of them."""
+    """A frame a boresight, with its number, at a time at which neither Sun nor Earth is near: no camera works otherwise."""
     base = boresight.Scenario.load("argon")
-    for k, pointing in enumerate(lattice(count)):
-        yield k, scenario_at(base, *pointing).frame(0)
+    known = list(moments(base))
+    for k, (ra_deg, dec_deg, roll_deg) in enumerate(lattice(count)):
+        start_utc, room_deg = clear_moment(known, ra_deg, dec_deg)
+        if room_deg < 0.0:
+            print(f"pointing {k}: Sun or Earth are {-room_deg:.0f} degrees too near at all times")
+        yield k, scenario_at(base, start_utc, ra_deg, dec_deg, roll_deg).frame(0)
 
 
 def observer_velocity_km_s(frame):
