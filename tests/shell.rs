@@ -89,3 +89,24 @@ fn links_between_pages_lead_somewhere() {
     }
     assert_eq!(broken, Vec::<String>::new());
 }
+
+/// What a reader copies from a page is accepted.
+#[test]
+fn the_examples_of_the_pages_are_accepted() {
+    let bench = Bench::new();
+    let page = |name: &str| {
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name)).unwrap()
+    };
+    let first = |page: &str| page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap().to_owned();
+    for name in ["tutorial-performance.md", "studies.md"] {
+        bench.write("study.toml", first(&page(name)));
+        bench.boresight("study check study.toml").done();
+    }
+    // The law alone, of fewer pointings than the page's.
+    let camera = first(&page("tutorial-camera.md")).replace("[sky]", "[sky]\npointings = 500");
+    bench.write("camera.toml", camera);
+    bench.boresight("visibility camera.toml --frames 0").done();
+    let text = page("tutorial-performance.md");
+    let stage = text.split("--inject ").nth(1).unwrap().split_whitespace().next().unwrap();
+    bench.boresight(&format!("run argon --frames 0..1 --no-report --inject {stage}")).done();
+}
