@@ -1,0 +1,80 @@
+//! The monitor's server.
+
+use std::io::{Read, Write};
+use std::net::{Shutdown, SocketAddr, TcpStream};
+use std::path::Path;
+use std::sync::{OnceLock, mpsc};
+use std::time::Duration;
+
+use boresight::docking_renderer::DockingRenderer;
+use boresight::docking_run::PreparedDocking;
+use boresight::monitor::{Feed, Measurements, serve};
+use boresight::pipeline_choice::PipelineChoice;
+use boresight::scenario::{Scenario, ScenarioSource};
+
+use crate::Sandbox;
+
+/// What stands in an input for the server's address, which is another one every time.
+const ADDRESS: &[u8] = b"@@";
+/// Longer than any answer takes.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Bytes on a connection; what came back begins as an answer of HTTP, or nothing came.
+pub(crate) fn http(_: &Sandbox, bytes: &[u8]) {
+    let address = address();
+    let Ok(mut stream) = TcpStream::connect(address) else { return };
+    let _ = stream.set_read_timeout(Some(PATIENCE));
+    // A server that has had enough closes while more is being sent.
+    let _ = stream.write_all(&addressed(bytes, address));
+    let _ = stream.shutdown(Shutdown::Write);
+    let mut answer = Vec::new();
+    let _ = stream.read_to_end(&mut answer);
+    assert!(answer.is_empty() || answer.starts_with(b"HTTP/1."), "{}", String::from_utf8_lossy(&answer));
+    let lower = answer.to_ascii_lowercase();
+    let has = |text: &[u8]| lower.windows(text.len()).any(|window| window == text);
+    assert!(!has(b"access-control-allow"), "an answer that other pages may read");
+}
+
+fn addressed(bytes: &[u8], address: SocketAddr) -> Vec<u8> {
+    let address = address.to_string();
+    let mut whole = Vec::with_capacity(bytes.len() + address.len());
+    let mut rest = bytes;
+    while let Some((&first, others)) = rest.split_first() {
+        if let Some(after) = rest.strip_prefix(ADDRESS) {
+            whole.extend_from_slice(address.as_bytes());
+            rest = after;
+        } else {
+            whole.push(first);
+            rest = others;
+        }
+    }
+    whole
+}
+
+/// Starts a monitor of two fields, once.
+#[expect(clippy::expect_used, reason = "without a server nothing is tested, and it must not pass for tested")]
+fn address() -> SocketAddr {
+    static ADDRESS: OnceLock<SocketAddr> = OnceLock::new();
+    *ADDRESS.get_or_init(|| {
+        let (told, address) = mpsc::channel();
+        std::thread::spawn(move || {
+            let ready = move |address| told.send(address).expect("somebody waits for the address");
+            let bind = SocketAddr::from(([127, 0, 0, 1], 0));
+            serve(&docking(), bind, ready, std::future::pending()).expect("the monitor serves")
+        });
+        address.recv().expect("the monitor is bound")
+    })
+}
+
+#[expect(clippy::expect_used, reason = "built in, and no input")]
+fn docking() -> Feed {
+    let source = ScenarioSource::read("docking").expect("a built-in scenario");
+    let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 2048 };
+    let config = match &source.scenario {
+        Scenario::Docking(scenario) => scenario.docking.clone(),
+        Scenario::FarRange(_) => Default::default(),
+    };
+    let factory = choice.docking_factory(&config, Path::new("")).expect("the built-in pipeline");
+    let prepared = PreparedDocking::new(&source, DockingRenderer::Fast).expect("a built-in scenario");
+    Feed::Docking(Box::new(prepared), Measurements::Live { factory, frames: 24000..24002, jobs: 1 })
+}

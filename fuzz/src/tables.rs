@@ -1,0 +1,81 @@
+//! Tables: CSV and Parquet, and the folders that they stand in.
+
+use std::path::Path;
+
+use boresight::files::docking::{FeatureRow, read_field_measurements, read_motion};
+use boresight::files::{
+    Dataset, FrameCluster, Row, TableReader, arrow_of_csv, arrow_of_parquet, read_column,
+    read_field_telemetry, read_measurements, read_stars, read_telemetry,
+};
+use boresight::gate::Baseline;
+use boresight::study::CaseTable;
+use boresight::visibility::read_sky;
+use sha2::{Digest, Sha256};
+use sim::docking::FieldTruth;
+use sim::truth::{FrameTruth, ObjectTruth};
+
+use crate::Sandbox;
+
+/// A baseline that is right.
+const BASELINE: &str = include_str!("../corpus/baseline/argon.toml");
+const BASELINE_ROWS: &[u8] = include_bytes!("../corpus/baseline_rows/argon.parquet");
+
+/// The tables of CSV tell each other's files apart by their headers.
+pub(crate) fn csv(sandbox: &Sandbox, bytes: &[u8]) {
+    let path = sandbox.file("a.csv", bytes);
+    let _ = read_telemetry(&path);
+    let _ = read_field_telemetry(&path);
+    let _ = read_measurements(&path);
+    let _ = read_field_measurements(&path);
+    let _ = read_motion(&path);
+    let _ = read_stars(&path);
+    let _ = read_sky(&path);
+    let _ = read_column(&path, "value");
+    let _ = arrow_of_csv(&path);
+}
+
+pub(crate) fn parquet(sandbox: &Sandbox, bytes: &[u8]) {
+    let path = sandbox.file("a.parquet", bytes);
+    rows::<FrameTruth>(&path);
+    rows::<ObjectTruth>(&path);
+    rows::<FieldTruth>(&path);
+    rows::<FeatureRow>(&path);
+    rows::<FrameCluster>(&path);
+    let _ = CaseTable::columns_of(&path).and_then(|columns| columns.read(&path));
+    let _ = arrow_of_parquet(&path);
+}
+
+fn rows<R: Row>(path: &Path) {
+    if let Ok(table) = TableReader::<R>::open(path) {
+        table.for_each(drop);
+    }
+}
+
+pub(crate) fn baseline(sandbox: &Sandbox, bytes: &[u8]) {
+    sandbox.file("baseline.toml", bytes);
+    sandbox.file("rows.parquet", BASELINE_ROWS);
+    let _ = Baseline::read(sandbox.path());
+}
+
+/// The header is told the hash of whatever rows there are: they are read.
+pub(crate) fn baseline_rows(sandbox: &Sandbox, bytes: &[u8]) {
+    let sha256 =
+        |bytes: &[u8]| Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+    let header = BASELINE.replace(&sha256(BASELINE_ROWS), &sha256(bytes));
+    sandbox.file("baseline.toml", header.as_bytes());
+    sandbox.file("rows.parquet", bytes);
+    let _ = Baseline::read(sandbox.path());
+}
+
+/// A table that names images, in a folder with one.
+pub(crate) fn dataset(sandbox: &Sandbox, bytes: &[u8]) {
+    sandbox.file("camera.toml", include_bytes!("../corpus/camera/small.toml"));
+    sandbox.file("000000.png", include_bytes!("../corpus/png/small.png"));
+    sandbox.file("telemetry.csv", bytes);
+    let Ok(dataset) = Dataset::open(sandbox.path()) else { return };
+    for frame in dataset.frames() {
+        let inside = frame.path().canonicalize().is_ok_and(|path| path.starts_with(sandbox.path()));
+        assert!(inside, "{} is outside the dataset", frame.path().display());
+        let _ = dataset.read(frame);
+    }
+}

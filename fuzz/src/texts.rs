@@ -1,0 +1,104 @@
+//! Text: TOML, JSON, and what has a form of its own.
+
+use std::path::Path;
+
+use boresight::files::CameraFile;
+use boresight::files::docking::SetupFile;
+use boresight::report::{StudyResult, read_visibility};
+use boresight::scenario::{Scenario, ScenarioSource};
+use boresight::score::Score;
+use boresight::score::docking::DockingScore;
+use boresight::study::{Study, StudyRecord};
+use boresight::toml_file;
+use boresight::visibility::Requirements;
+use sim::catalog::Catalog;
+use sim::optics::{Psf, PsfConfig};
+use sim::scene::docking::TargetFile;
+
+use crate::Sandbox;
+
+/// Most pixels of a camera whose simulator is made: larger ones cost what they are asked for.
+const MOST_PIXELS: usize = 1 << 16;
+/// Most frames of one.
+const MOST_FRAMES: u64 = 1 << 16;
+
+pub(crate) fn scenario(sandbox: &Sandbox, bytes: &[u8]) {
+    let _ = ScenarioSource::read(&word(&sandbox.file("scenario.toml", bytes)));
+}
+
+pub(crate) fn simulator(sandbox: &Sandbox, bytes: &[u8]) {
+    let Ok(source) = ScenarioSource::read(&word(&sandbox.file("scenario.toml", bytes))) else { return };
+    match &source.scenario {
+        Scenario::FarRange(scenario) => {
+            let frames: u64 = scenario.schedule.iter().fold(0, |sum, group| sum.saturating_add(group.count));
+            let pixels = scenario.camera.columns.saturating_mul(scenario.camera.rows);
+            if pixels <= MOST_PIXELS && frames <= MOST_FRAMES {
+                let _ = source.simulator(scenario);
+            }
+        }
+        Scenario::Docking(scenario) => {
+            let pixels = |camera: &contract::Camera| camera.columns.saturating_mul(camera.rows);
+            if scenario.cameras.iter().all(|lens| pixels(&lens.camera) <= MOST_PIXELS) {
+                let _ = source.docking_simulator(scenario);
+            }
+        }
+    }
+}
+
+pub(crate) fn run_file(sandbox: &Sandbox, bytes: &[u8]) {
+    let _ = ScenarioSource::read(&word(&sandbox.file("run.toml", bytes)));
+}
+
+pub(crate) fn study(sandbox: &Sandbox, bytes: &[u8]) {
+    let _ = Study::read(&sandbox.file("study.toml", bytes));
+}
+
+pub(crate) fn requirements(sandbox: &Sandbox, bytes: &[u8]) {
+    let _ = Requirements::read(&word(&sandbox.file("requirements.toml", bytes)));
+}
+
+pub(crate) fn camera(sandbox: &Sandbox, bytes: &[u8]) {
+    let _ = CameraFile::read(&sandbox.file("camera.toml", bytes));
+}
+
+pub(crate) fn setup(sandbox: &Sandbox, bytes: &[u8]) {
+    let _ = SetupFile::read(&sandbox.file("setup.toml", bytes));
+}
+
+pub(crate) fn target(_: &Sandbox, bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let file = Path::new("target.toml");
+    if let Ok(target) = toml_file::parse::<TargetFile>(file, text)
+        && let Err(error) = target.check()
+    {
+        let _ = toml_file::refuse(file, text, "plate", error.to_string()).to_string();
+    }
+}
+
+pub(crate) fn psf(sandbox: &Sandbox, bytes: &[u8]) {
+    let path = word(&sandbox.file("psf.csv", bytes));
+    let _ = Psf::new(&PsfConfig::Sampled { path, oversampling: 4.0 });
+}
+
+pub(crate) fn catalogue_csv(sandbox: &Sandbox, bytes: &[u8]) {
+    let _ = Catalog::read(&sandbox.file("stars.csv", bytes));
+}
+
+pub(crate) fn catalogue_dat(sandbox: &Sandbox, bytes: &[u8]) {
+    let _ = Catalog::read(&sandbox.file("stars.dat", bytes));
+}
+
+pub(crate) fn json(sandbox: &Sandbox, bytes: &[u8]) {
+    let _ = StudyRecord::read(&sandbox.file("study.json", bytes));
+    sandbox.file("summary.json", bytes);
+    let _ = StudyResult::read(sandbox.path());
+    sandbox.file("visibility.json", bytes);
+    let _ = read_visibility(sandbox.path());
+    // Their readers want a whole run around them.
+    let _ = serde_json::from_slice::<Score>(bytes);
+    let _ = serde_json::from_slice::<DockingScore>(bytes);
+}
+
+fn word(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
