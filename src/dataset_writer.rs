@@ -72,14 +72,14 @@ impl DatasetWriter {
         self.objects.write(exposure.objects)
     }
 
-    /// Completes the tables.
+    /// Completes the tables, that of the telemetry last: it makes a dataset of the directory.
     ///
     /// # Errors
     /// [`FileError`] when a table cannot be written.
     pub fn finish(self) -> Result<(), FileError> {
-        self.telemetry.finish()?;
         self.frames.finish()?;
-        self.objects.finish()
+        self.objects.finish()?;
+        self.telemetry.finish()
     }
 }
 

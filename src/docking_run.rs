@@ -130,7 +130,8 @@ impl PreparedDocking {
             done();
             Ok(())
         })?;
-        dataset.finish()
+        dataset.finish()?;
+        Ok(directory.seal()?)
     }
 
     /// Makes fields, digitised as they are by default, and writes them to standard output as Y4M; `done` is told of each.
@@ -149,28 +150,12 @@ impl PreparedDocking {
         Ok(video.finish()?)
     }
 
-    /// Makes fields, has the pipeline process them and scores its answers; writes all of it; `done` is told of each field.
+    /// Makes fields, has the pipeline process them and scores its answers; writes all of it, as long as `go_on`, asked after each
+    /// field, does not fail.
     ///
     /// # Errors
-    /// A [`Failure`] when a file cannot be written or the pipeline cannot be built.
+    /// A [`Failure`] when a file cannot be written or the pipeline cannot be built; what `go_on` says.
     pub fn run(
-        &self,
-        directory: &RunDirectory,
-        flight: &DockingFlight,
-        factory: &dyn DockingPipelineFactory,
-        done: impl Fn(),
-    ) -> Result<DockingRan, Failure> {
-        self.run_while(directory, flight, factory, || {
-            done();
-            Ok(())
-        })
-    }
-
-    /// [`PreparedDocking::run`], as long as `go_on`, asked after each field, does not fail.
-    ///
-    /// # Errors
-    /// As [`PreparedDocking::run`]; what `go_on` says.
-    pub fn run_while(
         &self,
         directory: &RunDirectory,
         flight: &DockingFlight,
@@ -195,6 +180,7 @@ impl PreparedDocking {
         let first_failure = answers.finish()?;
         let score = scorer.finish();
         write_score(&directory.score(), &score)?;
+        directory.seal()?;
         Ok(DockingRan { score, first_failure })
     }
 

@@ -159,10 +159,11 @@ impl<'a> FieldDataset<'a> {
         self.truth.write([truth])
     }
 
+    /// Completes the files, the telemetry last: it makes a dataset of the directory.
     pub(crate) fn finish(self) -> Result<(), Failure> {
-        self.telemetry.finish()?;
         self.truth.finish()?;
         self.video.map_or(Ok(()), Video::finish)?;
+        self.telemetry.finish()?;
         Ok(())
     }
 }
@@ -204,11 +205,12 @@ impl Answers {
     }
 
     pub(crate) fn finish(self) -> Result<Option<FirstFailure>, FileError> {
-        self.measurements.finish()?;
+        // The measurements last: without them, nobody misses the others.
         if let Some((motion, features)) = self.more {
             motion.finish()?;
             features.finish()?;
         }
+        self.measurements.finish()?;
         Ok(self.first_failure)
     }
 }

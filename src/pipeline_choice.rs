@@ -26,6 +26,8 @@ pub struct PipelineChoice {
     pub word: Option<String>,
     /// Longest time that a program may take for a frame, s.
     pub timeout_s: f64,
+    /// Most memory of a program, and of each process that it starts, MB (10⁶ bytes).
+    pub memory_mb: u64,
 }
 
 impl PipelineChoice {
@@ -50,13 +52,16 @@ impl PipelineChoice {
     pub fn arguments(&self, world: World) -> Vec<String> {
         match &self.word {
             Some(word) if !self.is_built_in(world) => {
-                ["--pipeline", word, "--timeout-s", &self.timeout_s.to_string()].map(str::to_owned).to_vec()
+                let (timeout_s, memory_mb) = (self.timeout_s.to_string(), self.memory_mb.to_string());
+                ["--pipeline", word, "--timeout-s", &timeout_s, "--memory-mb", &memory_mb]
+                    .map(str::to_owned)
+                    .to_vec()
             }
             _ => Vec::new(),
         }
     }
 
-    /// SHA-256 of what a program's answers depend on, as far as it can be known: its words, the files among them, its limit of time;
+    /// SHA-256 of what a program's answers depend on, as far as it can be known: its words, the files among them, its limits of time and memory;
     /// none for the built-in pipeline of a world, whose parameters are the scenario's.
     pub fn hash(&self, world: World) -> Option<[u8; 32]> {
         let word = self.word.as_ref().filter(|_| !self.is_built_in(world))?;
@@ -67,6 +72,7 @@ impl PipelineChoice {
         };
         part(word.as_bytes());
         part(&self.timeout_s.to_bits().to_le_bytes());
+        part(&self.memory_mb.to_le_bytes());
         for file in shlex::split(word.strip_prefix(EXEC).unwrap_or(word)).into_iter().flatten() {
             // A word that names no file is a program of the search path, or an option.
             if let Ok(bytes) = sim::regular_file::read(Path::new(&file), MOST_BYTES) {
@@ -92,6 +98,7 @@ impl PipelineChoice {
         let mut factory =
             ExternalFactory::new(command, scratch.to_path_buf(), Arc::new(write_image), format_utc);
         factory.timeout_s = self.timeout_s;
+        factory.memory_mb = self.memory_mb;
         // Now, while nothing has been written for it.
         factory.check()?;
         Ok(Box::new(factory))
@@ -113,6 +120,7 @@ impl PipelineChoice {
         let mut factory =
             ExternalDockingFactory::new(command, scratch.to_path_buf(), Arc::new(write_field_image));
         factory.timeout_s = self.timeout_s;
+        factory.memory_mb = self.memory_mb;
         factory.check()?;
         Ok(Box::new(factory))
     }

@@ -13,7 +13,7 @@ use crate::dataset_writer::{DatasetWriter, save_image};
 use crate::failure::Failure;
 use crate::files::{
     Dataset, Expected, FileError, FrameCluster, ImageFormat, MeasurementWriter, PartialFiles, RunDirectory,
-    StarRow, TableReader, TableWriter, read_measurements, write_expected,
+    StarRow, TableReader, TableWriter, WholeFile, read_measurements, write_expected,
 };
 use crate::flight::fly;
 use crate::inject::{InjectedPipeline, Stage};
@@ -131,33 +131,17 @@ impl Prepared {
             done();
             Ok(())
         })?;
-        Ok(dataset.finish()?)
+        dataset.finish()?;
+        Ok(directory.seal()?)
     }
 
-    /// Makes frames, has the pipeline process them and scores its answers; writes all of it; `done` is told of each
-    /// frame. A scenario is one sequence: the pipeline is built once. With the truth for a stage, the pipeline is the
+    /// Makes frames, has the pipeline process them and scores its answers; writes all of it, as long as `go_on`, asked after each
+    /// frame, does not fail. A scenario is one sequence: the pipeline is built once. With the truth for a stage, the pipeline is the
     /// built-in one, whatever `factory` builds.
     ///
     /// # Errors
-    /// A [`Failure`] when a file cannot be written or the pipeline cannot be built.
+    /// A [`Failure`] when a file cannot be written or the pipeline cannot be built; what `go_on` says.
     pub fn run(
-        &self,
-        directory: &RunDirectory,
-        flight: &Flight,
-        factory: &dyn PipelineFactory,
-        done: impl Fn(),
-    ) -> Result<Ran, Failure> {
-        self.run_while(directory, flight, factory, || {
-            done();
-            Ok(())
-        })
-    }
-
-    /// [`Prepared::run`], as long as `go_on`, asked after each frame, does not fail.
-    ///
-    /// # Errors
-    /// As [`Prepared::run`]; what `go_on` says.
-    pub fn run_while(
         &self,
         directory: &RunDirectory,
         flight: &Flight,
@@ -191,6 +175,7 @@ impl Prepared {
         let first_failure = answers.finish()?;
         let scored = scorer.finish();
         write_score(&directory.score(), &scored.score)?;
+        directory.seal()?;
         Ok(Ran { scored, first_failure })
     }
 
@@ -412,8 +397,9 @@ impl Answers {
     }
 
     fn finish(self) -> Result<Option<FirstFailure>, FileError> {
-        self.measurements.finish()?;
+        // The measurements last: without them, nobody misses the clusters.
         self.clusters.finish()?;
+        self.measurements.finish()?;
         Ok(self.first_failure)
     }
 }
@@ -434,8 +420,5 @@ pub(crate) fn write_score(path: &Path, score: &impl serde::Serialize) -> Result<
     let json = serde_json::to_string_pretty(score)
         .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?
         + "\n";
-    let io = |source| FileError::Io { path: path.to_owned(), doing: "create", source };
-    let mut file = std::fs::File::create_new(path).map_err(io)?;
-    std::io::Write::write_all(&mut file, json.as_bytes()).map_err(io)?;
-    Ok(())
+    Ok(WholeFile::with_text(path, &json)?.commit_new()?)
 }

@@ -1,5 +1,16 @@
 //! `run.toml`: enough to repeat a run.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
@@ -8,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use crate::dataset_writer::sha256_hex;
 use crate::docking_renderer::MitsubaRecord;
 use crate::failure::Failure;
-use crate::files::FileError;
+use crate::files::{FileError, WholeFile};
 use crate::inject::Stage;
 use crate::scenario::FarRangeScenario;
 use crate::toml_file;
@@ -58,16 +69,13 @@ impl<S: Clone + Serialize + DeserializeOwned> RunFile<S> {
         })
     }
 
-    /// Writes the file.
+    /// Writes the file, at once or not at all.
     ///
     /// # Errors
     /// [`Failure`] when it cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Failure> {
         let text = to_toml(self)?;
-        let io = |source| FileError::Io { path: path.to_owned(), doing: "create", source };
-        let mut file = std::fs::File::create_new(path).map_err(io)?;
-        std::io::Write::write_all(&mut file, text.as_bytes()).map_err(io)?;
-        Ok(())
+        Ok(WholeFile::with_text(path, &text)?.commit_new()?)
     }
 
     /// Reads the file.

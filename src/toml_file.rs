@@ -1,5 +1,16 @@
 //! TOML files whose mistakes are explained: file, line, column, what was met, what was expected, the nearest valid name.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::fmt;
 use std::ops::Range;
 use std::path::Path;
@@ -26,15 +37,14 @@ pub struct TomlError {
 
 impl TomlError {
     fn new(file: &Path, text: &str, span: Range<usize>, path: String, message: String) -> Self {
-        let start = span.start.min(text.len());
-        let before = &text[..floor_char_boundary(text, start)];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let before = text.get(..text.floor_char_boundary(span.start)).unwrap_or(text);
+        let in_line = before.rsplit('\n').next().unwrap_or(before);
         let file = file.display().to_string();
         Self {
             source: NamedSource::new(&file, text.to_owned()),
             file,
             line: before.matches('\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
+            column: in_line.chars().count() + 1,
             span,
             help: nearest_valid_name(&message),
             path,
@@ -164,13 +174,6 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .filter(|(likeness, _)| *likeness > 0.7)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| candidate)
-}
-
-fn floor_char_boundary(text: &str, mut at: usize) -> usize {
-    while !text.is_char_boundary(at) {
-        at -= 1;
-    }
-    at
 }
 
 #[cfg(test)]

@@ -135,7 +135,7 @@ fn an_empty_table_is_a_table() {
 #[test]
 fn a_table_is_never_overwritten() {
     let (_directory, path) = write([vec![frame(1)]]);
-    assert!(matches!(TableWriter::<FrameTruth>::create(&path), Err(FileError::Io { doing: "create", .. })));
+    assert!(matches!(TableWriter::<FrameTruth>::create(&path), Err(FileError::OutputTaken { .. })));
 }
 
 #[test]

@@ -170,6 +170,7 @@ fn the_same_run_is_no_worse_and_a_worse_one_shuts_the_gate() {
         }
     });
     let text = lost.collect::<Vec<_>>().join("\n") + "\n";
+    bench.unseal("worse");
     bench.write("worse/measurements.csv", text);
 
     let answer = bench.boresight("gate base worse --json --junit junit.xml");
@@ -260,7 +261,11 @@ fn a_baseline_asks_for_a_reason_and_is_not_replaced_by_accident() {
     support::check_same_files(&before, &bench.tree("base"));
     bench.boresight("gate baseline run --out base --reason again --block-length 6 --replace").done();
     assert!(bench.read("base/baseline.toml").contains("reason = \"again\""));
-    assert_eq!(bench.tree("base").len(), 2, "nothing else is left in the folder");
+    assert_eq!(
+        bench.tree("base").len(),
+        3,
+        "baseline.toml, rows.parquet, SHA256SUMS, and nothing else is left"
+    );
     bench
         .boresight("gate baseline run --out few --reason x --block-length 20")
         .refused(&["3 blocks", "at least 5"]);

@@ -109,7 +109,7 @@ impl Answer {
 /// A run of a built-in scenario by its built-in pipeline.
 fn live(name: &str, frames: std::ops::Range<u64>) -> Feed {
     let source = ScenarioSource::read(name).unwrap();
-    let choice = PipelineChoice { word: None, timeout_s: 1.0 };
+    let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 4000 };
     let scratch = std::env::temp_dir();
     match &source.scenario {
         Scenario::FarRange(scenario) => {
@@ -221,9 +221,83 @@ fn only_requests_to_the_own_address_from_the_own_page_are_answered() {
     assert_eq!(status("Host: \u{e9}\r\n".to_owned()), 421);
     assert_eq!(status(format!("Host: {own}\r\nOrigin: http://evil.example\r\n")), 403);
     assert_eq!(status(format!("Host: {own}\r\nOrigin: null\r\n")), 403);
-    let head = monitor.get("/api/progress.json").head;
-    assert!(head.contains("content-security-policy: default-src 'self'"), "{head}");
-    assert!(!head.contains("access-control"), "{head}");
+    let two = format!("Host: {own}\r\nHost: evil.example\r\n");
+    assert!([400, 421].contains(&status(two)));
+    assert!([400, 421].contains(&status(String::new())));
+    for host in [
+        format!("localhost.:{}", own.port()),
+        format!("[::1]:{}", own.port()),
+        format!("{own}.evil.example"),
+        format!("user@{own}"),
+        format!("{own}:{}", own.port()),
+    ] {
+        assert!([400, 421].contains(&status(format!("Host: {host}\r\n"))), "{host}");
+    }
+    // What another page embeds comes without an origin.
+    assert_eq!(status(format!("Host: {own}\r\nSec-Fetch-Site: same-origin\r\n")), 200);
+    for site in ["cross-site", "same-site"] {
+        assert_eq!(status(format!("Host: {own}\r\nSec-Fetch-Site: {site}\r\n")), 403);
+    }
+}
+
+#[test]
+fn every_answer_forbids_other_pages_to_read_frame_or_guess_it() {
+    let monitor = Monitor::docking(24000..24002);
+    let refused = monitor.ask("GET", "/", "Host: evil.example\r\n");
+    assert_eq!(refused.status, 421);
+    let frame = monitor.get("/api/frames/24000.gray");
+    for answer in
+        [refused, frame, monitor.get("/"), monitor.get("/api/session.json"), monitor.get("/nothing")]
+    {
+        let head = &answer.head;
+        let policy = head.lines().find_map(|line| line.strip_prefix("content-security-policy: ")).unwrap();
+        assert!(
+            policy.contains("default-src 'self'") && policy.contains("frame-ancestors 'none'"),
+            "{policy}"
+        );
+        assert!(!policy.contains("unsafe"), "{policy}");
+        for line in [
+            "x-content-type-options: nosniff",
+            "cross-origin-resource-policy: same-origin",
+            "cross-origin-opener-policy: same-origin",
+            "referrer-policy: no-referrer",
+            "cache-control: no-store",
+        ] {
+            assert!(head.lines().any(|found| found == line), "{line}: {head}");
+        }
+        assert!(!head.contains("access-control"), "{head}");
+    }
+}
+
+#[test]
+fn headers_without_end_are_refused_with_their_status() {
+    let monitor = Monitor::docking(24000..24002);
+    let own = monitor.address;
+    let many = "X: y\r\n".repeat(10_000);
+    let long = format!("X: {}\r\n", "y".repeat(1 << 20));
+    for headers in [many, long] {
+        let answer = monitor.raw(format!("GET / HTTP/1.1\r\nHost: {own}\r\n{headers}\r\n").as_bytes());
+        // Either it says so, or it closes while the rest is still being sent, and the answer is lost with the connection.
+        let said = String::from_utf8_lossy(&answer[..answer.len().min(12)]).into_owned();
+        assert!(said.is_empty() || said == "HTTP/1.1 431", "{said}");
+    }
+    monitor.check_alive();
+}
+
+#[test]
+fn connections_that_ask_nothing_do_not_keep_others_out() {
+    let monitor = Monitor::docking(24000..24002);
+    // Nearly all that there are.
+    let idle: Vec<_> = (0..200).map(|_| TcpStream::connect(monitor.address).unwrap()).collect();
+    let slow: Vec<_> = (0..40)
+        .map(|_| {
+            let mut stream = TcpStream::connect(monitor.address).unwrap();
+            stream.write_all(b"GET / HTTP/1.1\r\nHo").unwrap();
+            stream
+        })
+        .collect();
+    monitor.check_alive();
+    drop((idle, slow));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use serde_json::Value;
-use support::Bench;
+use support::{Bench, STUDY};
 
 /// Longest page, bytes.
 const MOST_BYTES: usize = 8_000_000;
@@ -85,7 +85,9 @@ fn the_page_of_a_far_range_run_has_the_papers_figures_and_the_numbers_of_its_sco
     let bench = Bench::new();
     bench.boresight("run argon --frames 40..60 --out run").done();
     let page = PageText::read(&bench, "run/report.html");
-    page.check(&["table-2", "fig-3", "fig-5", "fig-6", "fig-7", "fig-8", "fig-9", "causes", "frames"]);
+    page.check(&["table-2", "fig-2", "fig-3", "fig-4", "fig-5", "fig-6", "fig-7", "fig-8", "fig-9"]);
+    page.check(&["causes", "budget", "frames"]);
+    assert!(page.html.contains("images over one another") && page.html.contains("--inject STAGE"));
     let score = bench.json("run/score.json");
     assert_eq!(page.data()["score"], score);
     // Every kind of miss and of wrong answer has a picture.
@@ -99,6 +101,15 @@ fn the_page_of_a_far_range_run_has_the_papers_figures_and_the_numbers_of_its_sco
     assert!(page.html.contains("class=\"truth\"") && page.html.contains("class=\"measured\""));
     // Published rates of day 1.
     assert!(page.html.contains("<td>94.92</td>"));
+    // The relative orbit ends where the truth has the target.
+    let orbit = page.charts().into_iter().find(|chart| chart.to_string().contains("cross-track")).unwrap();
+    let last = |panel: usize, axis: &str| {
+        orbit["data"][panel][axis].as_array().unwrap().last().unwrap().as_f64().unwrap()
+    };
+    let squares = [last(0, "x"), last(0, "y"), last(1, "y")].map(|km| km * km);
+    let range_km = bench.frames("run").last().unwrap().range_km;
+    // Written to 0.1 m.
+    assert!((squares.iter().sum::<f64>().sqrt() - range_km).abs() < 5e-4, "{squares:?}, {range_km}");
     // The chart of errors holds those of the detected, frame by frame.
     let errors = page.charts().into_iter().find(|chart| chart.to_string().contains("RA error")).unwrap();
     let drawn: usize = ["right", "wrong"]
@@ -167,6 +178,9 @@ fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
     bench.boresight("run argon --seed 5 --frames 220..240 --inject attitude --out seed --no-report").done();
     bench.boresight("report honest --budget seed").refused(&["seed/run.toml", "`scenario`"]);
     bench.boresight("report honest --budget nowhere").refused(&["nowhere/run.toml"]);
+    bench.boresight("run docking --frames 24000..24001 --out docking --no-report").done();
+    bench.boresight("report honest --budget docking").refused(&["docking/run.toml", "`scenario.world`"]);
+    bench.boresight("report docking --budget roi").refused(&["--budget", "far range", "docking"]);
 }
 
 #[test]
@@ -188,25 +202,16 @@ fn the_page_of_a_docking_run_has_the_papers_figures_and_the_numbers_of_its_score
 #[test]
 fn the_page_of_a_study_has_its_summary_and_the_commands_of_its_worst_cases() {
     let bench = Bench::new();
-    bench.write(
-        "study.toml",
-        r#"
-title = "two frames of ARGON"
-scenario = "argon"
-seed = 5
-frames = "2000..2002"
-[stop]
-cases = 6
-[[vary]]
-path = "psf.sigma_px"
-law = { kind = "normal", mean = 0.8, sigma = 0.1 }
-"#,
-    );
+    bench.write("study.toml", STUDY);
     bench.boresight("study run study.toml --out out --shards 1").done();
     let page = PageText::read(&bench, "out/report.html");
     page.check(&["figures", "sensitivities", "scatter", "worst"]);
     let summary = bench.json("out/summary.json");
     assert_eq!(page.data()["summary"], summary);
+    bench.boresight("study replay study.toml --case 3 --out again").done();
+    PageText::read(&bench, "again/report.html").check(&["fig-3", "frames"]);
+    bench.boresight("study replay study.toml --case 3 --out silent --no-report").done();
+    assert!(!bench.path("silent/report.html").exists());
     assert!(page.html.contains(summary["worst"][0]["replay"].as_str().unwrap()));
     check_same_report(&bench, "out");
 
@@ -255,6 +260,8 @@ fn the_page_of_a_gate_shows_what_flipped() {
     let report = bench.boresight("gate base other --report gate.html --json").json();
     let page = PageText::read(&bench, "gate.html");
     page.check(&["effects", "flips"]);
+    let rates = page.charts().into_iter().find(|chart| chart.to_string().contains("difference, points"));
+    assert!(rates.unwrap().to_string().contains("correct_rate"), "the rates are drawn, tolerated or not");
     assert_eq!(page.data()["figures"], report["figures"]);
     let flips = report["flips"]["units"].as_array().unwrap();
     assert!(!flips.is_empty(), "the test needs a frame that flips");

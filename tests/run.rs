@@ -22,6 +22,7 @@ fn a_run_directory_holds_every_file_of_a_run() {
     bench.boresight("run argon --frames 300..303 --out run --save-frames fits").done();
     let files: BTreeSet<PathBuf> = bench.tree("run").into_keys().collect();
     let expected = [
+        "SHA256SUMS",
         "camera.toml",
         "clusters.parquet",
         "frames/000300.fits",
@@ -221,6 +222,7 @@ fn zero_suppression_is_told_to_pipelines_and_those_that_look_below_it_are_refuse
     bench.boresight("render suppressed.toml --frames 300..303 --out data --format png").done();
     bench.boresight("process data").done();
     bench.check_same("run/measurements.csv", "data/measurements.csv");
+    bench.unseal("data");
     bench.edit("data/camera.toml", "low = 0.0165", "low = 0.016");
     bench.boresight("process data --out low.csv").refused(&["thresholds.low is 0.016, 65 DN"]);
     scenario("mode = 'automatic'");

@@ -11,22 +11,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use support::{Bench, figure};
-
-const STUDY: &str = r#"
-title = "two frames of ARGON"
-scenario = "argon"
-seed = 5
-frames = "2000..2002"
-[stop]
-cases = 6
-[[vary]]
-path = "psf.sigma_px"
-law = { kind = "normal", mean = 0.8, sigma = 0.1 }
-[[vary]]
-path = "sensor.hot_pixels.count"
-law = { kind = "whole", min = 0, max = 40 }
-"#;
+use support::{Bench, STUDY, figure};
 
 fn bench() -> Bench {
     let bench = Bench::new();

@@ -1,6 +1,6 @@
-// What the scripts here share: the command, a monitor that runs, and a browser that looks at it.
+// What the scripts here share: the command, a monitor that runs, and a browser that looks at pages.
 
-import { execFileSync, spawn } from "node:child_process";
+import { spawn, spawnSync } from "node:child_process";
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
@@ -12,8 +12,12 @@ const boresight =
 /** Longer than anything takes on a busy machine. */
 export const PATIENCE_MS = 60_000;
 
+/** Runs the command to its end. That the answer is no (status 1) is an answer. */
 export function run(...words) {
-  execFileSync(boresight, words, { stdio: ["ignore", "ignore", "inherit"] });
+  const { status } = spawnSync(boresight, words, { stdio: ["ignore", "ignore", "inherit"] });
+  if (status !== 0 && status !== 1) {
+    throw new Error(`boresight ${words.join(" ")} ended with ${status}`);
+  }
 }
 
 /** Starts a monitor; what it gives has its address, its process, and ends it. */
@@ -45,17 +49,23 @@ export async function browser() {
   });
 }
 
-/** Opens a page at its first frame. `problems` gathers what must not happen: errors, and requests to elsewhere. */
-export async function open(browser, url, options = {}) {
-  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: "dark", ...options });
+/** Gathers what must not happen on a page: errors, and requests for what is not its own. */
+export function problemsOf(page, isOwn) {
   const problems = [];
   page.on("pageerror", (error) => problems.push(error.message));
   page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
   page.on("request", (request) => {
-    if (!request.url().startsWith(url)) {
+    if (!isOwn(request.url())) {
       problems.push(`a request to ${request.url()}`);
     }
   });
+  return problems;
+}
+
+/** Opens the monitor's page at its first frame. */
+export async function open(browser, url, options = {}) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, colorScheme: "dark", ...options });
+  const problems = problemsOf(page, (asked) => asked.startsWith(url));
   await page.goto(url);
   await page.waitForFunction(() => document.body.dataset.frame !== undefined, null, { timeout: PATIENCE_MS });
   return { page, problems };

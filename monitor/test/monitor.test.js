@@ -191,15 +191,26 @@ for (const [scenario, { frames, feature, good }] of Object.entries(WORLDS)) {
   }
 }
 
-test("a tablet has every panel on its screen", async (context) => {
-  const served = await monitor(join(directory, "docking"));
-  context.after(() => served.stop());
-  const { page, problems } = await open(chromium, served.url, { viewport: { width: 1024, height: 768 } });
-  context.after(() => page.close());
-  for (const id of ["camera", "model", "parameters", "ground", "phase"]) {
-    const { x, y, width, height } = await page.locator(`#${id}`).boundingBox();
-    const isThere = x >= 0 && y >= 0 && x + width <= 1024 && y + height <= 768 && width > 200 && height > 150;
-    assert.ok(isThere, `#${id}: ${[x, y, width, height]}`);
+for (const scenario of Object.keys(WORLDS)) {
+  for (const [width, height] of [[1280, 720], [1024, 768], [820, 1180]]) {
+    test(`${scenario}: every panel is on a screen of ${width} × ${height}, and every number in its panel`, async (context) => {
+      const served = await monitor(join(directory, scenario));
+      context.after(() => served.stop());
+      const { page, problems } = await open(chromium, served.url, { viewport: { width, height } });
+      context.after(() => page.close());
+      await page.keyboard.press("t");
+      const box = (selector) => page.locator(selector).boundingBox();
+      for (const id of ["camera", "model", "parameters", "ground", "phase"]) {
+        const at = await box(`#${id}`);
+        const isOn = at.x >= 0 && at.y >= 0 && at.x + at.width <= width && at.y + at.height <= height;
+        assert.ok(isOn && at.width > 200 && at.height > 150, `#${id}: ${Object.values(at)}`);
+      }
+      const [panel, table, title, legend] = await Promise.all(
+        ["#parameters", "#parameters table", "#camera h2 span", "#legend span >> nth=0"].map(box),
+      );
+      assert.ok(table.x + table.width <= panel.x + panel.width, `the table ends ${table.x + table.width - panel.x - panel.width} px beyond`);
+      assert.ok(legend.x >= title.x + title.width || legend.y >= title.y + title.height, "the legend lies on the title");
+      assert.deepEqual(problems, []);
+    });
   }
-  assert.deepEqual(problems, []);
-});
+}

@@ -18,6 +18,7 @@ mod scenario;
 mod score;
 mod stream;
 mod study;
+mod study_pipeline;
 mod table;
 mod visibility;
 mod wait;

@@ -1,9 +1,8 @@
 //! A pipeline that is written in Python. Its exceptions are outcomes with their message, as the faults of a program are
 //! (`pipeline::external`), and its answers are read by the same code.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
-use boresight::failure::Failure;
 use contract::docking::{
     DockingOutcome, DockingPipeline, DockingPipelineFactory, DockingSetup, Field, FieldTelemetry as OfField,
     NoPose,
@@ -17,43 +16,19 @@ use pyo3::types::PyType;
 use crate::errors::refused;
 use crate::frame::{FieldTelemetry, Frame, Telemetry};
 use crate::scenario::{Ready, World, setup};
+use crate::wait::Ended;
 
 /// Longest reason of an exception, in characters: it stands in a table.
 const REASON: usize = 400;
 
-/// Why a run is to end although all is well with it: Ctrl-C, or an exception like it.
-#[derive(Default)]
-pub(crate) struct Ended(Mutex<Option<PyErr>>);
-
-impl Ended {
-    fn set(&self, error: PyErr) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-    }
-
-    /// The exception that ended the run.
-    pub(crate) fn take(&self) -> Option<PyErr> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
-    }
-
-    /// Whether the run may go on; hears of Ctrl-C.
-    pub(crate) fn go_on(&self) -> Result<(), Failure> {
-        if self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some() {
-            return Err(Failure::Interrupted);
-        }
-        Python::attach(|py| py.check_signals()).map_err(|error| {
-            self.set(error);
-            Failure::Interrupted
-        })
-    }
-}
-
 /// A callable of (frame, telemetry), ready to be asked.
 pub(crate) struct PythonPipeline {
     name: String,
-    callable: Py<PyAny>,
+    /// Why there is none, where its class could not make one.
+    callable: Result<Py<PyAny>, String>,
     /// Turns what it returns into a line of the protocol.
     line: Py<PyAny>,
-    /// Columns and rows.
+    /// Columns and rows of the camera; docking answers have no place in the image.
     size_px: (usize, usize),
     ended: Arc<Ended>,
 }
@@ -62,13 +37,10 @@ impl PythonPipeline {
     /// A pipeline of a callable, or of a class, which is made with the setup. What a class raises when it is made is the caller's.
     pub(crate) fn new(given: &Bound<'_, PyAny>, ready: &Ready, ended: &Arc<Ended>) -> PyResult<Self> {
         let py = given.py();
-        let callable =
-            if given.is_instance_of::<PyType>() { given.call1((setup(py, ready)?,))? } else { given.clone() };
+        check(given)?;
+        let callable = if is_class(given) { given.call1((setup(py, ready)?,))? } else { given.clone() };
         if !callable.is_callable() {
-            let kind = callable.get_type().name()?;
-            let expected = "None, the name of a built-in pipeline, `exec:COMMAND`, a callable of (frame, telemetry), or a class whose \
-                            instances are one";
-            return Err(refused("pipeline", format!("of type {kind}"), expected));
+            return Err(refused_kind(&callable)?);
         }
         let size_px = match &ready.world {
             World::FarRange(prepared) => {
@@ -76,16 +48,40 @@ impl PythonPipeline {
             }
             World::Docking(_) => (0, 0),
         };
-        let name =
-            given.getattr("__name__").and_then(|name| name.extract()).unwrap_or_else(|_| "python".to_owned());
-        let line = py.import("boresight._values")?.getattr("answer_line")?.unbind();
-        Ok(Self { name, callable: callable.unbind(), line, size_px, ended: Arc::clone(ended) })
+        Self::of(given, Ok(callable.unbind()), size_px, ended)
+    }
+
+    /// A pipeline for one case of many, of a callable that all share, or of a class, which is made with the case's setup. What a class
+    /// raises when it is made is the outcome of every frame of the case.
+    pub(crate) fn of_case<'py>(
+        given: &Bound<'py, PyAny>,
+        setup: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
+        size_px: (usize, usize),
+        ended: &Arc<Ended>,
+    ) -> PyResult<Self> {
+        let made =
+            if is_class(given) { setup().and_then(|setup| given.call1((setup,))) } else { Ok(given.clone()) };
+        let callable =
+            made.and_then(|made| if made.is_callable() { Ok(made) } else { Err(refused_kind(&made)?) });
+        let callable = callable.map(Bound::unbind).map_err(|error| reason(given.py(), error, ended));
+        Self::of(given, callable, size_px, ended)
+    }
+
+    /// A pipeline of what was made of a callable or a class.
+    fn of(
+        given: &Bound<'_, PyAny>,
+        callable: Result<Py<PyAny>, String>,
+        size_px: (usize, usize),
+        ended: &Arc<Ended>,
+    ) -> PyResult<Self> {
+        let line = given.py().import("boresight._values")?.getattr("answer_line")?.unbind();
+        Ok(Self { name: name(given), callable, line, size_px, ended: Arc::clone(ended) })
     }
 
     fn again(&self, py: Python<'_>) -> Self {
         Self {
             name: self.name.clone(),
-            callable: self.callable.clone_ref(py),
+            callable: self.callable.as_ref().map(|callable| callable.clone_ref(py)).map_err(Clone::clone),
             line: self.line.clone_ref(py),
             size_px: self.size_px,
             ended: Arc::clone(&self.ended),
@@ -98,20 +94,23 @@ impl PythonPipeline {
         (key, number): (&str, u64),
         question: impl FnOnce(Python<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>)>,
     ) -> Result<String, String> {
+        let callable = self.callable.as_ref().map_err(Clone::clone)?;
         Python::attach(|py| {
-            let asked =
-                question(py).and_then(|(frame, telemetry)| self.callable.call1(py, (frame, telemetry)));
-            let answer = asked.map_err(|error| {
-                let reason = format!("{}{}", said(&error), place(py, &error));
-                if !error.is_instance_of::<PyException>(py) {
-                    self.ended.set(error);
-                }
-                reason
-            })?;
+            let asked = question(py).and_then(|(frame, telemetry)| callable.call1(py, (frame, telemetry)));
+            let answer = asked.map_err(|error| reason(py, error, &self.ended))?;
             let line = self.line.call1(py, (answer, key, number)).and_then(|line| line.extract(py));
             line.map_err(|error| said(&error))
         })
     }
+}
+
+/// Why there is no answer, by the exception in its place; what is no `Exception` ends the work besides.
+fn reason(py: Python<'_>, error: PyErr, ended: &Ended) -> String {
+    let reason = format!("{}{}", said(&error), place(py, &error));
+    if !error.is_instance_of::<PyException>(py) {
+        ended.set(error);
+    }
+    reason
 }
 
 /// The beginning of what an exception says.
@@ -134,6 +133,28 @@ fn place(py: Python<'_>, error: &PyErr) -> String {
         step = at.getattr("tb_next").ok().filter(|next| !next.is_none());
     }
     place
+}
+
+/// Refuses what is no pipeline.
+pub(crate) fn check(given: &Bound<'_, PyAny>) -> PyResult<()> {
+    if given.is_callable() { Ok(()) } else { Err(refused_kind(given)?) }
+}
+
+fn refused_kind(given: &Bound<'_, PyAny>) -> PyResult<PyErr> {
+    let kind = given.get_type().name()?;
+    let expected = "None, the name of a built-in pipeline, `exec:COMMAND`, a callable of (frame, telemetry), or a class whose instances \
+                    are one";
+    Ok(refused("pipeline", format!("of type {kind}"), expected))
+}
+
+/// Whether a pipeline is made of it, rather than that it is one.
+fn is_class(given: &Bound<'_, PyAny>) -> bool {
+    given.is_instance_of::<PyType>()
+}
+
+/// Name of a callable or a class.
+pub(crate) fn name(given: &Bound<'_, PyAny>) -> String {
+    given.getattr("__name__").and_then(|name| name.extract()).unwrap_or_else(|_| "python".to_owned())
 }
 
 impl PipelineFactory for PythonPipeline {

@@ -11,15 +11,17 @@ use boresight::run::{Expectation, FirstFailure, Flight};
 use boresight::scenario::{Scenario as Values, ScenarioSource};
 use contract::PipelineFactory;
 use contract::docking::DockingPipelineFactory;
+use pipeline::external::DEFAULT_MEMORY_MB;
 use pyo3::prelude::*;
 use tempfile::TempDir;
 
 use crate::arguments;
 use crate::errors::{BoresightError, FileError, file_error, raised, refused};
 use crate::json;
-use crate::python_pipeline::{Ended, PythonPipeline};
+use crate::python_pipeline::PythonPipeline;
 use crate::scenario::{Scenario, World};
 use crate::table::Table;
+use crate::wait::Ended;
 
 /// What a run gave: score, truth and measurements.
 ///
@@ -174,7 +176,7 @@ pub(crate) fn run(
         }
         word => {
             let word = word.map(|word| word.extract()).transpose()?;
-            Asked::Word(PipelineChoice { word, timeout_s })
+            Asked::Word(PipelineChoice { word, timeout_s, memory_mb: DEFAULT_MEMORY_MB })
         }
     };
     let run = || {
@@ -187,7 +189,7 @@ pub(crate) fn run(
                 };
                 let (directory, temporary) = place(out.as_deref())?;
                 let flight = Flight { frames, jobs, images: None, expectation: Expectation::Dropped };
-                let ran = prepared.run_while(&directory, &flight, factory.as_ref(), || ended.go_on())?;
+                let ran = prepared.run(&directory, &flight, factory.as_ref(), || ended.go_on())?;
                 Ok((directory, temporary, ran.first_failure))
             }
             World::Docking(prepared) => {
@@ -199,7 +201,7 @@ pub(crate) fn run(
                 };
                 let (directory, temporary) = place(out.as_deref())?;
                 let flight = DockingFlight { fields: frames, jobs, images: None };
-                let ran = prepared.run_while(&directory, &flight, factory.as_ref(), || ended.go_on())?;
+                let ran = prepared.run(&directory, &flight, factory.as_ref(), || ended.go_on())?;
                 Ok((directory, temporary, ran.first_failure))
             }
         }

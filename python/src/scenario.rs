@@ -1,5 +1,6 @@
 //! Scenarios as objects. A scenario that exists can be run: all its values were checked.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use boresight::docking_renderer::DockingRenderer;
@@ -7,7 +8,7 @@ use boresight::docking_run::PreparedDocking;
 use boresight::failure::Failure;
 use boresight::run::Prepared;
 use boresight::scenario::{BUILT_IN, Scenario as Values, ScenarioSource};
-use boresight::study::{value_at, with_overlay};
+use boresight::study::{Study, value_at, with_overlay};
 use contract::docking::Digitiser;
 use pipeline::external::{docking_protocol, protocol};
 use pyo3::prelude::*;
@@ -83,6 +84,18 @@ impl Scenario {
     fn load(py: Python<'_>, scenario: &Bound<'_, PyAny>) -> PyResult<Self> {
         let word = arguments::word("scenario", scenario)?;
         Self::checked(py, ScenarioSource::read(&word).map_err(raised)?)
+    }
+
+    /// The scenario of a case of a study (docs/studies.md), with the values and the seed that were drawn for it.
+    ///
+    /// `study` is the study's file. Raises `InputError` for a case that the study does not have.
+    #[staticmethod]
+    fn of_case(py: Python<'_>, study: PathBuf, case: i64) -> PyResult<Self> {
+        let study = Study::read(&study).map_err(raised)?;
+        let number = u64::try_from(case).ok().filter(|number| *number < study.cases());
+        let expected = || refused("case", case, &format!("a case of the study, 0 to {}", study.cases() - 1));
+        let case = study.case(number.ok_or_else(expected)?).map_err(raised)?;
+        Self::checked(py, case.source)
     }
 
     /// Names of the built-in scenarios.

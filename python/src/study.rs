@@ -1,19 +1,23 @@
 //! Studies: Monte Carlo over what can vary.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use boresight::failure::Failure;
 use boresight::files::arrow_of_parquet;
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::study::{Campaign, Study, Workers};
+use boresight::run::FirstFailure;
+use boresight::study::{Campaign, Evaluated, Known, Study, StudyPipeline, Workers};
+use pipeline::external::DEFAULT_MEMORY_MB;
 use pyo3::prelude::*;
 use tempfile::TempDir;
 
 use crate::arguments;
 use crate::errors::{BoresightError, file_error};
 use crate::json::text_to_python;
+use crate::study_pipeline::PythonStudyPipeline;
 use crate::table::Table;
-use crate::wait::{AfterCtrlC, interruptibly};
+use crate::wait::{AfterCtrlC, Ended, interruptibly};
 
 /// What a study gave: its summary, and a row a case.
 #[pyclass(frozen, module = "boresight")]
@@ -21,6 +25,7 @@ pub(crate) struct StudyResult {
     directory: PathBuf,
     cases: PathBuf,
     summary: String,
+    first_failure: Option<(u64, FirstFailure)>,
     _temporary: Option<TempDir>,
 }
 
@@ -38,6 +43,12 @@ impl StudyResult {
         text_to_python(py, &self.summary)
     }
 
+    /// The first failure of the pipeline among the cases that were run now, (case, frame, reason); None if it never failed.
+    #[getter]
+    fn first_failure(&self) -> Option<(u64, u64, &str)> {
+        self.first_failure.as_ref().map(|(case, failure)| (*case, failure.frame, failure.reason.as_str()))
+    }
+
     /// A row a case: `case`, `seed`, `set.PATH` for what was drawn, and NAME, NAME.count, NAME.of for each figure.
     #[getter]
     fn rows(&self, py: Python<'_>) -> PyResult<Table> {
@@ -53,18 +64,32 @@ impl StudyResult {
 /// Runs what is missing of a study and sums it up, as the command `boresight study run` does.
 ///
 /// `path` is the study's file (docs/studies.md). `out` keeps the results; run again with it, only what is missing is made. Without it they
-/// are in a temporary directory, gone with the object. `pipeline` is None (the built-in one) or `exec:COMMAND`.
+/// are in a temporary directory, gone with the object. `pipeline` is None (the built-in one), `exec:COMMAND`, a callable of (frame,
+/// telemetry), or a class of them, as in `run`. Cases run side by side, and call it one at a time: a class is made anew for every case,
+/// with the case's setup; a function is called for frames of several cases in turn, and must remember nothing. Whatever it raises is the
+/// outcome of its frame.
 #[pyfunction]
 #[pyo3(signature = (path, *, out=None, pipeline=None, jobs=None, timeout_s=10.0))]
 pub(crate) fn study(
     py: Python<'_>,
     path: PathBuf,
     out: Option<PathBuf>,
-    pipeline: Option<String>,
+    pipeline: Option<&Bound<'_, PyAny>>,
     jobs: Option<i64>,
     timeout_s: f64,
 ) -> PyResult<StudyResult> {
     let jobs = arguments::jobs(jobs)?;
+    let ended = Arc::new(Ended::default());
+    let pipeline: Box<dyn StudyPipeline + Send> = match pipeline {
+        Some(given) if given.extract::<String>().is_err() => {
+            Box::new(PythonStudyPipeline::new(given, &ended)?)
+        }
+        word => Box::new(PipelineChoice {
+            word: word.map(|word| word.extract()).transpose()?,
+            timeout_s,
+            memory_mb: DEFAULT_MEMORY_MB,
+        }),
+    };
     let temporary = |error: std::io::Error| {
         BoresightError::new_err(format!("a temporary directory cannot be made: {error}"))
     };
@@ -72,16 +97,24 @@ pub(crate) fn study(
     let kept = if out.is_none() { Some(tempfile::tempdir().map_err(temporary)?) } else { None };
     let directory = out.or_else(|| kept.as_ref().map(|kept| kept.path().to_owned())).unwrap_or_default();
     let folder = directory.clone();
-    let choice = PipelineChoice { word: pipeline, timeout_s };
-    let summary = interruptibly(py, AfterCtrlC::Ends, move |ended| {
+    let (summary, first_failure) = interruptibly(py, AfterCtrlC::Ends, &ended, move |ended| {
         let study = Study::read(&path)?;
-        let campaign = Campaign::open(&study, &choice, &folder, None)?;
+        let campaign = Campaign::open(&study, pipeline.as_ref(), &folder, None)?;
         let workers = Workers { jobs, scratch: scratch.path(), ended: Some(ended) };
-        let table = campaign.run(workers, |_| ())?;
+        let first_failure: Mutex<Option<(u64, FirstFailure)>> = Mutex::new(None);
+        let table = campaign.run(workers, |case| {
+            if let Known::Run(Evaluated { row, first_failure: Some(failure) }) = case {
+                let mut first = first_failure.lock().unwrap_or_else(PoisonError::into_inner);
+                if first.as_ref().is_none_or(|(case, _)| row.case < *case) {
+                    *first = Some((row.case, failure.clone()));
+                }
+            }
+        })?;
         let summary = campaign.finish(&path, &table)?;
-        serde_json::to_string(&summary)
-            .map_err(|error| Failure::Usage(format!("the summary cannot be written as JSON: {error}")))
+        let summary = serde_json::to_string(&summary)
+            .map_err(|error| Failure::Usage(format!("the summary cannot be written as JSON: {error}")))?;
+        Ok((summary, first_failure.into_inner().unwrap_or_else(PoisonError::into_inner)))
     })?;
     let cases = directory.join("cases.parquet");
-    Ok(StudyResult { directory, cases, summary, _temporary: kept })
+    Ok(StudyResult { directory, cases, summary, first_failure, _temporary: kept })
 }

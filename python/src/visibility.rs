@@ -1,5 +1,7 @@
 //! Which camera is needed.
 
+use std::sync::Arc;
+
 use boresight::failure::Failure;
 use boresight::visibility::{BUILT_IN_REQUIREMENTS, Requirements, assess};
 use pyo3::prelude::*;
@@ -35,7 +37,7 @@ pub(crate) fn visibility<'py>(
         let allowed = u32::try_from(frames).ok().filter(|frames| *frames <= 100_000);
         requirements.file.confirm.frames = allowed.ok_or_else(|| refused("frames", frames, "0 to 100000"))?;
     }
-    let report = interruptibly(py, AfterCtrlC::IsLeft, move |_| {
+    let report = interruptibly(py, AfterCtrlC::IsLeft, &Arc::default(), move |_| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build();
         let pool = pool.map_err(|error| Failure::Usage(format!("threads cannot be started: {error}")))?;
         let report = pool.install(|| assess(&requirements, |_| ()))?;

@@ -1,7 +1,7 @@
 //! Long work that Ctrl-C can end.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use boresight::failure::Failure;
@@ -21,22 +21,59 @@ pub(crate) enum AfterCtrlC {
     IsLeft,
 }
 
-/// Does work on a thread of its own, Python free to do something else; its flag is set when it is not wanted any more.
+/// Why work is to end although all is well with it: Ctrl-C, or an exception like it.
+#[derive(Default)]
+pub(crate) struct Ended {
+    is_set: AtomicBool,
+    reason: Mutex<Option<PyErr>>,
+}
+
+impl Ended {
+    /// Ends the work; the first reason counts.
+    pub(crate) fn set(&self, reason: PyErr) {
+        self.reason.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(reason);
+        self.is_set.store(true, Ordering::Relaxed);
+    }
+
+    /// Set when the work is not wanted any more.
+    pub(crate) fn flag(&self) -> &AtomicBool {
+        &self.is_set
+    }
+
+    /// The exception that ended the work.
+    pub(crate) fn take(&self) -> Option<PyErr> {
+        self.reason.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// Whether the work may go on; hears of Ctrl-C.
+    pub(crate) fn go_on(&self) -> Result<(), Failure> {
+        if self.is_set.load(Ordering::Relaxed) {
+            return Err(Failure::Interrupted);
+        }
+        Python::attach(|py| py.check_signals()).map_err(|error| {
+            self.set(error);
+            Failure::Interrupted
+        })
+    }
+}
+
+/// Does work on a thread of its own, Python free to do something else; `ended` is set when it is not wanted any more, by Ctrl-C or by the
+/// work itself.
 pub(crate) fn interruptibly<T: Send + 'static>(
     py: Python<'_>,
     after: AfterCtrlC,
+    ended: &Arc<Ended>,
     work: impl FnOnce(&AtomicBool) -> Result<T, Failure> + Send + 'static,
 ) -> PyResult<T> {
-    let ended = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&ended);
+    let own = Arc::clone(ended);
     let worker = std::thread::Builder::new()
         .name("boresight".to_owned())
-        .spawn(move || work(&flag))
+        .spawn(move || work(own.flag()))
         .map_err(|error| BoresightError::new_err(format!("a thread cannot be started: {error}")))?;
     while !worker.is_finished() {
         py.detach(|| std::thread::sleep(LOOK));
         if let Err(interrupt) = py.check_signals() {
-            ended.store(true, Ordering::Relaxed);
+            ended.is_set.store(true, Ordering::Relaxed);
             if after == AfterCtrlC::Ends {
                 // What it has to say is less than the interrupt.
                 let _ = py.detach(|| worker.join());
@@ -45,5 +82,6 @@ pub(crate) fn interruptibly<T: Send + 'static>(
         }
     }
     let panicked = |_| BoresightError::new_err("a fault of Boresight: the work panicked, see standard error");
-    py.detach(|| worker.join()).map_err(panicked)?.map_err(raised)
+    let done = py.detach(|| worker.join()).map_err(panicked)?;
+    ended.take().map_or_else(|| done.map_err(raised), Err)
 }

@@ -139,7 +139,7 @@ law = { kind = "uniform", min = 0.6, max = 1.0 }
 """
 
 
-@pytest.mark.parametrize("where", ["in the built-in pipeline", "in a Python pipeline", "in a stream", "in a study"])
+@pytest.mark.parametrize("where", ["in the built-in pipeline", "in a Python pipeline", "in a stream", "in a study", "in a study of Python"])
 def test_ctrl_c_ends_what_takes_long(where, tmp_path):
     (tmp_path / "study.toml").write_text(STUDY)
     work = {
@@ -147,6 +147,7 @@ def test_ctrl_c_ends_what_takes_long(where, tmp_path):
         "in a Python pipeline": lambda: boresight.run("argon", pipeline=lambda f, t: time.sleep(0.05)),
         "in a stream": lambda: [None for _ in boresight.Scenario.load("argon").frames()],
         "in a study": lambda: boresight.study(tmp_path / "study.toml"),
+        "in a study of Python": lambda: boresight.study(tmp_path / "study.toml", pipeline=lambda f, t: time.sleep(0.05)),
     }[where]
     timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
     timer.start()

@@ -205,7 +205,7 @@ impl<'a> SimulatedCamera<'a> {
         moon.image(still.middle, &simulator.projection, MOON_POINTS, &mut points);
         let detector = simulator.projection.detector();
         self.painter.psf().clone().stamp_extended(&points, 1.0, MOON_FLOOR, detector, &mut stamp);
-        stamp.truth(0.0, 0.0).peak_electrons * source.electrons_per_s
+        stamp.truth(0.0, 0.0, f64::INFINITY).peak_electrons * source.electrons_per_s
     }
 
     /// Draws the expected image and the digital numbers, and tells the truth of every object that has light on the detector.
@@ -301,12 +301,13 @@ impl<'a> SimulatedCamera<'a> {
         };
 
         let readout_noise_e = sensor.readout_noise_e();
+        let saturation_e = sensor.config().saturation_e();
         let mut objects = Vec::with_capacity(sources.len());
         for (source, stamp) in sources.iter().zip(charge.expected().objects().iter().chain(&*own)) {
             let pixel = |at: f64, size: usize| (at.round().max(0.0) as usize).min(size.saturating_sub(1));
             let (x, y) = (pixel(source.position.x, columns), pixel(source.position.y, rows));
             let background_e = charge.expected().background_near(x, y);
-            let truth = stamp.truth(background_e, readout_noise_e);
+            let truth = stamp.truth(background_e, readout_noise_e, saturation_e);
             if truth.electrons <= 0.0 {
                 continue;
             }

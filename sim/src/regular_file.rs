@@ -1,5 +1,16 @@
 //! Files that a user names: read whole, if they have an end.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::io::{Error, Result};
 use std::path::Path;
 

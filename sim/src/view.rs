@@ -2,11 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use contract::{Direction, Icrs};
 use hifitime::{Epoch, Unit};
 
 use crate::moment::Moment;
 use crate::optics::Psf;
-use crate::scene::{BackgroundField, CameraMotion, Source, planets};
+use crate::scene::earth::EarthDisk;
+use crate::scene::{Background, BackgroundField, CameraMotion, Source, planets};
 use crate::sensor::{InterlaceConfig, Switch};
 use crate::truth::{ObjectKind, clock};
 use crate::{SimError, Simulator};
@@ -100,13 +102,27 @@ impl View {
                 sources,
             );
         }
-        if let Some(moon) = &moment.moon {
-            // What is behind it is not seen.
-            sources.retain(|source| {
-                let far = matches!(source.kind, ObjectKind::Star | ObjectKind::Planet);
-                let hidden = |astrometric| far && moon.hides(&moment.observer.apparent_of(astrometric));
-                !source.astrometric.is_some_and(hidden)
-            });
+        // What is behind the Earth or the Moon is not seen.
+        let earth = simulator
+            .background
+            .as_ref()
+            .is_some_and(Background::has_earth)
+            .then(|| EarthDisk::seen_from(&moment.states.chaser.position_km));
+        let moon = moment.moon.as_ref();
+        let is_hidden = |astrometric: Direction<Icrs>| {
+            let near_earth = earth.as_ref().filter(|earth| earth.is_near(&astrometric));
+            let near_moon = moon.filter(|moon| moon.is_near(&astrometric));
+            (near_earth.is_some() || near_moon.is_some()) && {
+                let apparent = moment.observer.apparent_of(astrometric);
+                near_earth.is_some_and(|earth| earth.hides(&apparent))
+                    || near_moon.is_some_and(|moon| moon.hides(&apparent))
+            }
+        };
+        sources.retain(|source| {
+            let far = matches!(source.kind, ObjectKind::Star | ObjectKind::Planet);
+            !(far && source.astrometric.is_some_and(is_hidden))
+        });
+        if let Some(moon) = moon {
             sources.extend(moon.source(camera, &simulator.projection, &simulator.radiometry, reach_px));
         }
         *background = simulator.background.as_ref().map(|background| {
@@ -117,8 +133,8 @@ impl View {
 }
 
 /// Keeps the sources that are in all three lists, each in its order. What is missing in one has no light in any of the
-/// exposures, because each list was asked for all that comes near enough; or the Moon hides it at one of the three moments:
-/// a star at its very limb is then left out of both fields, image and truth.
+/// exposures, because each list was asked for all that comes near enough; or the Earth or the Moon hides it at one of the three
+/// moments: a star at its very limb is then left out of both fields, image and truth.
 fn keep_common(mut lists: [&mut Vec<Source>; 3]) {
     let names =
         |list: &Vec<Source>| list.iter().map(|source| (source.kind, source.id)).collect::<BTreeSet<_>>();

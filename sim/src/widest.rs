@@ -113,6 +113,12 @@ impl<S: Simd> Eight<S> {
         self.with(other, |simd, a, b| simd.select_f64s(simd.greater_than_f64s(a, b), a, b))
     }
 
+    /// The smaller of each two; `other` where one is not a number.
+    #[inline(always)]
+    pub(crate) fn or_smaller(self, other: Self) -> Self {
+        self.with(other, |simd, a, b| simd.select_f64s(simd.less_than_f64s(a, b), a, b))
+    }
+
     /// Each that is less than `limit` replaced by 0.
     #[inline(always)]
     pub(crate) fn or_none_below(self, limit: Self) -> Self {

@@ -16,8 +16,8 @@ use crate::docking_writer::FieldImages;
 use crate::failure::Failure;
 use crate::files::docking::SetupFile;
 use crate::files::{
-    Dataset, FieldOrder, FieldSource, FileError, FrameSize, ImageFormat, RunDirectory, Scan, SequenceOptions,
-    StarRow, read_stars,
+    Checksums, Dataset, FieldOrder, FieldSource, FileError, FrameSize, ImageFormat, RunDirectory, Scan,
+    SequenceOptions, StarRow, read_stars,
 };
 use crate::run::{self, Expectation, Flight, Prepared};
 use crate::scenario::{Scenario, ScenarioSource};
@@ -184,6 +184,7 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     }
     let dataset = Dataset::open(&arguments.directory)?;
     let setup = setup(arguments, &dataset)?;
+    check_sums(path)?;
     let scratch = super::scratch_directory()?;
     let factory = arguments.pipeline.choice().factory(&dataset.camera().far_range, scratch.path())?;
     let measurements = arguments.out.clone().unwrap_or_else(|| arguments.directory.join("measurements.csv"));
@@ -286,6 +287,7 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
     let scratch = super::scratch_directory()?;
     let factory = arguments.pipeline.choice().docking_factory(&config, scratch.path())?;
     let fields = FieldSource::open(path, &setup, &sequence.options())?;
+    check_sums(path)?;
     if arguments.out.as_deref() == Some(Path::new("-")) {
         output.check_free("--out -")?;
         let processed = stream_fields(fields, &setup, factory.as_ref())?;
@@ -310,6 +312,12 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
         format!("{fields} fields processed, answers in {}", measurements.display()),
     )?;
     Ok(Answer::Yes)
+}
+
+/// Holds what a pipeline is given against the checksums of a dataset, where it is one that has them.
+fn check_sums(path: &Path) -> Result<(), FileError> {
+    const GIVEN: [&str; 4] = ["camera.toml", "setup.toml", "stars.csv", "telemetry.csv"];
+    if path.is_dir() { Checksums::check(path, |name| GIVEN.contains(&name)) } else { Ok(()) }
 }
 
 /// The file that tells cameras and target: the one asked for, or `setup.toml` in a folder or beside a video.

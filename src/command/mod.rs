@@ -2,6 +2,7 @@
 
 mod dataset;
 mod gate;
+mod interrupt;
 mod monitor;
 mod options;
 mod output;

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
+use pipeline::external::DEFAULT_MEMORY_MB;
 
+use super::interrupt::end_programs_when_interrupted;
 use crate::docking_renderer::DockingRenderer;
 use crate::failure::Failure;
 use crate::mitsuba::MitsubaOptions;
@@ -55,18 +57,24 @@ pub(super) struct PipelineOptions {
     /// Longest time that an `exec:` pipeline may take for a frame, s
     #[arg(long, value_name = "S", default_value_t = 10.0)]
     pub(super) timeout_s: f64,
+    /// Most memory of an `exec:` pipeline, and of each process that it starts, MB; heeded on Linux
+    #[arg(long, value_name = "MB", default_value_t = DEFAULT_MEMORY_MB)]
+    pub(super) memory_mb: u64,
 }
 
 impl PipelineOptions {
-    /// The pipeline asked for.
+    /// The pipeline asked for. If it is a program, it is ended with this process from now on, when that is asked to end.
     pub(super) fn choice(&self) -> PipelineChoice {
-        PipelineChoice { word: self.pipeline.clone(), timeout_s: self.timeout_s }
+        if self.pipeline.as_deref().is_some_and(|word| word.starts_with("exec:")) {
+            end_programs_when_interrupted();
+        }
+        PipelineChoice { word: self.pipeline.clone(), timeout_s: self.timeout_s, memory_mb: self.memory_mb }
     }
 }
 
 impl Default for PipelineOptions {
     fn default() -> Self {
-        Self { pipeline: None, timeout_s: 10.0 }
+        Self { pipeline: None, timeout_s: 10.0, memory_mb: DEFAULT_MEMORY_MB }
     }
 }
 

@@ -99,7 +99,10 @@ fn run_far_range(
     };
     let frames = flight.frames.end - flight.frames.start;
     let progress = output.progress(frames, &format!("{}, {}", source.name, factory.name()));
-    let scored = prepared.run(&directory, &flight, factory.as_ref(), || progress.inc(1));
+    let scored = prepared.run(&directory, &flight, factory.as_ref(), || {
+        progress.inc(1);
+        Ok(())
+    });
     progress.finish_and_clear();
     let ran = scored?;
     output.first_failure(ran.first_failure.as_ref());
@@ -146,7 +149,10 @@ fn run_docking(
     };
     let fields = flight.fields.end - flight.fields.start;
     let progress = output.progress(fields, &format!("{}, {}", source.name, factory.name()));
-    let ran = prepared.run(&directory, &flight, factory.as_ref(), || progress.inc(1));
+    let ran = prepared.run(&directory, &flight, factory.as_ref(), || {
+        progress.inc(1);
+        Ok(())
+    });
     progress.finish_and_clear();
     let ran = ran?;
     output.first_failure(ran.first_failure.as_ref());

@@ -9,7 +9,7 @@ use super::output::Output;
 use crate::docking_run::score_docking;
 use crate::docking_table::docking;
 use crate::failure::Failure;
-use crate::files::FileError;
+use crate::files::{Checksums, FileError};
 use crate::run;
 use crate::run_file::RunFile;
 use crate::scenario::{FarRangeScenario, World, is_argon, world};
@@ -52,11 +52,13 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
     if world == World::Docking {
         let motion = arguments.motion.clone().or_else(|| beside("motion.csv"));
         let score = score_docking(&arguments.directory, &arguments.measurements, motion.as_deref())?;
+        Checksums::check(&arguments.directory, |_| true)?;
         output.answer(&score, docking(&score, output.is_terminal()))?;
         return Ok(Answer::Yes);
     }
     let clusters = arguments.clusters.clone().or_else(|| beside("clusters.parquet"));
     let score = run::score(&arguments.directory, &arguments.measurements, clusters.as_deref())?.score;
+    Checksums::check(&arguments.directory, |_| true)?;
     let is_argon = is_argon(&RunFile::<FarRangeScenario>::read(&run_file)?.scenario);
     let style = TableStyle {
         styled: output.is_terminal(),

@@ -17,7 +17,7 @@ use crate::docking_writer::FieldImages;
 use crate::failure::Failure;
 use crate::files::RunDirectory;
 use crate::pipeline_choice::PipelineChoice;
-use crate::report::report_of;
+use crate::report::{far_range_report, report_of};
 use crate::run::{Expectation, FirstFailure, Flight, Prepared};
 use crate::scenario::Scenario;
 use crate::study::{
@@ -107,6 +107,9 @@ pub(super) struct ReplayArguments {
     /// Keep the images as well: fits, png or exr; docking: png, avi, mjpeg (AVI) or y4m
     #[arg(long, value_name = "FORMAT")]
     save_frames: Option<String>,
+    /// Write no report.html
+    #[arg(long)]
+    no_report: bool,
     #[command(flatten)]
     pipeline: PipelineOptions,
 }
@@ -376,8 +379,12 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
             };
             let factory = choice.factory(&prepared.scenario().far_range, scratch.path())?;
             let directory = directory()?;
-            let ran = prepared.run(&directory, &flight, factory.as_ref(), || ())?;
+            let ran = prepared.run(&directory, &flight, factory.as_ref(), || Ok(()))?;
             output.first_failure(ran.first_failure.as_ref());
+            if !arguments.no_report {
+                let page = far_range_report(directory.path(), ran.scored.verdicts);
+                write_beside(page, directory.path(), output);
+            }
             let style = TableStyle { styled: output.is_terminal(), ..TableStyle::default() };
             let text = far_range(&ran.scored.score, style);
             output.answer(&ran.scored.score, format!("{text}\nresults in {}", directory.path().display()))?;
@@ -389,8 +396,11 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
             let factory = choice.docking_factory(&prepared.scenario().docking, scratch.path())?;
             let directory = directory()?;
             let flight = DockingFlight { fields, jobs, images };
-            let ran = prepared.run(&directory, &flight, factory.as_ref(), || ())?;
+            let ran = prepared.run(&directory, &flight, factory.as_ref(), || Ok(()))?;
             output.first_failure(ran.first_failure.as_ref());
+            if !arguments.no_report {
+                write_beside(report_of(directory.path()), directory.path(), output);
+            }
             let text = docking(&ran.score, output.is_terminal());
             output.answer(&ran.score, format!("{text}\nresults in {}", directory.path().display()))?;
         }

@@ -7,12 +7,15 @@ use std::sync::Arc;
 
 use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, StringArray, UInt64Array};
 use arrow_schema::{ArrowError, Field, Schema, SchemaRef};
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 
 use super::FileError;
 use super::csv_table::csv_error;
 use super::error::Place;
-use super::parquet_table::{Row, arrow_error, check_extents, guarded, parquet_error, schema};
+use super::parquet_file::{ParquetFile, damaged};
+use super::parquet_table::{Row, schema};
+
+/// Rows of a batch of a table that is handed on.
+const BATCH_ROWS: usize = 8192;
 
 /// Columns of our CSV tables that hold whole numbers from 0.
 const WHOLE: [&str; 6] = ["frame", "field", "n_stars", "camera", "id", "fields"];
@@ -34,21 +37,15 @@ pub fn arrow_of_rows<R: Row>(rows: &[R]) -> Result<RecordBatch, ArrowError> {
 /// # Errors
 /// [`FileError`] for a file that cannot be read, is none or is damaged.
 pub fn arrow_of_parquet(path: &Path) -> Result<(SchemaRef, Vec<RecordBatch>), FileError> {
-    guarded(path, || {
-        let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
-        let length = file.metadata().map_err(|source| FileError::io(path, "read", source))?.len();
-        let builder =
-            ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| parquet_error(path, error))?;
-        check_extents(path, builder.metadata(), length)?;
-        // Without what a writer says of itself beside the columns.
-        let schema = Arc::new(Schema::new(builder.schema().fields().clone()));
-        let batches = builder.build().map_err(|error| parquet_error(path, error))?;
-        let batches: Result<Vec<_>, _> = batches.collect();
-        let plain = |batch: RecordBatch| RecordBatch::try_new(Arc::clone(&schema), batch.columns().to_vec());
-        let batches: Result<Vec<_>, _> = batches.and_then(|all| all.into_iter().map(plain).collect());
-        let batches = batches.map_err(|error| arrow_error(path, error))?;
-        Ok((schema, batches))
-    })
+    let file = ParquetFile::open(path)?;
+    // Without what a writer says of itself beside the columns.
+    let schema = Arc::new(Schema::new(file.schema().fields().clone()));
+    let plain = |batch: Result<RecordBatch, FileError>| {
+        RecordBatch::try_new(Arc::clone(&schema), batch?.columns().to_vec())
+            .map_err(|error| damaged(path, error))
+    };
+    let batches = file.batches(None, BATCH_ROWS)?.map(plain).collect::<Result<_, _>>()?;
+    Ok((schema, batches))
 }
 
 /// All of one of our CSV tables, each column of the type that its name has. An empty cell is null.

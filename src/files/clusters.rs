@@ -41,6 +41,10 @@ impl Row for FrameCluster {
         ]
     }
 
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "`row` is below the number of rows of the batch, which all its columns have"
+    )]
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
         let (frame, pixels) = (columns.u64("frame")?, columns.u32("pixels")?);
         let (x, y, size) = (columns.f64("x_px")?, columns.f64("y_px")?, columns.f64("size")?);

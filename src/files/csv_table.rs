@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::FileError;
-use super::error::{Place, create_new};
+use super::error::Place;
+use super::{FileError, WholeFile};
 
 /// Whether a file may lack a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,10 +35,11 @@ impl CsvReader {
         let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
         let mut positions = vec![None; layout.len()];
         for (position, name) in header.iter().enumerate() {
-            let Some(index) = layout.iter().position(|(known, _)| *known == name) else {
+            let mut columns = layout.iter().zip(&mut positions);
+            let Some((_, place)) = columns.find(|((known, _), _)| *known == name) else {
                 return Err(unknown_column(path, name, layout));
             };
-            if positions[index].replace(position).is_some() {
+            if place.replace(position).is_some() {
                 return Err(FileError::value(path, Place::Line(1), "header", name, "each column once"));
             }
         }
@@ -90,7 +91,8 @@ impl CsvRow<'_> {
     pub(super) fn text(&self, column: &'static str) -> &str {
         let index = self.table.layout.iter().position(|(name, _)| *name == column);
         debug_assert!(index.is_some(), "`{column}` is not in the layout");
-        index.and_then(|i| self.table.positions[i]).and_then(|i| self.table.record.get(i)).unwrap_or("")
+        let position = index.and_then(|i| self.table.positions.get(i).copied().flatten());
+        position.and_then(|i| self.table.record.get(i)).unwrap_or("")
     }
 
     /// The error of a cell that is not what was `expected`.
@@ -150,27 +152,34 @@ impl CsvRow<'_> {
     }
 }
 
-/// A table being written.
+/// A table being written: a file that has its name when it is complete, or a stream.
 pub(super) struct CsvWriter {
     path: PathBuf,
     writer: csv::Writer<Box<dyn Write>>,
-    /// Whether each row goes out at once.
-    is_live: bool,
+    /// None of a stream.
+    file: Option<WholeFile>,
 }
 
 impl CsvWriter {
     /// Creates the table and writes its header.
     pub(super) fn create(path: &Path, layout: Layout) -> Result<Self, FileError> {
-        Self::headed(path, Box::new(create_new(path)?), false, layout)
+        let file = WholeFile::create_new(path)?;
+        let out = file.file().try_clone().map_err(|source| FileError::io(path, "create", source))?;
+        Self::headed(path, Box::new(out), Some(file), layout)
     }
 
     /// Writes the table to a stream that goes by `name` in messages, header first, each row as soon as it is there.
     pub(super) fn stream(name: &str, out: impl Write + 'static, layout: Layout) -> Result<Self, FileError> {
-        Self::headed(Path::new(name), Box::new(out), true, layout)
+        Self::headed(Path::new(name), Box::new(out), None, layout)
     }
 
-    fn headed(path: &Path, out: Box<dyn Write>, is_live: bool, layout: Layout) -> Result<Self, FileError> {
-        let mut writer = Self { path: path.to_owned(), writer: csv::Writer::from_writer(out), is_live };
+    fn headed(
+        path: &Path,
+        out: Box<dyn Write>,
+        file: Option<WholeFile>,
+        layout: Layout,
+    ) -> Result<Self, FileError> {
+        let mut writer = Self { path: path.to_owned(), writer: csv::Writer::from_writer(out), file };
         writer.write(layout.iter().map(|(name, _)| (*name).to_owned()))?;
         Ok(writer)
     }
@@ -178,16 +187,18 @@ impl CsvWriter {
     /// Writes a row of cells.
     pub(super) fn write(&mut self, cells: impl IntoIterator<Item = String>) -> Result<(), FileError> {
         self.writer.write_record(cells).map_err(|error| csv_error(&self.path, &error))?;
-        if self.is_live { self.flush() } else { Ok(()) }
+        // A row of a stream goes out at once.
+        if self.file.is_none() { self.flush() } else { Ok(()) }
     }
 
     fn flush(&mut self) -> Result<(), FileError> {
         self.writer.flush().map_err(|source| FileError::io(&self.path, "write", source))
     }
 
-    /// Writes what is buffered. Dropping the writer does so too, but cannot tell of an error.
+    /// Writes what is buffered, and gives the file its name.
     pub(super) fn finish(mut self) -> Result<(), FileError> {
-        self.flush()
+        self.flush()?;
+        self.file.take().map_or(Ok(()), WholeFile::commit_new)
     }
 }
 

@@ -4,7 +4,24 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::{FileError, ImageFormat};
+use super::{Checksums, FileError, ImageFormat};
+
+/// The files of a run that have checksums.
+const SEALED: [&str; 13] = [
+    "run.toml",
+    "camera.toml",
+    "setup.toml",
+    "stars.csv",
+    "telemetry.csv",
+    "truth/frames.parquet",
+    "truth/objects.parquet",
+    "truth/fields.parquet",
+    "measurements.csv",
+    "clusters.parquet",
+    "motion.csv",
+    "features.parquet",
+    "score.json",
+];
 
 /// A fresh directory for the output of a run, and the names of the files in it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,7 +40,11 @@ impl RunDirectory {
         match fs::read_dir(path) {
             Ok(mut entries) => {
                 if entries.next().is_some() {
-                    return Err(taken("exists and is not empty; nothing is overwritten"));
+                    return Err(taken(if is_unfinished(path) {
+                        "holds a run that was killed, failed, or still goes on; nothing is overwritten"
+                    } else {
+                        "exists and is not empty; nothing is overwritten"
+                    }));
                 }
             }
             Err(error) if error.kind() == ErrorKind::NotFound => {
@@ -62,9 +83,24 @@ impl RunDirectory {
     /// Makes the inner directories, which also proves that the place can be written to before hours of work.
     fn checked(path: PathBuf) -> Result<Self, FileError> {
         for inner in [path.join("truth"), path.join("frames")] {
-            fs::create_dir(&inner).map_err(|source| FileError::io(&inner, "create", source))?;
+            fs::create_dir(&inner).map_err(|source| match source.kind() {
+                // It was empty a moment ago.
+                ErrorKind::AlreadyExists => FileError::OutputTaken {
+                    path: path.clone(),
+                    reason: "is being written by another run; nothing is overwritten",
+                },
+                _ => FileError::io(&inner, "create", source),
+            })?;
         }
         Ok(Self { path })
+    }
+
+    /// Writes the checksums of everything in it that is complete now, images and report apart.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when a file cannot be read, or the checksums not be written.
+    pub fn seal(&self) -> Result<(), FileError> {
+        Checksums::write(&self.path, &SEALED)
     }
 
     /// The directory itself.
@@ -167,6 +203,11 @@ impl RunDirectory {
     }
 }
 
+/// Whether a directory holds the beginning of a run: its tables get their names when they are complete, that of the telemetry last.
+fn is_unfinished(path: &Path) -> bool {
+    path.join("run.toml").is_file() && !path.join("telemetry.csv").exists()
+}
+
 /// The largest number that `NAME-…` has in the parent; 0 when there is none.
 fn last_number(parent: &Path, name: &str) -> Result<u32, FileError> {
     let error = |source| FileError::io(parent, "open", source);
@@ -209,7 +250,7 @@ mod tests {
         RunDirectory::create(&path).unwrap();
         fs::write(path.join("run.toml"), "mine").unwrap();
         let message = RunDirectory::create(&path).unwrap_err().to_string();
-        assert!(message.contains("not empty") && message.contains("--out"), "{message}");
+        assert!(message.contains("holds a run that was killed") && message.contains("--out"), "{message}");
         assert_eq!(fs::read_to_string(path.join("run.toml")).unwrap(), "mine");
         for (inside, reason) in
             [("run.toml", "exists and is not a directory"), ("run.toml/below", "cannot create")]
@@ -219,6 +260,18 @@ mod tests {
         }
         let empty = tempdir().unwrap();
         assert!(RunDirectory::create(empty.path()).is_ok());
+    }
+
+    /// Both found it empty; only one can make what is in it.
+    #[test]
+    fn of_two_runs_that_find_a_directory_empty_one_is_refused() {
+        let path = tempdir().unwrap();
+        RunDirectory::checked(path.path().to_owned()).unwrap();
+        let message = RunDirectory::checked(path.path().to_owned()).unwrap_err().to_string();
+        assert!(
+            message.contains("is being written by another run") && message.contains("--out"),
+            "{message}"
+        );
     }
 
     #[test]

@@ -5,12 +5,15 @@
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::Path;
 
 use contract::{Frame, Window};
 use fitsio_pure::BLOCK_SIZE;
+use fitsio_pure::checksum::{checksum_blocks, stamp_checksum};
 use fitsio_pure::header::{Card, parse_header_blocks};
 use fitsio_pure::image_writer::ImageWriter;
+use fitsio_pure::primary::build_primary_header;
 use fitsio_pure::value::Value;
 
 use super::error::{Place, create_new};
@@ -28,11 +31,14 @@ pub(super) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
         fitsio_pure::Error::Io(source) => FileError::io(path, "write", source),
         other => FileError::format(path, "FITS", other),
     };
-    let file = BufWriter::new(create_new(path)?);
-    let mut writer =
-        ImageWriter::primary(file, 16, &[frame.columns(), frame.rows()], &cards).map_err(error)?;
     // u16 minus 32768 as i16 is the flip of the highest bit.
-    writer.write_iter(frame.dn().iter().map(|&dn| (dn ^ 0x8000) as i16)).map_err(error)?;
+    let samples = || frame.dn().iter().map(|&dn| (dn ^ 0x8000) as i16);
+    let mut header = build_primary_header(16, &[frame.columns(), frame.rows()]).map_err(error)?;
+    header.extend(cards);
+    let header = stamp_checksum(&header, &samples().flat_map(i16::to_be_bytes).collect::<Vec<u8>>());
+    let file = BufWriter::new(create_new(path)?);
+    let mut writer = ImageWriter::new(file, &header).map_err(error)?;
+    writer.write_iter(samples()).map_err(error)?;
     writer.finish().map_err(error)?;
     Ok(())
 }
@@ -47,6 +53,7 @@ pub(super) fn read(path: &Path) -> Result<RawImage, FileError> {
     let mut reader = BufReader::new(file);
     let mut offset = 0_u64;
     loop {
+        let start = offset;
         let cards = read_header(path, &mut reader, offset == 0)?;
         let header = Header { path, cards: &cards };
         offset = reader.stream_position().map_err(io)?;
@@ -56,7 +63,9 @@ pub(super) fn read(path: &Path) -> Result<RawImage, FileError> {
             header.error("bytes of data", bytes, format!("at most {left}, as the file ends there"))
         })?;
         if header.is_image()? {
-            return read_image(&header, &mut reader, bytes);
+            let image = read_image(&header, &mut reader, bytes)?;
+            check_sum(&header, &mut reader, start..end)?;
+            return Ok(image);
         }
         offset = end.next_multiple_of(BLOCK_SIZE as u64);
         if offset >= length {
@@ -69,21 +78,21 @@ pub(super) fn read(path: &Path) -> Result<RawImage, FileError> {
 fn read_header(path: &Path, reader: &mut impl Read, first: bool) -> Result<Vec<Card>, FileError> {
     let mut header = Vec::new();
     while header.len() < MAX_HEADER_BLOCKS * BLOCK_SIZE {
-        let start = header.len();
-        header.resize(start + BLOCK_SIZE, 0);
-        reader.read_exact(&mut header[start..]).map_err(|source| match source.kind() {
+        let mut block = [0; BLOCK_SIZE];
+        reader.read_exact(&mut block).map_err(|source| match source.kind() {
             std::io::ErrorKind::UnexpectedEof => {
                 FileError::format(path, "FITS", "the file ends within a header")
             }
             _ => FileError::io(path, "read", source),
         })?;
+        header.extend_from_slice(&block);
         let mandatory: &[u8] = if first { b"SIMPLE  " } else { b"XTENSION" };
         if !header.starts_with(mandatory) {
             let keyword = String::from_utf8_lossy(mandatory);
             let reason = format!("a header does not begin with {}", keyword.trim_end());
             return Err(FileError::format(path, "FITS", reason));
         }
-        if header[start..].chunks_exact(80).any(|card| card.starts_with(b"END     ")) {
+        if block.chunks_exact(80).any(|card| card.starts_with(b"END     ")) {
             return parse_header_blocks(&header).map_err(|error| FileError::format(path, "FITS", error));
         }
     }
@@ -226,10 +235,40 @@ impl Header<'_> {
     }
 }
 
+/// Holds header and data, `place` in the file, against the keyword CHECKSUM, where there is one (FITS standard 4.0, 4.4.2.7 and appendix J:
+/// their sum in ones' complement is minus nought).
+fn check_sum(
+    header: &Header<'_>,
+    reader: &mut (impl Read + Seek),
+    place: Range<u64>,
+) -> Result<(), FileError> {
+    let Some(Value::String(told)) = header.value("CHECKSUM").filter(|_| place.end > place.start) else {
+        return Ok(());
+    };
+    if told.trim().is_empty() {
+        // The standard's word for a sum that is not known.
+        return Ok(());
+    }
+    let io = |source| FileError::io(header.path, "read", source);
+    reader.seek(SeekFrom::Start(place.start)).map_err(io)?;
+    let mut unit = Vec::new();
+    let length = (place.end - place.start).next_multiple_of(BLOCK_SIZE as u64);
+    reader.take(length).read_to_end(&mut unit).map_err(io)?;
+    // A last block that is cut short, be it by noughts alone, is not what was written.
+    if unit.len() as u64 == length && matches!(checksum_blocks(&unit), 0 | u32::MAX) {
+        Ok(())
+    } else {
+        let expected = "the sum of header and data: the file was damaged, or changed by a program that left the keyword as it was";
+        Err(header.error("CHECKSUM", told, expected))
+    }
+}
+
 fn read_image(header: &Header<'_>, reader: &mut impl Read, bytes: u64) -> Result<RawImage, FileError> {
     let path = header.path;
-    let axes = header.axes()?;
-    let (columns, rows) = checked_size(path, axes[0], axes[1])?;
+    let [columns, rows, ..] = *header.axes()? else {
+        return Err(FileError::format(path, "FITS", "it holds no two-dimensional image"));
+    };
+    let (columns, rows) = checked_size(path, columns, rows)?;
     let (scale, zero) = (header.number("BSCALE", 1.0)?, header.number("BZERO", 0.0)?);
     let width = header.bytes_per_sample()? as usize;
     let pixel_bytes = columns * rows * width;
@@ -249,7 +288,7 @@ fn read_image(header: &Header<'_>, reader: &mut impl Read, bytes: u64) -> Result
     let float = |stored: f64| zero + scale * stored;
     let samples = data.chunks_exact(width);
     let dn = match header.whole("BITPIX")? {
-        Some(8) => dn_of_all(path, columns, samples.map(|b| integer(i64::from(b[0])))),
+        Some(8) => dn_of_all(path, columns, samples.map(|b| integer(i64::from(u8::from_be_bytes(fixed(b)))))),
         Some(16) => {
             dn_of_all(path, columns, samples.map(|b| integer(i64::from(i16::from_be_bytes(fixed(b))))))
         }

@@ -4,7 +4,19 @@
 //! the value and what was expected; it does not panic, and it allocates no more than the length of the file and
 //! [`contract::Camera::MAX_SIDE_PX`] justify. No writer overwrites.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 mod arrow_table;
+mod checksums;
 mod clusters;
 mod column;
 mod csv_table;
@@ -19,11 +31,14 @@ mod fits_cards;
 mod frame_file;
 mod image16;
 mod measurements;
+mod parquet_claims;
+mod parquet_file;
 mod parquet_table;
 mod partial;
 mod raw_image;
 mod stars;
 mod telemetry;
+mod thrift;
 mod time;
 mod toml_table;
 mod truth;
@@ -35,6 +50,7 @@ mod windows;
 
 pub use self::exr::{Expected, read_expected, read_radiance, write_expected, write_radiance};
 pub use arrow_table::{arrow_of_csv, arrow_of_parquet, arrow_of_rows};
+pub use checksums::Checksums;
 pub use clusters::FrameCluster;
 pub use column::read_column;
 pub use dataset::{CameraFile, Dataset, DatasetFrame};
@@ -43,7 +59,8 @@ pub use error::{FileError, Place};
 pub use field_telemetry::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
 pub use frame_file::{FrameHeader, ImageFormat, read_frame, write_frame};
 pub use measurements::{MeasurementWriter, read_measurements};
-pub(crate) use parquet_table::guarded;
+pub(crate) use parquet_file::ParquetFile;
+pub(crate) use parquet_table::unwritten;
 pub use parquet_table::{Column, Columns, Row, TableReader, TableWriter};
 pub use partial::PartialFiles;
 pub use stars::{StarRow, read_stars, write_stars};

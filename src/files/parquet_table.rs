@@ -2,20 +2,18 @@
 
 use std::collections::VecDeque;
 use std::fs::File;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use arrow_array::{Array, ArrayRef, Float64Array, RecordBatch, StringArray, UInt32Array, UInt64Array};
-use arrow_schema::{ArrowError, Field, Schema};
-use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
-use parquet::arrow::{ArrowWriter, ProjectionMask};
+use arrow_schema::{Field, Schema};
+use parquet::arrow::ArrowWriter;
 use parquet::basic::Compression;
-use parquet::file::metadata::{ParquetMetaData, RowGroupMetaData};
 use parquet::file::properties::WriterProperties;
 
-use super::FileError;
-use super::error::{Place, create_new};
+use super::error::Place;
+use super::parquet_file::{Batches, ParquetFile, damaged};
+use super::{FileError, WholeFile};
 
 /// Rows held before they are encoded, and read at a time.
 const BATCH_ROWS: usize = 8192;
@@ -66,9 +64,10 @@ pub trait Row: Sized {
     const FRAME: &'static str = "frame";
 }
 
-/// Writes a table, in row groups as it goes: memory stays the same however long the table.
+/// Writes a table, in row groups as it goes: memory stays the same however long the table. The file has its name when it is complete.
 pub struct TableWriter<R> {
     path: PathBuf,
+    file: WholeFile,
     writer: ArrowWriter<File>,
     schema: Arc<Schema>,
     waiting: Vec<R>,
@@ -90,9 +89,11 @@ impl<R: Row> TableWriter<R> {
             columns.iter().filter(|column| !column.repeats).fold(properties, |properties, column| {
                 properties.set_column_dictionary_enabled(column.name.into(), false)
             });
-        let writer = ArrowWriter::try_new(create_new(path)?, Arc::clone(&schema), Some(properties.build()))
-            .map_err(|error| parquet_error(path, error))?;
-        Ok(Self { path: path.to_owned(), writer, schema, waiting: Vec::new() })
+        let file = WholeFile::create_new(path)?;
+        let out = file.file().try_clone().map_err(|source| FileError::io(path, "create", source))?;
+        let writer = ArrowWriter::try_new(out, Arc::clone(&schema), Some(properties.build()))
+            .map_err(|error| unwritten(path, error))?;
+        Ok(Self { path: path.to_owned(), file, writer, schema, waiting: Vec::new() })
     }
 
     /// Adds rows. Frames must come in ascending order; a reader relies on it.
@@ -104,22 +105,22 @@ impl<R: Row> TableWriter<R> {
         if self.waiting.len() >= BATCH_ROWS { self.encode() } else { Ok(()) }
     }
 
-    /// Completes the file. Without it the table cannot be read.
+    /// Completes the file. Without it there is none.
     ///
     /// # Errors
     /// [`FileError::Io`], [`FileError::Format`].
     pub fn finish(mut self) -> Result<(), FileError> {
         self.encode()?;
-        self.writer.close().map_err(|error| parquet_error(&self.path, error))?;
-        Ok(())
+        self.writer.close().map_err(|error| unwritten(&self.path, error))?;
+        self.file.commit_new()
     }
 
     fn encode(&mut self) -> Result<(), FileError> {
         let arrays = R::columns(&self.waiting).into_iter().map(|column| column.values).collect();
         self.waiting.clear();
         let batch = RecordBatch::try_new(Arc::clone(&self.schema), arrays)
-            .map_err(|error| arrow_error(&self.path, error))?;
-        self.writer.write(&batch).map_err(|error| parquet_error(&self.path, error))
+            .map_err(|error| damaged(&self.path, error))?;
+        self.writer.write(&batch).map_err(|error| unwritten(&self.path, error))
     }
 }
 
@@ -134,7 +135,7 @@ pub(super) fn schema(columns: &[Column]) -> Schema {
 /// A frame without rows is not met; [`TableReader::rows_of`] answers it with none.
 pub struct TableReader<R> {
     path: PathBuf,
-    batches: ParquetRecordBatchReader,
+    batches: Batches,
     rows_read: u64,
     waiting: VecDeque<R>,
     last_frame: Option<u64>,
@@ -148,20 +149,11 @@ impl<R: Row> TableReader<R> {
     /// [`FileError::Io`]; [`FileError::Format`] for a file that is not Parquet or is cut short;
     /// [`FileError::MissingColumn`]; [`FileError::Value`] for a column of another type.
     pub fn open(path: &Path) -> Result<Self, FileError> {
-        let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
-        let length = file.metadata().map_err(|source| FileError::io(path, "read", source))?.len();
-        let builder = guarded(path, || {
-            ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| parquet_error(path, error))
-        })?;
-        check_extents(path, builder.metadata(), length)?;
+        let file = ParquetFile::open(path)?;
         let expected = schema(&R::columns(&[]));
-        check_schema(path, builder.schema(), &expected)?;
-        let names = expected.fields().iter().map(|field| field.name().as_str());
-        let mask = ProjectionMask::columns(builder.parquet_schema(), names);
-        let batches = guarded(path, || {
-            let builder = builder.with_projection(mask).with_batch_size(BATCH_ROWS);
-            builder.build().map_err(|error| parquet_error(path, error))
-        })?;
+        check_schema(path, file.schema(), &expected)?;
+        let names: Vec<&str> = expected.fields().iter().map(|field| field.name().as_str()).collect();
+        let batches = file.batches(Some(&names), BATCH_ROWS)?;
         Ok(Self {
             path: path.to_owned(),
             batches,
@@ -192,8 +184,7 @@ impl<R: Row> TableReader<R> {
     /// The frame of the next row.
     fn peek_frame(&mut self) -> Result<Option<u64>, FileError> {
         while self.waiting.is_empty() {
-            let next = || self.batches.next().transpose().map_err(|error| arrow_error(&self.path, error));
-            let Some(batch) = guarded(&self.path, next)? else { return Ok(None) };
+            let Some(batch) = self.batches.next().transpose()? else { return Ok(None) };
             let columns = Columns { path: &self.path, batch: &batch, first_row: self.rows_read };
             let rows = R::rows(&columns)?;
             for (i, row) in rows.iter().enumerate() {
@@ -235,28 +226,6 @@ impl<R: Row> Iterator for TableReader<R> {
         self.failed = frame.is_err();
         Some(frame)
     }
-}
-
-/// Runs a call into the crate `parquet`, which has assertions that a damaged file can break: such a panic is the
-/// file's fault and becomes its error.
-pub(crate) fn guarded<T>(path: &Path, call: impl FnOnce() -> Result<T, FileError>) -> Result<T, FileError> {
-    catch_unwind(AssertUnwindSafe(call))
-        .unwrap_or_else(|_| Err(FileError::format(path, "Parquet", "it is damaged")))
-}
-
-/// Refuses columns that lie outside the file, before the crate asserts on them.
-pub(super) fn check_extents(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(), FileError> {
-    for column in metadata.row_groups().iter().flat_map(RowGroupMetaData::columns) {
-        let start = column.dictionary_page_offset().unwrap_or(column.data_page_offset());
-        let end = u64::try_from(start)
-            .ok()
-            .zip(u64::try_from(column.compressed_size()).ok())
-            .and_then(|(start, size)| start.checked_add(size));
-        if end.is_none_or(|end| end > length) {
-            return Err(FileError::format(path, "Parquet", "a column lies outside the file"));
-        }
-    }
-    Ok(())
 }
 
 fn check_schema(path: &Path, found: &Schema, expected: &Schema) -> Result<(), FileError> {
@@ -390,10 +359,13 @@ impl Columns<'_> {
     }
 }
 
-pub(super) fn parquet_error(path: &Path, error: parquet::errors::ParquetError) -> FileError {
-    FileError::format(path, "Parquet", error)
-}
-
-pub(super) fn arrow_error(path: &Path, error: ArrowError) -> FileError {
-    FileError::format(path, "Parquet", error)
+/// The error of a table that cannot be written: that of the operating system, where it is one.
+pub(crate) fn unwritten(path: &Path, error: parquet::errors::ParquetError) -> FileError {
+    match error {
+        parquet::errors::ParquetError::External(source) => match source.downcast::<std::io::Error>() {
+            Ok(source) => FileError::io(path, "write", *source),
+            Err(source) => damaged(path, source),
+        },
+        other => damaged(path, other),
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::FileError;
+use super::{FileError, WholeFile};
 
 /// Files that get their names when they are complete; until then they go by `NAME.partial`, and are removed when
 /// the value is dropped.
@@ -32,20 +32,25 @@ impl PartialFiles {
         let names: Vec<PathBuf> = names.iter().map(|name| name.to_path_buf()).collect();
         let files = Self { paths: names.iter().map(|name| partial(name)).collect(), names };
         files.remove(); // What a process that was killed left.
+        folders_of(&files.names).for_each(WholeFile::remove_abandoned);
         Ok(files)
     }
 
     /// Where the file of the name number `index` is written meanwhile.
+    ///
+    /// # Panics
+    /// For an index that is not below the number of names.
+    #[expect(clippy::indexing_slicing, reason = "the writer's own constant, nothing that was read")]
     pub fn path(&self, index: usize) -> &Path {
         &self.paths[index]
     }
 
-    /// Gives the files their names.
+    /// Gives the files their names, the first one last: nobody looks for the others without it.
     ///
     /// # Errors
     /// [`FileError::Io`] when a file of that name has come up meanwhile.
     pub fn complete(self) -> Result<(), FileError> {
-        for (path, name) in self.paths.iter().zip(&self.names) {
+        for (path, name) in self.paths.iter().zip(&self.names).rev() {
             // A link, unlike a renaming, never replaces a file.
             std::fs::hard_link(path, name).map_err(|source| FileError::Io {
                 path: name.clone(),
@@ -62,6 +67,12 @@ impl PartialFiles {
             let _ = std::fs::remove_file(path);
         }
     }
+}
+
+fn folders_of(names: &[PathBuf]) -> impl Iterator<Item = &Path> {
+    names
+        .iter()
+        .map(|name| name.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))
 }
 
 impl Drop for PartialFiles {

@@ -39,13 +39,13 @@ impl RawImage {
         let frame = Frame::new(number, self.columns, self.rows, bit_depth, self.dn, windows.or(self.windows))
             .map_err(|source| FileError::contract(path, source))?;
         let full_scale = frame.full_scale_dn();
-        match frame.dn().iter().position(|&dn| dn > full_scale) {
+        match frame.dn().iter().enumerate().find(|(_, dn)| **dn > full_scale) {
             None => Ok(frame),
-            Some(i) => Err(FileError::value(
+            Some((i, dn)) => Err(FileError::value(
                 path,
                 Place::Pixel { x: i % columns, y: i / columns },
                 "DN",
-                frame.dn()[i],
+                dn,
                 format!("at most {full_scale}, the full scale of {} bits", frame.bit_depth()),
             )),
         }

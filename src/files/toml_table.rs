@@ -1,6 +1,5 @@
 //! TOML files that are one table of ours: read and checked, checked and written.
 
-use std::io::Write;
 use std::path::Path;
 
 use contract::ContractError;
@@ -8,8 +7,8 @@ use pipeline::PipelineError;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::FileError;
-use super::error::{Place, create_new};
+use super::error::Place;
+use super::{FileError, WholeFile};
 use crate::toml_file;
 
 /// A value that is not allowed in a table.
@@ -73,7 +72,7 @@ pub(super) fn read<T: TomlTable>(path: &Path) -> Result<T, FileError> {
     Ok(table)
 }
 
-/// Writes a file.
+/// Writes a file, at once or not at all.
 ///
 /// # Errors
 /// [`FileError::Io`] when it exists or cannot be written; [`FileError::Value`] for what could not be read back.
@@ -82,5 +81,5 @@ pub(super) fn write<T: TomlTable>(table: &T, path: &Path) -> Result<(), FileErro
         FileError::value(path, Place::Whole, key, value, expected)
     })?;
     let text = toml::to_string(table).map_err(|error| FileError::format(path, "TOML", error))?;
-    create_new(path)?.write_all(text.as_bytes()).map_err(|source| FileError::io(path, "write", source))
+    WholeFile::with_text(path, &text)?.commit_new()
 }

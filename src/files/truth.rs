@@ -46,11 +46,12 @@ pub(super) fn optional_components<R, const N: usize>(
     names: [&'static str; N],
     values: impl Fn(&R) -> Option<[f64; N]>,
 ) -> impl Iterator<Item = Column> {
-    let column = |i: usize| optional_numbers(rows, names[i], |row| values(row).map(|values| values[i]));
-    (0..N).map(column).collect::<Vec<_>>().into_iter()
+    let column = |(i, name)| optional_numbers(rows, name, |row| values(row)?.get(i).copied());
+    names.into_iter().enumerate().map(column).collect::<Vec<_>>().into_iter()
 }
 
 /// Numbers that stand together, one column each.
+#[expect(clippy::indexing_slicing, reason = "both are of N, and `i` is below it")]
 pub(super) fn components<R, const N: usize>(
     rows: &[R],
     names: [&'static str; N],
@@ -71,6 +72,10 @@ pub(super) fn columns_f64<'a, const N: usize>(
     Ok(slices)
 }
 
+#[expect(
+    clippy::indexing_slicing,
+    reason = "`row` is below the number of rows of the batch, which all its columns have"
+)]
 fn at<const N: usize>(slices: &[&[f64]; N], row: usize) -> [f64; N] {
     slices.map(|slice| slice[row])
 }
@@ -107,6 +112,10 @@ impl Row for FrameTruth {
         columns
     }
 
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "`row` is below the number of rows of the batch, which all its columns have"
+    )]
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
         let (frame, group) = (columns.u64("frame")?, columns.text("group")?);
         let time: &Timestamps = columns.every("time_utc")?;
@@ -217,6 +226,10 @@ impl Row for ObjectTruth {
         ]
     }
 
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "`row` is below the number of rows of the batch, which all its columns have"
+    )]
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
         let (frame, id) = (columns.u64("frame")?, columns.u32("id")?);
         let names = ["x_px", "y_px", "electrons", "peak_electrons", "snr", "radius_px", "bloom_px", "cut"];

@@ -243,6 +243,10 @@ struct Distortion {
 
 impl Distortion {
     /// Least squares by QR over every second sample; the others only judge the fit.
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "rows are those of `fitted`, columns those of `powers`, axes two"
+    )]
     fn fit(
         samples: &[Sample],
         lowest_order: usize,

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
 use tempfile::NamedTempFile;
 
@@ -10,6 +11,9 @@ use super::FileError;
 
 /// How the names of files begin that are being written, or were left by a process that was killed.
 const PARTIAL: &str = ".partial-";
+
+/// A file that is being written grows. One that has not for so long was left by a process that was killed.
+const ABANDONED: Duration = Duration::from_secs(3600);
 
 /// A file that is being written; gone unless it is given its name.
 #[derive(Debug)]
@@ -29,9 +33,22 @@ impl WholeFile {
         // As any other file of a folder, and not for its owner alone.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.prefix(PARTIAL).tempfile_in(folder);
+        // Its name says whose part it is, and does not end as that of a whole file does: nobody who looks for tables takes it for one.
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let file = builder.prefix(&format!("{PARTIAL}{name}-")).tempfile_in(folder);
         let file = file.map_err(|source| FileError::io(path, "create", source))?;
         Ok(Self { file, path: path.to_owned() })
+    }
+
+    /// [`WholeFile::create`], of a path that is not there yet.
+    ///
+    /// # Errors
+    /// [`FileError::OutputTaken`] when it is; [`FileError::Io`] when the file cannot be made.
+    pub fn create_new(path: &Path) -> Result<Self, FileError> {
+        if path.symlink_metadata().is_ok() {
+            return Err(taken(path));
+        }
+        Self::create(path)
     }
 
     /// A file that will be `path`, with this in it.
@@ -82,9 +99,7 @@ impl WholeFile {
     pub fn commit_new(self) -> Result<(), FileError> {
         match self.commit()? {
             None => Ok(()),
-            Some(Self { path, .. }) => {
-                Err(FileError::OutputTaken { path, reason: "exists; nothing is overwritten" })
-            }
+            Some(Self { path, .. }) => Err(taken(&path)),
         }
     }
 
@@ -98,9 +113,26 @@ impl WholeFile {
         file.persist(&path).map(drop).map_err(|error| FileError::io(&path, "create", error.error))
     }
 
+    /// Removes what processes that were killed left in a folder, an hour after they last wrote to it. That it cannot be done is no
+    /// matter: nobody reads it.
+    pub fn remove_abandoned(folder: &Path) {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        for path in entries.map(|entry| entry.path()).filter(|path| Self::is_partial(path)) {
+            let modified = path.symlink_metadata().and_then(|metadata| metadata.modified());
+            let age = modified.ok().and_then(|modified| SystemTime::now().duration_since(modified).ok());
+            if age.is_some_and(|age| age > ABANDONED) {
+                let _ = std::fs::remove_file(path);
+            }
+        }
+    }
+
     fn sync(&self) -> Result<(), FileError> {
         self.file.as_file().sync_all().map_err(|source| FileError::io(&self.path, "write", source))
     }
+}
+
+fn taken(path: &Path) -> FileError {
+    FileError::OutputTaken { path: path.to_owned(), reason: "exists; nothing is overwritten" }
 }
 
 #[cfg(test)]
@@ -121,6 +153,19 @@ mod tests {
         let taken = WholeFile::with_text(&path, "third").unwrap().commit_new().unwrap_err();
         assert!(taken.to_string().contains("nothing is overwritten"), "{taken}");
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_was_left_an_hour_ago_is_removed_and_what_is_being_written_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        std::fs::write(&path, "whole").unwrap();
+        let [old, new] = [(); 2].map(|()| WholeFile::with_text(&path, "part").unwrap());
+        for file in [old.file(), &File::options().append(true).open(&path).unwrap()] {
+            file.set_modified(SystemTime::now() - ABANDONED - Duration::from_secs(1)).unwrap();
+        }
+        WholeFile::remove_abandoned(folder.path());
+        assert_eq!([old.place().exists(), new.place().exists(), path.exists()], [false, true, true]);
     }
 
     #[cfg(unix)]

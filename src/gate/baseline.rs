@@ -3,6 +3,17 @@
 //! A folder with two files: `baseline.toml`, readable in a diff, says what was run, by which pipeline, why this is the baseline, how it is
 //! cut into blocks, and the figures; `rows.parquet` has a row a unit. The one holds the SHA-256 of the other.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
@@ -15,7 +26,7 @@ use super::identity::Identity;
 use super::read::Sample;
 use super::rows;
 use crate::failure::Failure;
-use crate::files::{FileError, WholeFile};
+use crate::files::{Checksums, FileError, WholeFile};
 use crate::score::{FigureTerms, Reduction};
 use crate::toml_file;
 
@@ -23,6 +34,9 @@ use crate::toml_file;
 const FORMAT: u32 = 1;
 /// Largest `rows.parquet` that is read, bytes.
 const MOST_BYTES: u64 = 1 << 28;
+
+/// The files of a baseline.
+const NAMES: [&str; 2] = ["baseline.toml", "rows.parquet"];
 
 /// What becomes of a baseline that is there already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -163,7 +177,7 @@ impl Baseline {
                 Replace::Refuse => file.commit_new()?,
             }
         }
-        Ok(())
+        Ok(Checksums::write(folder, &NAMES)?)
     }
 
     /// Reads a baseline.
@@ -224,6 +238,7 @@ impl Baseline {
                 ));
             }
         }
+        Checksums::check(folder, |_| true)?;
         let sample = Sample { identity: header.run.clone(), table };
         Ok(Self { header, sample, blocks })
     }
@@ -239,7 +254,7 @@ fn told_of(figure: &FigureTerms) -> BaselineFigure {
 }
 
 fn paths(folder: &Path) -> [PathBuf; 2] {
-    ["baseline.toml", "rows.parquet"].map(|name| folder.join(name))
+    NAMES.map(|name| folder.join(name))
 }
 
 fn file_sha256(path: &Path) -> Result<String, FileError> {

@@ -1,5 +1,16 @@
 //! A result: a run directory or a study's, read unit by unit.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::Path;
 
 use contract::docking::Digitiser;
@@ -11,7 +22,9 @@ use toml::Table;
 use super::identity::{Identity, SourceKind, split};
 use crate::docking_run::judge_docking;
 use crate::failure::Failure;
-use crate::files::{FieldRow, FileError, TableReader, TelemetryRow, read_field_telemetry, read_telemetry};
+use crate::files::{
+    Checksums, FieldRow, FileError, TableReader, TelemetryRow, read_field_telemetry, read_telemetry,
+};
 use crate::run;
 use crate::run_file::RunFile;
 use crate::scenario::{DockingScenario, FarRangeScenario, World, world};
@@ -57,20 +70,22 @@ fn rounded(value: f32) -> f32 {
 /// A [`Failure`] for a directory that is neither, or files that cannot be read.
 pub fn read_result(directory: &Path) -> Result<Sample, Failure> {
     let (run_file, cases) = (directory.join("run.toml"), directory.join("cases.parquet"));
-    if run_file.is_file() {
+    let sample = if run_file.is_file() {
         let text = read_text(&run_file)?;
         match world(&run_file, &text, "scenario.world")? {
-            World::FarRange => far_range(directory, &run_file, &text),
-            World::Docking => docking(directory, &run_file, &text),
+            World::FarRange => far_range(directory, &run_file, &text)?,
+            World::Docking => docking(directory, &run_file, &text)?,
         }
     } else if cases.is_file() {
-        study(directory, &cases)
+        study(directory, &cases)?
     } else {
-        Err(Failure::Usage(format!(
+        return Err(Failure::Usage(format!(
             "{}: there is neither `run.toml` nor `cases.parquet`, expected the directory of a run or of a study that is complete",
             directory.display()
-        )))
-    }
+        )));
+    };
+    Checksums::check(directory, |_| true)?;
+    Ok(sample)
 }
 
 fn read_text(path: &Path) -> Result<String, Failure> {
@@ -185,6 +200,7 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
 }
 
 /// The cases of a study as units: rates over all frames of all cases, amounts as means over the cases, as the study sums them up.
+#[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
 fn units_of_cases(table: &CaseTable) -> UnitTable {
     let figure = |(index, name): (usize, &String)| {
         let is_rate = sense(name).kind == Kind::Rate;

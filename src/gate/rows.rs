@@ -1,5 +1,16 @@
 //! `rows.parquet` of a baseline: a row a unit, with its block and what it adds to each figure.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
@@ -7,16 +18,17 @@ use std::sync::Arc;
 use arrow_array::{Array, ArrayRef, Float32Array, RecordBatch, StringArray, UInt32Array, UInt64Array};
 use arrow_schema::{Field, Schema};
 use parquet::arrow::ArrowWriter;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::basic::{Compression, Encoding};
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::schema::types::ColumnPath;
 
-use crate::files::{FileError, Place, guarded};
+use crate::files::{FileError, ParquetFile, Place, unwritten};
 use crate::score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 
 /// After the name of a figure of whose values a unit may have several: how many they are.
 const OF: &str = ".of";
+/// Rows read at a time.
+const BATCH_ROWS: usize = 8192;
 
 /// Writes the rows, with the number of each one's block, into a file that will be `path`.
 pub(super) fn write(
@@ -66,9 +78,10 @@ pub(super) fn write(
     }
     let properties = properties.build();
     let batch = RecordBatch::try_new(Arc::clone(&schema), columns).map_err(|error| format(&error))?;
-    let mut writer = ArrowWriter::try_new(file, schema, Some(properties)).map_err(|error| format(&error))?;
-    writer.write(&batch).map_err(|error| format(&error))?;
-    writer.close().map_err(|error| format(&error))?;
+    let mut writer =
+        ArrowWriter::try_new(file, schema, Some(properties)).map_err(|error| unwritten(path, error))?;
+    writer.write(&batch).map_err(|error| unwritten(path, error))?;
+    writer.close().map_err(|error| unwritten(path, error))?;
     Ok(())
 }
 
@@ -77,16 +90,6 @@ pub(super) fn read(
     path: &Path,
     figures: &[(String, Reduction)],
 ) -> Result<(UnitTable, Vec<usize>), FileError> {
-    guarded(path, || read_unguarded(path, figures))
-}
-
-fn read_unguarded(
-    path: &Path,
-    figures: &[(String, Reduction)],
-) -> Result<(UnitTable, Vec<usize>), FileError> {
-    let format = |error: &dyn std::fmt::Display| FileError::format(path, "Parquet", error);
-    let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| format(&error))?;
     let mut table = UnitTable {
         units: Vec::new(),
         figures: figures
@@ -99,20 +102,21 @@ fn read_unguarded(
             .collect(),
     };
     let mut blocks = Vec::new();
-    for batch in builder.build().map_err(|error| format(&error))? {
-        add(path, &batch.map_err(|error| format(&error))?, &mut table, &mut blocks)?;
+    for batch in ParquetFile::open(path)?.batches(None, BATCH_ROWS)? {
+        add(path, &batch?, &mut table, &mut blocks)?;
     }
-    for unit in 1..table.units.len() {
-        let refuse = |column: &str, value: &dyn std::fmt::Display, expected: String| {
-            FileError::value(path, Place::Row(unit as u64), column, value, expected)
-        };
-        let (before, this) = (table.units[unit - 1].number, table.units[unit].number);
-        if this <= before {
-            return Err(refuse("number", &this, format!("more than {before}, that of the row before")));
+    let refuse = |row: u64, column: &str, value: &dyn std::fmt::Display, expected: String| {
+        FileError::value(path, Place::Row(row), column, value, expected)
+    };
+    for (row, (before, this)) in (1..).zip(table.units.iter().zip(table.units.iter().skip(1))) {
+        if this.number <= before.number {
+            let expected = format!("more than {}, that of the row before", before.number);
+            return Err(refuse(row, "number", &this.number, expected));
         }
-        let (before, this) = (blocks[unit - 1], blocks[unit]);
-        if this != before && this != before + 1 {
-            return Err(refuse("block", &this, format!("{before} or {}", before + 1)));
+    }
+    for (row, (before, this)) in (1..).zip(blocks.iter().zip(blocks.iter().skip(1))) {
+        if this != before && *this != before + 1 {
+            return Err(refuse(row, "block", this, format!("{before} or {}", before + 1)));
         }
     }
     match blocks.first() {

@@ -1,5 +1,16 @@
 //! The page, embedded when it has been built.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::borrow::Cow;
 
 use rust_embed::RustEmbed;

@@ -1,5 +1,16 @@
 //! The server: any frame by its number, and nothing kept of a client.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::future::Future;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -21,8 +32,8 @@ use tokio::time::timeout;
 use super::assets::asset;
 use super::feed::{Feed, Surroundings, feed};
 use super::ground::GroundTrack;
-use super::guard::Guard;
-use super::listener::BoundedListener;
+use super::guard::{Admission, Guard};
+use super::listener::{BoundedListener, Bounds};
 use super::overview::Overview;
 use super::painter::paint;
 use super::session::{PictureAnswer, Session};
@@ -36,7 +47,7 @@ const FAREWELL: Duration = Duration::from_secs(1);
 const PAINTERS: usize = 2;
 
 /// Sent with every answer. The page needs its own files and nothing else, and nobody may frame or read it.
-const HEADERS: [(HeaderName, &str); 5] = [
+const HEADERS: [(HeaderName, &str); 6] = [
     (
         header::CONTENT_SECURITY_POLICY,
         "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
@@ -44,6 +55,7 @@ const HEADERS: [(HeaderName, &str); 5] = [
     (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
     (header::REFERRER_POLICY, "no-referrer"),
     (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+    (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
     (header::CACHE_CONTROL, "no-store"),
 ];
 
@@ -135,7 +147,8 @@ fn answer_requests(
             let _ = ended.send(());
         };
         let service = router(Arc::clone(shared), Guard::new(address));
-        let server = axum::serve(BoundedListener::new(listener), service).with_graceful_shutdown(goodbye);
+        let server = axum::serve(BoundedListener::new(listener, Bounds::default()), service)
+            .with_graceful_shutdown(goodbye);
         // Clients that keep their connection are not waited for.
         tokio::select! {
             result = server.into_future() => {
@@ -163,16 +176,14 @@ fn router(shared: Arc<Shared>, guard: Guard) -> Router {
 
 /// Refuses requests that are not for this server or not from its page, and sets the headers of all answers.
 async fn check(State(guard): State<Guard>, request: Request, next: Next) -> Response {
-    // What is not text is no address of ours.
-    let text = |value: &HeaderValue| value.to_str().unwrap_or_default().to_owned();
-    let host = request.headers().get(header::HOST).map(text).unwrap_or_default();
-    let origin = request.headers().get(header::ORIGIN).map(text);
-    let mut response = if !guard.is_own_host(&host) {
-        (StatusCode::MISDIRECTED_REQUEST, "this host is not served here\n").into_response()
-    } else if origin.is_some_and(|origin| !guard.is_own_origin(&origin)) {
-        (StatusCode::FORBIDDEN, "requests of other pages are not answered\n").into_response()
-    } else {
-        next.run(request).await
+    let mut response = match guard.admits(request.uri().path(), request.headers()) {
+        Admission::Granted => next.run(request).await,
+        Admission::OtherHost => {
+            (StatusCode::MISDIRECTED_REQUEST, "this host is not served here\n").into_response()
+        }
+        Admission::OtherPage => {
+            (StatusCode::FORBIDDEN, "requests of other pages are not answered\n").into_response()
+        }
     };
     for (name, value) in HEADERS {
         response.headers_mut().insert(name, HeaderValue::from_static(value));

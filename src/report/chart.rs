@@ -179,7 +179,8 @@ pub(super) fn bars(name: &str, x: Vec<String>, y: Vec<f64>) -> Box<Bar<String, f
 
 /// The layout of stacked bars.
 pub(super) fn stacked_bars(x_title: &str, y_title: &str) -> Layout {
-    axes(x_title, y_title).bar_mode(BarMode::Stack).bar_gap(0.4)
+    // One kind of bar alone would have no name otherwise.
+    axes(x_title, y_title).bar_mode(BarMode::Stack).bar_gap(0.4).show_legend(true)
 }
 
 /// The layout of one pair of axes.
@@ -187,9 +188,9 @@ pub(super) fn axes(x_title: &str, y_title: &str) -> Layout {
     Layout::new().x_axis(Axis::new().title(x_title)).y_axis(Axis::new().title(y_title))
 }
 
-/// An axis in powers of ten.
+/// An axis in powers of ten, with whole numbers at its ticks: a lone 2 may be 20. Few of them, as those before a power are close.
 pub(super) fn log_axis(title: &str) -> Axis {
-    Axis::new().title(title).type_(AxisType::Log)
+    Axis::new().title(title).type_(AxisType::Log).tick_format("~g").n_ticks(4)
 }
 
 /// Some traces with an axis of their own, in a stack of them over one common axis.
@@ -200,11 +201,13 @@ pub(super) struct Panel<X: Serialize + Clone + 'static> {
     pub(super) traces: Vec<Curve<X>>,
     /// Limits of its axis; `None`: those of what is drawn.
     pub(super) range: Option<[f64; 2]>,
+    /// Whether its axis is in powers of ten.
+    pub(super) is_log: bool,
 }
 
 impl<X: Serialize + Clone + 'static> Panel<X> {
     pub(super) fn new(title: impl Into<String>, traces: Vec<Curve<X>>) -> Self {
-        Self { title: title.into(), traces, range: None }
+        Self { title: title.into(), traces, range: None, is_log: false }
     }
 }
 
@@ -221,7 +224,9 @@ pub(super) fn stacked<X: Serialize + Clone + 'static>(
     for (index, panel) in panels.into_iter().enumerate() {
         let top = 1.0 - index as f64 * height;
         let bottom = if index + 1 == count { 0.0 } else { top - height + gap };
-        let mut axis = Axis::new().title(panel.title.as_str()).domain(&[bottom, top]);
+        let axis =
+            if panel.is_log { log_axis(&panel.title) } else { Axis::new().title(panel.title.as_str()) };
+        let mut axis = axis.domain(&[bottom, top]);
         if let Some([low, high]) = panel.range {
             axis = axis.range(vec![low, high]);
         }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use plotly::Trace;
+use plotly::{Layout, Trace};
 
 use super::chart::{Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
 use super::docking::{DockingRun, FieldSheet};
@@ -10,8 +10,10 @@ use super::far_range::{FarRangeRun, FrameSheet};
 use super::figures::{cell, significant};
 use super::page::{DataTable, Page, Section};
 use super::picture::Picture;
+use super::words::{capital, spoken};
 use crate::failure::Failure;
-use crate::gate::{FigureVerdict, Flip, FlipKind, GateReport, Pairing};
+use crate::gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
+use crate::score::{Kind, sense};
 
 /// Flipped frames that are shown as pictures, at most.
 const MOST_PICTURES: usize = 12;
@@ -93,8 +95,8 @@ fn kind_words(kind: FlipKind) -> &'static str {
 /// From which verdict to which.
 fn change(flip: &Flip) -> String {
     let words = |verdict: &str, cause: &Option<String>| match cause {
-        Some(cause) => format!("{} ({})", verdict.replace('_', " "), cause.replace('_', " ")),
-        None => verdict.replace('_', " "),
+        Some(cause) => format!("{} ({})", spoken(verdict), spoken(cause)),
+        None => spoken(verdict),
     };
     format!("{} → {}", words(&flip.baseline, &flip.baseline_cause), words(&flip.result, &flip.result_cause))
 }
@@ -175,29 +177,51 @@ fn effects(report: &GateReport) -> Section {
             figure.blocks.to_string(),
         ]);
     }
-    // In units of the tolerance, so that rates and degrees stand on one axis.
-    let shown: Vec<_> = report
+    let (rates, amounts): (Vec<Compared<'_>>, Vec<Compared<'_>>) = report
         .figures
         .iter()
-        .filter(|(_, figure)| figure.difference.is_some() && figure.tolerance > 0.0)
-        .collect();
-    let section = Section::new("effects", "What changed");
-    if shown.is_empty() {
-        return section.table(table);
+        .filter(|(_, figure)| figure.difference.is_some())
+        .partition(|(name, _)| sense(name).kind == Kind::Rate);
+    let mut section = Section::new("effects", "What changed");
+    if !rates.is_empty() {
+        let (traces, layout) = differences(&rates, |_| 0.01, "difference, points");
+        let caption = "Rates: result minus baseline with 95 % intervals, in percentage points, and what is tolerated. The table says \
+                       which way is better.";
+        section = section.chart(Chart::new(caption, 440, table.clone(), traces, layout));
     }
+    // What has units of its own stands on one axis in units of its tolerance.
+    let amounts: Vec<_> = amounts.into_iter().filter(|(_, figure)| figure.tolerance > 0.0).collect();
+    if !amounts.is_empty() {
+        let (traces, layout) = differences(&amounts, |figure| figure.tolerance, "difference ÷ tolerance");
+        let caption = "The other figures: result minus baseline with 95 % intervals, in units of each figure's tolerance.";
+        section = section.chart(Chart::new(caption, 440, table.clone(), traces, layout));
+    }
+    section.table(table)
+}
+
+/// A figure of the gate by its name.
+type Compared<'a> = (&'a String, &'a FigureReport);
+
+/// Differences of some figures with their intervals and their tolerances, each divided by its unit.
+fn differences(
+    shown: &[Compared<'_>],
+    unit: fn(&FigureReport) -> f64,
+    axis: &str,
+) -> (Vec<Box<dyn Trace>>, Layout) {
     let of = |is: &dyn Fn(FigureVerdict) -> bool, name: &str, colour| {
         let chosen: Vec<_> = shown.iter().filter(|(_, figure)| is(figure.verdict)).collect();
-        let scaled = |value: Option<f64>, tolerance: f64| rounded(value.unwrap_or(f64::NAN) / tolerance, 4);
-        let y: Vec<f64> = chosen.iter().map(|(_, f)| scaled(f.difference, f.tolerance)).collect();
-        let low: Vec<f64> = chosen.iter().map(|(_, f)| scaled(f.low.or(f.difference), f.tolerance)).collect();
-        let high: Vec<f64> =
-            chosen.iter().map(|(_, f)| scaled(f.high.or(f.difference), f.tolerance)).collect();
+        let scaled = |value: fn(&FigureReport) -> Option<f64>| -> Vec<f64> {
+            let of = |f: &FigureReport| value(f).or(f.difference).unwrap_or(f64::NAN) / unit(f);
+            chosen.iter().map(|(_, figure)| rounded(of(figure), 4)).collect()
+        };
+        let (y, low, high) = (scaled(|f| f.difference), scaled(|f| f.low), scaled(|f| f.high));
         intervals(name, chosen.iter().map(|(name, _)| (*name).clone()).collect(), y, &low, &high, colour)
     };
     let names: Vec<String> = shown.iter().map(|(name, _)| (*name).clone()).collect();
-    let limit = |at: f64, name: &str| {
-        let trace = line(name, names.clone(), vec![at; names.len()], REFERENCE).opacity(0.6);
-        if at > 0.0 { trace } else { trace.show_legend(false) }
+    let limit = |side: f64, name: &str| {
+        let at = shown.iter().map(|(_, figure)| side * figure.tolerance / unit(figure)).collect();
+        let trace = line(name, names.clone(), at, REFERENCE).opacity(0.6);
+        if side > 0.0 { trace } else { trace.show_legend(false) }
     };
     let traces: Vec<Box<dyn Trace>> = vec![
         limit(1.0, "tolerance"),
@@ -206,15 +230,7 @@ fn effects(report: &GateReport) -> Section {
         of(&|verdict| verdict == FigureVerdict::Better, "better", super::chart::TRUTH),
         of(&|verdict| !verdict.is_worse() && verdict != FigureVerdict::Better, "no worse", MEASURED),
     ];
-    section
-        .chart(Chart::new(
-            "Result minus baseline with 95 % intervals, in units of each figure's tolerance. The table says which way is better.",
-            480,
-            table.clone(),
-            traces,
-            axes("", "difference ÷ tolerance"),
-        ))
-        .table(table)
+    (traces, axes("", axis))
 }
 
 /// Units that flipped.
@@ -262,9 +278,4 @@ fn changed(report: &GateReport, frames: FlippedFrames) -> Section {
         section
     };
     section.folded("All that flipped", table)
-}
-
-fn capital(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

@@ -19,6 +19,7 @@ mod read;
 mod study;
 mod thin;
 mod visibility;
+mod words;
 
 use std::path::{Path, PathBuf};
 
@@ -32,35 +33,27 @@ pub use read::ResultKind;
 pub use study::{StudyResult, study_page};
 pub use visibility::{read_visibility, visibility_page};
 
+use self::read::world_of;
 use crate::failure::Failure;
-use crate::files::{FileError, WholeFile};
-use crate::scenario::{World, world};
+use crate::files::{Checksums, WholeFile};
+use crate::scenario::World;
 use crate::score::FrameVerdict;
-use crate::toml_file;
 
 /// The report of a directory of results.
 ///
 /// # Errors
 /// A [`Failure`] that names the file which is missing or cannot be read.
 pub fn report_of(directory: &Path) -> Result<Page, Failure> {
-    match ResultKind::of(directory)? {
-        ResultKind::Run => {
-            let path = directory.join("run.toml");
-            let text = toml_file::read_text(&path).map_err(|source| FileError::Io {
-                path: path.clone(),
-                doing: "read",
-                source,
-            })?;
-            match world(&path, &text, "scenario.world")? {
-                World::FarRange => {
-                    far_range_page(&FarRangeRun::read(directory)?, &FrameSheet::open(directory)?)
-                }
-                World::Docking => docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?),
-            }
-        }
-        ResultKind::Study => Ok(study_page(&StudyResult::read(directory)?)),
-        ResultKind::Visibility => Ok(visibility_page(&read_visibility(directory)?)),
-    }
+    let page = match ResultKind::of(directory)? {
+        ResultKind::Run => match world_of(directory)? {
+            World::FarRange => far_range_page(&FarRangeRun::read(directory)?, &FrameSheet::open(directory)?)?,
+            World::Docking => docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?)?,
+        },
+        ResultKind::Study => study_page(&StudyResult::read(directory)?),
+        ResultKind::Visibility => visibility_page(&read_visibility(directory)?),
+    };
+    Checksums::check(directory, |_| true)?;
+    Ok(page)
 }
 
 /// The report of a far-range run with its error budget: `budget` are directories of runs of the same frames, each with the truth in the
@@ -69,6 +62,12 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
 /// # Errors
 /// As [`report_of`]; a [`Failure`] for a directory that is not of the same frames, or is an honest run.
 pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
+    if ResultKind::of(directory)? != ResultKind::Run || world_of(directory)? != World::FarRange {
+        return Err(Failure::Usage(format!(
+            "--budget is given, expected with a run of the far range alone: {} is none",
+            directory.display()
+        )));
+    }
     let mut run = FarRangeRun::read(directory)?;
     run.budget = InjectedRun::read_all(budget, &run)?;
     far_range_page(&run, &FrameSheet::open(directory)?)

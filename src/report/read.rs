@@ -1,11 +1,25 @@
 //! Which kind of directory it is, and files that several kinds have.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
 use crate::failure::Failure;
-use crate::files::FileError;
+use crate::files::{FileError, Row, TableReader};
+use crate::scenario::{World, world};
+use crate::toml_file;
 
 /// Longest JSON file that is read, bytes.
 const LONGEST_JSON: u64 = 1 << 28;
@@ -51,12 +65,38 @@ impl ResultKind {
     }
 }
 
+/// The world of a run, by its `run.toml`.
+pub(super) fn world_of(directory: &Path) -> Result<World, Failure> {
+    let path = directory.join("run.toml");
+    let text = toml_file::read_text(&path).map_err(|source| FileError::Io {
+        path: path.clone(),
+        doing: "read",
+        source,
+    })?;
+    world(&path, &text, "scenario.world")
+}
+
 /// A file of a run that is not there.
 pub(super) fn missing(directory: &Path, name: &str) -> Failure {
     Failure::Usage(format!(
         "{}: is missing, expected the directory of a run: of a rendered dataset there is nothing to report yet",
         directory.join(name).display()
     ))
+}
+
+/// The rows of some frames of a table, each frame's apart and in the order asked for, in one pass; none where there is no table.
+pub(super) fn rows_of_each<R: Row + Clone>(
+    path: Option<&Path>,
+    frames: &[u64],
+) -> Result<Vec<Vec<R>>, Failure> {
+    let mut found = BTreeMap::new();
+    if let Some(path) = path {
+        let mut table = TableReader::<R>::open(path)?;
+        for &frame in &BTreeSet::from_iter(frames) {
+            found.insert(frame, table.rows_of(*frame)?);
+        }
+    }
+    Ok(frames.iter().map(|frame| found.get(frame).cloned().unwrap_or_default()).collect())
 }
 
 /// Reads a JSON document.

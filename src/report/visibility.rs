@@ -94,7 +94,7 @@ fn requirements(report: &VisibilityReport) -> Section {
     for verdict in &report.requirements {
         let margin = verdict.margin.map(|margin| format!("{} {}", significant(margin), verdict.margin_unit));
         let evidence = match &verdict.binds {
-            Some(binds) => format!("{} What binds: {binds}.", verdict.evidence),
+            Some(binds) => format!("{}. What binds: {binds}.", verdict.evidence),
             None => verdict.evidence.clone(),
         };
         table.push([
@@ -171,7 +171,7 @@ fn detection(report: &VisibilityReport) -> Section {
         400,
         data,
         traces,
-        axes("V, mag", "probability"),
+        axes("V, mag", "probability").show_legend(true),
     ))
 }
 

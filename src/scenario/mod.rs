@@ -1,5 +1,16 @@
 //! Scenarios: what to run, in words. A scenario belongs to one of two worlds, each with a type of its own.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 mod builtin;
 mod cameras;
 mod docking;

@@ -11,13 +11,13 @@ use super::record::StudyRecord;
 use super::shard::{Plan, ShardManifest, ShardStore};
 use super::stopping::Stopping;
 use super::summary::Summary;
+use super::tried::StudyPipeline;
 use crate::failure::Failure;
-use crate::pipeline_choice::PipelineChoice;
 
 /// A study, the pipeline that it tries, and the folder of its results.
 pub struct Campaign<'a> {
     study: &'a Study,
-    choice: &'a PipelineChoice,
+    pipeline: &'a dyn StudyPipeline,
     store: ShardStore,
 }
 
@@ -59,28 +59,28 @@ impl<'a> Campaign<'a> {
     /// A [`Failure`] for a pipeline that is not there, and a folder that holds another study, or the same one in other pieces.
     pub fn open(
         study: &'a Study,
-        choice: &'a PipelineChoice,
+        pipeline: &'a dyn StudyPipeline,
         out: &Path,
         shards: Option<u64>,
     ) -> Result<Self, Failure> {
-        choice.check(study.scenario())?;
+        pipeline.check(study.scenario())?;
         let shards = shards.or_else(|| ShardStore::planned_shards(out));
-        let plan = Plan::new(study, study.hash_with(choice), shards)?;
-        Ok(Self { study, choice, store: ShardStore::open(out, plan)? })
+        let plan = Plan::new(study, study.hash_with(pipeline), shards)?;
+        Ok(Self { study, pipeline, store: ShardStore::open(out, plan)? })
     }
 
     /// Opens a folder that holds a plan of the study.
     ///
     /// # Errors
     /// As [`Campaign::open`], and [`Failure::Usage`] where there is no plan.
-    pub fn reopen(study: &'a Study, choice: &'a PipelineChoice, out: &Path) -> Result<Self, Failure> {
+    pub fn reopen(study: &'a Study, pipeline: &'a dyn StudyPipeline, out: &Path) -> Result<Self, Failure> {
         if ShardStore::planned_shards(out).is_none() {
             return Err(Failure::Usage(format!(
                 "{}: there is no plan.json that can be read, expected the directory of a study's shards",
                 out.display()
             )));
         }
-        Self::open(study, choice, out, None)
+        Self::open(study, pipeline, out, None)
     }
 
     /// Its folder.
@@ -104,7 +104,7 @@ impl<'a> Campaign<'a> {
             return Ok((table, manifest));
         }
         let cases = self.store.plan().cases_of(shard);
-        let rows = run_cases(self.study, cases, self.choice, workers, |case| done(Known::Run(case)))?;
+        let rows = run_cases(self.study, cases, self.pipeline, workers, |case| done(Known::Run(case)))?;
         let table = empty.with_rows(rows);
         let manifest = self.store.write(shard, &table)?;
         Ok((table, manifest))
@@ -171,10 +171,11 @@ impl<'a> Campaign<'a> {
     /// # Errors
     /// A [`Failure`] of files.
     pub fn finish(&self, path: &Path, table: &CaseTable) -> Result<Summary, Failure> {
-        let summary = Summary::new(self.study, self.choice, path, table);
+        let summary = Summary::new(self.study, self.pipeline, path, table);
         self.store.write_record(&StudyRecord::new(self.study)?)?;
         self.store.write_cases(table)?;
         self.store.write_summary(&summary)?;
+        self.store.seal()?;
         Ok(summary)
     }
 }

@@ -1,6 +1,16 @@
 //! The rows of a study: a case each, with what was drawn and what came of it.
 
-use std::fs::File;
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
@@ -9,13 +19,12 @@ use arrow_array::{Array, ArrayRef, BooleanArray, Float64Array, RecordBatch, Stri
 use arrow_schema::{DataType, Field, Schema};
 use indexmap::IndexMap;
 use parquet::arrow::ArrowWriter;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::basic::Compression;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use sha2::{Digest, Sha256};
 
-use crate::files::{FileError, guarded};
+use crate::files::{FileError, ParquetFile, unwritten};
 
 /// A drawn value.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +84,8 @@ pub struct CaseTable {
 
 /// Before the name of a drawn value's column.
 const SET: &str = "set.";
+/// Rows read at a time.
+const BATCH_ROWS: usize = 8192;
 
 impl CaseTable {
     /// SHA-256 of the rows and the names of their columns, hexadecimal: what a table says, however it is encoded.
@@ -129,11 +140,12 @@ impl CaseTable {
         let format = |error: &dyn std::fmt::Display| FileError::format(path, "Parquet", error);
         let batch = RecordBatch::try_new(Arc::clone(&schema), columns).map_err(|error| format(&error))?;
         let mut writer =
-            ArrowWriter::try_new(file, schema, Some(properties)).map_err(|error| format(&error))?;
-        writer.write(&batch).map_err(|error| format(&error))?;
-        writer.close().map(drop).map_err(|error| format(&error))
+            ArrowWriter::try_new(file, schema, Some(properties)).map_err(|error| unwritten(path, error))?;
+        writer.write(&batch).map_err(|error| unwritten(path, error))?;
+        writer.close().map(drop).map_err(|error| unwritten(path, error))
     }
 
+    #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
     fn columns(&self) -> (Schema, Vec<ArrayRef>) {
         let mut fields = Vec::new();
         let mut columns: Vec<ArrayRef> = Vec::new();
@@ -173,21 +185,17 @@ impl CaseTable {
     /// # Errors
     /// [`FileError`] for a file that cannot be read or is damaged.
     pub fn columns_of(path: &Path) -> Result<Self, FileError> {
-        guarded(path, || {
-            let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
-            let builder = ParquetRecordBatchReaderBuilder::try_new(file)
-                .map_err(|error| FileError::format(path, "Parquet", error))?;
-            let fields = builder.schema().fields();
-            let drawn = fields.iter().filter_map(|field| {
-                let name = field.name().strip_prefix(SET)?;
-                Some((name.to_owned(), *field.data_type() == DataType::Float64))
-            });
-            let figures = fields.iter().filter_map(|field| field.name().strip_suffix(".of"));
-            Ok(Self {
-                drawn: drawn.collect(),
-                figures: figures.filter(|name| !name.starts_with(SET)).map(str::to_owned).collect(),
-                rows: Vec::new(),
-            })
+        let file = ParquetFile::open(path)?;
+        let fields = file.schema().fields();
+        let drawn = fields.iter().filter_map(|field| {
+            let name = field.name().strip_prefix(SET)?;
+            Some((name.to_owned(), *field.data_type() == DataType::Float64))
+        });
+        let figures = fields.iter().filter_map(|field| field.name().strip_suffix(".of"));
+        Ok(Self {
+            drawn: drawn.collect(),
+            figures: figures.filter(|name| !name.starts_with(SET)).map(str::to_owned).collect(),
+            rows: Vec::new(),
         })
     }
 
@@ -196,20 +204,13 @@ impl CaseTable {
     /// # Errors
     /// [`FileError`] for a file that cannot be read, is damaged, or has other columns.
     pub fn read(&self, path: &Path) -> Result<(Self, IndexMap<String, String>), FileError> {
-        guarded(path, || self.read_unguarded(path))
-    }
-
-    fn read_unguarded(&self, path: &Path) -> Result<(Self, IndexMap<String, String>), FileError> {
-        let format = |error: &dyn std::fmt::Display| FileError::format(path, "Parquet", error);
-        let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
-        let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|error| format(&error))?;
-        let metadata = builder.metadata().file_metadata().key_value_metadata().into_iter().flatten();
-        let metadata = metadata.filter_map(|pair| Some((pair.key.clone(), pair.value.clone()?))).collect();
+        let file = ParquetFile::open(path)?;
+        let notes = file.notes().map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
         let mut table = self.with_rows(Vec::new());
-        for batch in builder.build().map_err(|error| format(&error))? {
-            table.add(path, &batch.map_err(|error| format(&error))?)?;
+        for batch in file.batches(None, BATCH_ROWS)? {
+            table.add(path, &batch?)?;
         }
-        Ok((table, metadata))
+        Ok((table, notes))
     }
 
     fn add(&mut self, path: &Path, batch: &RecordBatch) -> Result<(), FileError> {
@@ -274,12 +275,14 @@ impl CaseTable {
     }
 
     /// The numbers of a figure, case by case.
+    #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
     pub fn figure(&self, name: &str) -> Option<Vec<CaseFigure>> {
         let index = self.figures.iter().position(|figure| figure == name)?;
         Some(self.rows.iter().map(|row| row.figures[index]).collect())
     }
 
     /// The numbers of a drawn value, case by case; `None` for what is no number.
+    #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
     pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
         let index = self.drawn.get_index_of(name)?;
         let number = |row: &CaseRow| match row.drawn[index] {

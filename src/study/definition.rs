@@ -1,5 +1,16 @@
 //! A study that was read and checked, and the scenarios of its cases.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -14,8 +25,8 @@ use super::design::DesignKind;
 use super::file::StudyFile;
 use super::law::{Drawable, Law, boresight, euler_123};
 use super::overlay::ValuePath;
+use super::tried::StudyPipeline;
 use crate::failure::Failure;
-use crate::pipeline_choice::PipelineChoice;
 use crate::scenario::{Scenario, ScenarioSource};
 use crate::toml_file;
 
@@ -125,7 +136,13 @@ impl Study {
             sweep.push(Swept { path: value_path, values: swept.values.clone() });
         }
 
-        let cells: u64 = sweep.iter().map(|swept| swept.values.len() as u64).product();
+        let counts = sweep.iter().map(|swept| swept.values.len() as u64);
+        let Some(cells) = counts.into_iter().try_fold(1_u64, |cells, count| cells.checked_mul(count)) else {
+            return Err(refuse(
+                "sweep",
+                "has 2^64 combinations or more, expected no more than cases".to_owned(),
+            ));
+        };
         let cases = file.stop.cases;
         if !(1..=MOST_CASES).contains(&cases) || !cases.is_multiple_of(cells) {
             let expected = format!("is {cases}, expected 1 to 2^40, a multiple of the sweep's {cells}");
@@ -184,9 +201,9 @@ impl Study {
     }
 
     /// The hash of rows by a pipeline.
-    pub fn hash_with(&self, choice: &PipelineChoice) -> String {
-        match choice.hash(self.scenario().world()) {
-            Some(pipeline) => hex(Sha256::digest(format!("{} {}", self.hash, hex(pipeline)))),
+    pub fn hash_with(&self, pipeline: &dyn StudyPipeline) -> String {
+        match pipeline.hash(self.scenario().world()) {
+            Some(own) => hex(Sha256::digest(format!("{} {}", self.hash, hex(own)))),
             None => self.hash.clone(),
         }
     }
@@ -277,7 +294,8 @@ impl Study {
         let mut drawn = Vec::new();
         for (i, swept) in self.sweep.iter().enumerate().rev() {
             let count = swept.values.len() as u64;
-            let value = swept.values[(cell % count) as usize].clone();
+            // A sweep has a value, which was checked when it was read.
+            let value = swept.values.get((cell % count) as usize).cloned().unwrap_or_default();
             cell /= count;
             drawn.insert(0, recorded(&value));
             let at = format!("sweep[{i}].path");

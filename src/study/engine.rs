@@ -10,18 +10,18 @@ use super::campaign::Workers;
 use super::cases::CaseRow;
 use super::definition::Study;
 use super::evaluate::{Evaluated, evaluate};
+use super::tried::StudyPipeline;
 use crate::failure::Failure;
-use crate::pipeline_choice::PipelineChoice;
 
 /// Evaluates cases on `jobs` threads, a case a thread; `done` is told of each, in no order. The rows are in order, and depend on
 /// neither. A program finds its images in folders of its own below `scratch`.
 ///
 /// # Errors
-/// The failure of the first case, in order, that has one; [`Failure::Interrupted`] of those that were not begun any more.
+/// The failure of the first case, in order, that has one; [`Failure::Interrupted`] of those that were not done when it was ended.
 pub(super) fn run_cases(
     study: &Study,
     cases: Range<u64>,
-    choice: &PipelineChoice,
+    pipeline: &dyn StudyPipeline,
     Workers { jobs, scratch, ended }: Workers<'_>,
     done: impl Fn(&Evaluated) + Sync,
 ) -> Result<Vec<CaseRow>, Failure> {
@@ -29,13 +29,17 @@ pub(super) fn run_cases(
         .num_threads(jobs)
         .build()
         .map_err(|error| Failure::Usage(format!("{jobs} threads cannot be started: {error}")))?;
+    let go_on = || match ended {
+        Some(ended) if ended.load(Ordering::Relaxed) => Err(Failure::Interrupted),
+        _ => Ok(()),
+    };
     let one = |case: u64| {
-        if ended.is_some_and(|ended| ended.load(Ordering::Relaxed)) {
-            return Err(Failure::Interrupted);
-        }
+        go_on()?;
         let own = tempfile::tempdir_in(scratch)
             .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))?;
-        let evaluated = evaluate(study, case, choice, own.path())?;
+        let evaluated = evaluate(study, case, pipeline, own.path())?;
+        // What a pipeline answered while it was ended is no result.
+        go_on()?;
         done(&evaluated);
         Ok(evaluated.row)
     };

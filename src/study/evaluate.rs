@@ -6,10 +6,10 @@ use indexmap::IndexMap;
 
 use super::cases::{CaseFigure, CaseRow};
 use super::definition::{Case, Study};
+use super::tried::StudyPipeline;
 use crate::docking_renderer::DockingRenderer;
 use crate::docking_run::PreparedDocking;
 use crate::failure::Failure;
-use crate::pipeline_choice::PipelineChoice;
 use crate::run::{FirstFailure, Prepared};
 use crate::scenario::Scenario;
 use crate::score::{self, Figure};
@@ -30,11 +30,11 @@ pub struct Evaluated {
 pub fn evaluate(
     study: &Study,
     number: u64,
-    choice: &PipelineChoice,
+    pipeline: &dyn StudyPipeline,
     scratch: &Path,
 ) -> Result<Evaluated, Failure> {
     let case = study.case(number)?;
-    let (figures, first_failure) = figures_of(study, &case, choice, scratch)?;
+    let (figures, first_failure) = figures_of(study, &case, pipeline, scratch)?;
     let figure = |name: &String| {
         figures.get(name).map_or(CaseFigure { value: None, count: 0, of: 0 }, |figure| CaseFigure {
             value: figure.value,
@@ -51,20 +51,20 @@ pub fn evaluate(
 fn figures_of(
     study: &Study,
     case: &Case,
-    choice: &PipelineChoice,
+    pipeline: &dyn StudyPipeline,
     scratch: &Path,
 ) -> Result<(IndexMap<String, Figure>, Option<FirstFailure>), Failure> {
     match &case.source.scenario {
         Scenario::FarRange(_) => {
             let prepared = Prepared::new(&case.source)?;
-            let factory = choice.factory(&prepared.scenario().far_range, scratch)?;
+            let factory = pipeline.factory(&prepared.scenario().far_range, scratch)?;
             let frames = study.frames(prepared.frame_count())?;
             let ran = prepared.score(frames, factory.as_ref())?;
             Ok((ran.scored.score.figures, ran.first_failure))
         }
         Scenario::Docking(_) => {
             let prepared = PreparedDocking::new(&case.source, DockingRenderer::Fast)?;
-            let factory = choice.docking_factory(&prepared.scenario().docking, scratch)?;
+            let factory = pipeline.docking_factory(&prepared.scenario().docking, scratch)?;
             let fields = study.frames(prepared.field_count())?;
             let (scorer, first_failure) = prepared.score(fields, factory.as_ref())?;
             Ok((scorer.finish().figures, first_failure))

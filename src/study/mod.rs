@@ -6,6 +6,7 @@
 //!
 //! - [`StudyFile`], [`Law`], [`DesignKind`]: what is asked for.
 //! - [`Study`]: what was asked for, checked; makes the scenario of a case.
+//! - [`StudyPipeline`]: what is tried; built anew for every case.
 //! - [`evaluate`]: simulates, processes and scores a case.
 //! - [`Campaign`]: a study in a folder; makes what is missing of it.
 //! - [`ShardStore`]: shards as files, each written at once or not at all; what is missing, what is whole.
@@ -25,6 +26,7 @@ mod sensitivity;
 mod shard;
 mod stopping;
 mod summary;
+mod tried;
 
 pub use campaign::{Campaign, Known, Workers};
 pub use cases::{CaseFigure, CaseRow, CaseTable, Drawn};
@@ -38,3 +40,4 @@ pub use record::StudyRecord;
 pub use sensitivity::{RankCorrelation, SobolIndex};
 pub use shard::{Plan, ShardManifest, ShardStore};
 pub use summary::{Estimate, FigureSummary, Summary, SweepPoint, WorstCase, command_line, overall};
+pub use tried::StudyPipeline;

@@ -1,5 +1,16 @@
 //! A scenario with some of its values replaced.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use serde_json::Value;
 
 use crate::failure::Failure;

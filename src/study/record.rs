@@ -1,5 +1,16 @@
 //! `study.json`: what a study is of, with its scenario, for whoever compares its rows with others.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};

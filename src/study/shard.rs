@@ -5,6 +5,17 @@
 //! to the byte, is no shard: it is made again. So any number of processes may work on the same folder, be killed at any moment,
 //! and be started again.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -16,7 +27,7 @@ use super::cases::CaseTable;
 use super::definition::Study;
 use super::record::StudyRecord;
 use crate::failure::Failure;
-use crate::files::{FileError, WholeFile};
+use crate::files::{Checksums, FileError, WholeFile};
 
 /// Cases of a shard, about, when their number is not given.
 const CASES_PER_SHARD: u64 = 32;
@@ -102,6 +113,8 @@ impl ShardStore {
     pub fn open(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let store = Self { folder: folder.to_owned(), plan };
         std::fs::create_dir_all(store.shards()).map_err(|source| FileError::io(folder, "create", source))?;
+        WholeFile::remove_abandoned(folder);
+        WholeFile::remove_abandoned(&store.shards());
         let path = store.folder.join("plan.json");
         let text = to_json(&store.plan)?;
         if !path.exists() {
@@ -275,6 +288,14 @@ impl ShardStore {
         Ok(path)
     }
 
+    /// Writes the checksums of what is complete now.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when a file cannot be read, or the checksums not be written.
+    pub fn seal(&self) -> Result<(), FileError> {
+        Checksums::write(&self.folder, &SEALED)
+    }
+
     /// The summary, `summary.json`, written at once in the place of an earlier one.
     ///
     /// # Errors
@@ -285,6 +306,9 @@ impl ShardStore {
         Ok(path)
     }
 }
+
+/// The files of a study that have checksums: those of the shards stand in them.
+const SEALED: [&str; 4] = ["plan.json", "study.json", "cases.parquet", "summary.json"];
 
 /// Whether a file holds these rows and nothing else: a byte that was changed where no row shows it may be one that matters tomorrow.
 fn is_just(table: &CaseTable, manifest: &ShardManifest, path: &Path) -> Result<bool, FileError> {

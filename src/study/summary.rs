@@ -12,7 +12,7 @@ use super::definition::Study;
 use super::design::DesignKind;
 use super::sensitivity::{RankCorrelation, SobolIndex, rank_correlation, sobol_index};
 use super::stopping::is_narrow_enough;
-use crate::pipeline_choice::PipelineChoice;
+use super::tried::StudyPipeline;
 use crate::score::{Better, Kind, sense};
 use crate::statistics::wilson;
 
@@ -70,7 +70,7 @@ pub struct WorstCase {
     pub value: f64,
     /// What was drawn, by path.
     pub drawn: IndexMap<String, String>,
-    /// The command that runs it again and keeps its frames.
+    /// What runs it again: the command, which keeps its frames, or of a pipeline that no command can name the call.
     pub replay: String,
 }
 
@@ -107,12 +107,12 @@ pub struct Summary {
 
 impl Summary {
     /// The summary of some cases of a study by a pipeline; `path` is the study's file, for the commands.
-    pub fn new(study: &Study, choice: &PipelineChoice, path: &Path, table: &CaseTable) -> Self {
+    pub fn new(study: &Study, pipeline: &dyn StudyPipeline, path: &Path, table: &CaseTable) -> Self {
         let seed = study.file.seed;
         let worst_by = study.worst_by();
         Self {
             study: study.name.clone(),
-            hash: study.hash_with(choice),
+            hash: study.hash_with(pipeline),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             cases: table.rows.len() as u64,
             of: study.cases(),
@@ -126,7 +126,7 @@ impl Summary {
             } else {
                 Vec::new()
             },
-            worst: worst(table, &worst_by, |case| replay(study, choice, path, case)),
+            worst: worst(table, &worst_by, |case| pipeline.replay(study, path, case)),
             worst_by,
         }
     }
@@ -368,16 +368,6 @@ fn worst(table: &CaseTable, by: &str, replay: impl Fn(u64) -> String) -> Vec<Wor
         replay: replay(row.case),
     };
     cases.into_iter().map(named).collect()
-}
-
-/// The command that runs a case again and keeps its frames, as a shell takes it.
-fn replay(study: &Study, choice: &PipelineChoice, path: &Path, case: u64) -> String {
-    let mut words = ["boresight", "study", "replay"].map(str::to_owned).to_vec();
-    words.push(path.display().to_string());
-    words.extend(["--case".to_owned(), case.to_string()]);
-    words.extend(choice.arguments(study.scenario().world()));
-    words.extend(["--save-frames", "png"].map(str::to_owned));
-    command_line(&words)
 }
 
 /// Words as a shell takes them.

@@ -1,5 +1,16 @@
 //! The file of requirements: a camera, what its frames are looked at with, what is demanded of it.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};

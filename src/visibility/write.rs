@@ -1,5 +1,16 @@
 //! The files of a report: `visibility.json`, `visibility.md`, and a CSV a curve.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::{Path, PathBuf};
 
 use super::report::{PointingStars, VisibilityReport};

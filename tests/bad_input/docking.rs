@@ -10,6 +10,7 @@ use super::support::Bench;
 fn video() -> Bench {
     let bench = Bench::new();
     bench.boresight("render docking --frames 24000..24004 --format avi --out set").done();
+    bench.unseal("set");
     bench
 }
 

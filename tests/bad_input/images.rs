@@ -20,9 +20,11 @@ fn cut_to(length: usize) -> impl FnOnce(Vec<u8>) -> Vec<u8> {
     }
 }
 
-/// A header card replaced; the length of the file stays.
+/// A header card replaced, and the checksum of header and data taken for a remark; the length of the file stays.
 fn with_card(keyword: &'static str, card: &'static str) -> impl FnOnce(Vec<u8>) -> Vec<u8> {
     move |mut bytes| {
+        let sum = bytes.chunks_exact(80).position(|old| old.starts_with(b"CHECKSUM")).unwrap() * 80;
+        bytes[sum..sum + 10].copy_from_slice(b"COMMENT   ");
         let at = bytes.chunks_exact(80).position(|old| old.starts_with(keyword.as_bytes())).unwrap() * 80;
         bytes[at..at + 80].copy_from_slice(format!("{card:80}").as_bytes());
         bytes

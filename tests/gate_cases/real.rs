@@ -14,7 +14,7 @@ use contract::docking::{
 };
 use rayon::prelude::*;
 
-const PIPELINE: PipelineChoice = PipelineChoice { word: None, timeout_s: 10.0 };
+const PIPELINE: PipelineChoice = PipelineChoice { word: None, timeout_s: 10.0, memory_mb: 4000 };
 
 /// The scenario of a gate of the project.
 fn source(name: &str, seed: u64) -> ScenarioSource {

@@ -33,7 +33,7 @@ CENTRE_RADIUS_PX = 64.0
 # Telemetry has nanoseconds; Time keeps them in two doubles.
 TOLERANCE_S = 1e-6
 REQUIRED_CARDS = ["EXPTIME", "DATE-BEG", "DATE-AVG", "DATE-END", "TIMESYS", "RADESYS", "BITDEPTH", "SEED", "CREATOR",
-                  "CONFHASH", "FRAMENO", "OBSVELX", "OBSVELY", "OBSVELZ"]
+                  "CONFHASH", "FRAMENO", "CHECKSUM", "DATASUM", "OBSVELX", "OBSVELY", "OBSVELZ"]
 
 
 class Report:
@@ -133,9 +133,12 @@ def main():
     times, compared, different, missing = [], 0, [], []
     for row in rows:
         frame, path = int(row["frame"]), arguments.dataset / row["file"]
-        with fits.open(path) as hdus:
-            hdus.verify("exception")
-            header, pixels = hdus[0].header, hdus[0].data
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            with fits.open(path, checksum=True) as hdus:
+                hdus.verify("exception")
+                header, pixels = hdus[0].header, hdus[0].data
+        missing += [f"{warning.message} of frame {frame}" for warning in told if "verification failed" in str(warning.message)]
         missing += [f"{key} of frame {frame}" for key in REQUIRED_CARDS if key not in header]
         if header["FRAMENO"] != frame:
             missing.append(f"FRAMENO {header['FRAMENO']} of frame {frame}")

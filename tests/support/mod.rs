@@ -17,6 +17,22 @@ use tempfile::{TempDir, tempdir};
 /// Longer than any command of the suites takes on a busy machine: whatever hangs fails.
 const HANGS: Duration = Duration::from_secs(120);
 
+/// A study that takes a second: six cases of two frames.
+pub(crate) const STUDY: &str = r#"
+title = "two frames of ARGON"
+scenario = "argon"
+seed = 5
+frames = "2000..2002"
+[stop]
+cases = 6
+[[vary]]
+path = "psf.sigma_px"
+law = { kind = "normal", mean = 0.8, sigma = 0.1 }
+[[vary]]
+path = "sensor.hot_pixels.count"
+law = { kind = "whole", min = 0, max = 40 }
+"#;
+
 /// An empty directory in which the command runs: relative paths in arguments start there.
 pub(crate) struct Bench {
     directory: TempDir,
@@ -41,6 +57,11 @@ impl Bench {
     pub(crate) fn read(&self, name: &str) -> String {
         let path = self.path(name);
         fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    }
+
+    /// Removes the checksums of a directory: what is changed there is changed on purpose.
+    pub(crate) fn unseal(&self, directory: &str) {
+        fs::remove_file(self.path(directory).join("SHA256SUMS")).unwrap();
     }
 
     /// Replaces the only `old` in a text file.

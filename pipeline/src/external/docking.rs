@@ -10,7 +10,7 @@ use contract::docking::{
     DockingOutcome, DockingPipeline, DockingPipelineFactory, DockingSetup, Field, FieldTelemetry, NoPose,
 };
 
-use super::{Images, Plan, State, docking_protocol, name};
+use super::{DEFAULT_MEMORY_MB, Images, Plan, State, docking_protocol, name};
 
 /// Writes the image of a field as grey PNG at a path that does not exist yet; the error is a text for the outcome.
 pub type WriteField = dyn Fn(&Field, &Path) -> Result<(), String> + Send + Sync;
@@ -24,6 +24,8 @@ pub struct ExternalDockingFactory {
     pub start_timeout_s: f64,
     /// Longest time for one field, s, above 0 to 1e6.
     pub timeout_s: f64,
+    /// Most memory of the process, and of each one that it starts, MB (10⁶ bytes), 1 to 1e6. Heeded on Linux alone.
+    pub memory_mb: u64,
     /// An existing directory for images; each is removed after its answer.
     pub scratch_dir: PathBuf,
     /// Writes an image.
@@ -31,9 +33,16 @@ pub struct ExternalDockingFactory {
 }
 
 impl ExternalDockingFactory {
-    /// A factory with 30 s to start and 10 s a field.
+    /// A factory with 30 s to start, 10 s a field and 4 GB.
     pub fn new(command: impl Into<String>, scratch_dir: PathBuf, write_field: Arc<WriteField>) -> Self {
-        Self { command: command.into(), start_timeout_s: 30.0, timeout_s: 10.0, scratch_dir, write_field }
+        Self {
+            command: command.into(),
+            start_timeout_s: 30.0,
+            timeout_s: 10.0,
+            memory_mb: DEFAULT_MEMORY_MB,
+            scratch_dir,
+            write_field,
+        }
     }
 
     /// Checks the command and the limits, before anything is started.
@@ -46,7 +55,7 @@ impl ExternalDockingFactory {
     }
 
     fn plan(&self) -> Result<Plan, ContractError> {
-        Plan::new(&self.command, self.start_timeout_s, self.timeout_s)
+        Plan::new(&self.command, self.start_timeout_s, self.timeout_s, self.memory_mb)
     }
 }
 
@@ -56,6 +65,7 @@ impl fmt::Debug for ExternalDockingFactory {
             .field("command", &self.command)
             .field("start_timeout_s", &self.start_timeout_s)
             .field("timeout_s", &self.timeout_s)
+            .field("memory_mb", &self.memory_mb)
             .field("scratch_dir", &self.scratch_dir)
             .finish_non_exhaustive()
     }

@@ -7,7 +7,8 @@
 //! - an answer that cannot be used (garbage, a number that is missing, not finite or off the detector, the wrong
 //!   frame) costs its frame; the next one is asked all the same;
 //! - a process that does not start, speaks another version, dies, takes too long, floods its output or speaks out of
-//!   turn is ended with all its children, and every later frame of the sequence says why.
+//!   turn is ended with all its children, and every later frame of the sequence says why;
+//! - memory beyond its limit is refused to it, and what it then says or how it ends is its answer.
 //!
 //! There is no shell: the command is split into words by the rules of POSIX quoting, and run.
 
@@ -18,6 +19,7 @@ mod process;
 pub mod protocol;
 
 pub use docking::{ExternalDockingFactory, WriteField};
+pub use group::end_all;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -38,6 +40,9 @@ pub type WriteImage = dyn Fn(&Frame, &Telemetry, &Path) -> Result<(), String> + 
 /// Writes a time as UTC in ISO 8601 with `Z`, as the caller's files have it: leap seconds are its business.
 pub type WriteTime = fn(Epoch) -> String;
 
+/// Memory of a process, MB (10⁶ bytes), where nobody says how much.
+pub const DEFAULT_MEMORY_MB: u64 = 4000;
+
 /// Builds pipelines that are processes, one process a sequence.
 #[derive(Clone)]
 pub struct ExternalFactory {
@@ -47,6 +52,8 @@ pub struct ExternalFactory {
     pub start_timeout_s: f64,
     /// Longest time for one frame, s, above 0 to 1e6.
     pub timeout_s: f64,
+    /// Most memory of the process, and of each one that it starts, MB (10⁶ bytes), 1 to 1e6. Heeded on Linux alone.
+    pub memory_mb: u64,
     /// An existing directory for images; each is removed after its answer.
     pub scratch_dir: PathBuf,
     /// Writes an image.
@@ -56,7 +63,7 @@ pub struct ExternalFactory {
 }
 
 impl ExternalFactory {
-    /// A factory with 30 s to start and 10 s a frame.
+    /// A factory with 30 s to start, 10 s a frame and 4 GB.
     pub fn new(
         command: impl Into<String>,
         scratch_dir: PathBuf,
@@ -64,7 +71,8 @@ impl ExternalFactory {
         write_time: WriteTime,
     ) -> Self {
         let command = command.into();
-        Self { command, start_timeout_s: 30.0, timeout_s: 10.0, scratch_dir, write_image, write_time }
+        let (start_timeout_s, timeout_s, memory_mb) = (30.0, 10.0, DEFAULT_MEMORY_MB);
+        Self { command, start_timeout_s, timeout_s, memory_mb, scratch_dir, write_image, write_time }
     }
 
     /// Checks the command and the limits, before anything is started.
@@ -77,7 +85,7 @@ impl ExternalFactory {
     }
 
     fn plan(&self) -> Result<Plan, ContractError> {
-        Plan::new(&self.command, self.start_timeout_s, self.timeout_s)
+        Plan::new(&self.command, self.start_timeout_s, self.timeout_s, self.memory_mb)
     }
 }
 
@@ -87,6 +95,7 @@ impl fmt::Debug for ExternalFactory {
             .field("command", &self.command)
             .field("start_timeout_s", &self.start_timeout_s)
             .field("timeout_s", &self.timeout_s)
+            .field("memory_mb", &self.memory_mb)
             .field("scratch_dir", &self.scratch_dir)
             .finish_non_exhaustive()
     }
@@ -98,11 +107,17 @@ struct Plan {
     arguments: Vec<String>,
     start_limit: Duration,
     frame_limit: Duration,
+    memory_bytes: u64,
 }
 
 impl Plan {
     /// Splits a command and checks the limits.
-    fn new(command: &str, start_timeout_s: f64, timeout_s: f64) -> Result<Self, ContractError> {
+    fn new(
+        command: &str,
+        start_timeout_s: f64,
+        timeout_s: f64,
+        memory_mb: u64,
+    ) -> Result<Self, ContractError> {
         let cannot_build = |reason: String| ContractError::CannotBuild { pipeline: name(command), reason };
         let limit = |name: &str, seconds: f64| {
             if seconds > 0.0 && seconds <= 1e6 {
@@ -111,6 +126,9 @@ impl Plan {
                 Err(cannot_build(format!("{name} is {seconds}, expected above 0 to 1e6")))
             }
         };
+        if !(1..=1_000_000).contains(&memory_mb) {
+            return Err(cannot_build(format!("memory_mb is {memory_mb}, expected 1 to 1e6")));
+        }
         let mut words = shlex::split(command)
             .ok_or_else(|| cannot_build("the command ends inside a quotation".to_owned()))?
             .into_iter();
@@ -119,6 +137,7 @@ impl Plan {
             arguments: words.collect(),
             start_limit: limit("start_timeout_s", start_timeout_s)?,
             frame_limit: limit("timeout_s", timeout_s)?,
+            memory_bytes: memory_mb * 1_000_000,
         })
     }
 
@@ -140,9 +159,22 @@ impl Plan {
 
     /// Starts the process and greets it; the reason when either does not succeed.
     fn start(&self, greeting: Result<Vec<u8>, String>) -> State {
-        match start(&self.program, &self.arguments, greeting, self.start_limit) {
+        match self.greeted(greeting) {
             Ok(process) => State::Running(process),
             Err(reason) => State::Dead(reason),
+        }
+    }
+
+    fn greeted(&self, greeting: Result<Vec<u8>, String>) -> Result<Process, String> {
+        let mut process = Process::start(&self.program, &self.arguments, self.memory_bytes)
+            .map_err(|error| format!("`{}` does not start: {error}", self.program))?;
+        let greeted = greeting
+            .map_err(Fault::Broken)
+            .and_then(|line| process.exchange(line, self.start_limit))
+            .and_then(|line| protocol::check_greeting(&line).map_err(Fault::Broken));
+        match greeted {
+            Ok(()) => Ok(process),
+            Err(fault) => Err(format!("at its greeting, {}", process.end(fault))),
         }
     }
 }
@@ -169,25 +201,6 @@ impl PipelineFactory for ExternalFactory {
             write_image: Arc::clone(&self.write_image),
             write_time: self.write_time,
         }))
-    }
-}
-
-/// Starts a process and greets it.
-fn start(
-    program: &str,
-    arguments: &[String],
-    greeting: Result<Vec<u8>, String>,
-    limit: Duration,
-) -> Result<Process, String> {
-    let mut process =
-        Process::start(program, arguments).map_err(|error| format!("`{program}` does not start: {error}"))?;
-    let greeted = greeting
-        .map_err(Fault::Broken)
-        .and_then(|line| process.exchange(line, limit))
-        .and_then(|line| protocol::check_greeting(&line).map_err(Fault::Broken));
-    match greeted {
-        Ok(()) => Ok(process),
-        Err(fault) => Err(format!("at its greeting, {}", process.end(fault))),
     }
 }
 

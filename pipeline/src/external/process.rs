@@ -34,6 +34,8 @@ enum Event {
 pub(super) enum Fault {
     /// It broke the protocol; the text says how.
     Broken(String),
+    /// It gave no answer within this time.
+    Late(Duration),
     /// It closed a pipe, and probably ended; the text says which.
     Closed(&'static str),
 }
@@ -48,16 +50,15 @@ const GRACE: Duration = Duration::from_millis(300);
 const POLL: Duration = Duration::from_millis(2);
 
 impl Process {
-    /// Starts a program.
+    /// Starts a program, whose memory is limited to so many bytes.
     ///
     /// # Errors
-    /// That of the operating system, when it cannot be started.
-    pub(super) fn start(program: &str, arguments: &[String]) -> std::io::Result<Self> {
+    /// That of the operating system, when it cannot be started or limited.
+    pub(super) fn start(program: &str, arguments: &[String], memory_bytes: u64) -> std::io::Result<Self> {
         let mut command = Command::new(program);
         command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        group::isolate(&mut command);
-        let mut child = command.spawn()?;
-        match Pipes::connect(&mut child) {
+        let mut child = group::spawn(&mut command)?;
+        match group::limit_memory(&child, memory_bytes).and_then(|()| Pipes::connect(&mut child)) {
             Ok(Pipes { requests, events, errors, errors_reader }) => {
                 Ok(Self { child, requests: Some(requests), events, errors, errors_reader })
             }
@@ -93,9 +94,7 @@ impl Process {
         match self.events.recv_timeout(limit) {
             Ok(Event::Line(line)) => Ok(line),
             Ok(event) => Err(fault(&event)),
-            Err(RecvTimeoutError::Timeout) => {
-                Err(Fault::Broken(format!("it gave no answer within {} s", limit.as_secs_f64())))
-            }
+            Err(RecvTimeoutError::Timeout) => Err(Fault::Late(limit)),
             Err(RecvTimeoutError::Disconnected) => Err(Fault::Closed("its output")),
         }
     }
@@ -104,13 +103,19 @@ impl Process {
     pub(super) fn end(&mut self, fault: Fault) -> String {
         let ended_by_itself = match fault {
             Fault::Broken(_) => false,
+            Fault::Late(_) => self.ends_within(Duration::ZERO),
             Fault::Closed(_) => self.ends_within(GRACE),
         };
-        let status = self.kill();
+        let status = self.kill().filter(|_| ended_by_itself);
         let mut text = match (fault, status) {
             (Fault::Broken(text), _) => text,
-            (Fault::Closed(_), Some(status)) if ended_by_itself => format!("it ended with {status}"),
-            (Fault::Closed(pipe), _) => format!("it closed {pipe}"),
+            (Fault::Late(limit), None) => format!("it gave no answer within {} s", limit.as_secs_f64()),
+            // One of its children holds its pipes open, so that they did not tell.
+            (Fault::Late(limit), Some(status)) => {
+                format!("it gave no answer within {} s, and had ended with {status}", limit.as_secs_f64())
+            }
+            (Fault::Closed(_), Some(status)) => format!("it ended with {status}"),
+            (Fault::Closed(pipe), None) => format!("it closed {pipe}"),
         };
         // The pipe is closed by the kill; a descendant that left the group may hold it open for ever.
         let deadline = Instant::now() + GRACE;

@@ -28,6 +28,17 @@
 //! unusable, so that a misspelt one does not pass for a missing one. A line is at most
 //! [`MAX_LINE_BYTES`] long.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::Path;
 
 use contract::{
@@ -118,7 +129,10 @@ pub fn greeting(setup: &Setup) -> Result<Vec<u8>, String> {
 }
 
 /// Checks the answer to the greeting.
-pub(super) fn check_greeting(answer: &[u8]) -> Result<(), String> {
+///
+/// # Errors
+/// Why the answer cannot be used.
+pub fn check_greeting(answer: &[u8]) -> Result<(), String> {
     let answer: GreetingAnswer = parse(answer)?;
     if answer.boresight_pipeline == VERSION {
         Ok(())
@@ -220,10 +234,8 @@ pub(super) fn parse<'a, T: Deserialize<'a>>(line: &'a [u8]) -> Result<T, String>
 pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 200;
     let text = text.trim_end();
-    match text.char_indices().nth(MOST) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
+    let beginning = text.char_indices().nth(MOST).and_then(|(end, _)| text.get(..end));
+    beginning.map_or_else(|| text.to_owned(), |beginning| format!("{beginning}…"))
 }
 
 #[cfg(test)]

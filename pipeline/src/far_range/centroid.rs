@@ -244,3 +244,49 @@ impl FitWindow {
 fn is_transmitted(frame: &Frame, x: usize, y: usize) -> bool {
     frame.windows().is_none_or(|windows| windows.iter().any(|window| window.contains(x, y)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::far_range::threshold::Thresholds;
+
+    const SIGMA_PX: f64 = 0.8;
+    const READOUT: Readout =
+        Readout { gain_e_per_dn: 1.0, bias_dn: 100.0, read_noise_e: 5.0, saturation_dn: 4095 };
+    const BACKGROUND_E: f64 = 50.0;
+    const FLUX_E: f64 = 2000.0;
+
+    /// The share of a Gaussian image in the pixels `d` px from its centre along one axis, and how it grows with the centre.
+    fn share(d: f64) -> (f64, f64) {
+        let at = |edge: f64| edge / (SIGMA_PX * std::f64::consts::SQRT_2);
+        let density =
+            |edge: f64| libm::exp(-at(edge) * at(edge)) / (SIGMA_PX * (2.0 * std::f64::consts::PI).sqrt());
+        (0.5 * (libm::erf(at(d + 0.5)) - libm::erf(at(d - 0.5))), density(d - 0.5) - density(d + 0.5))
+    }
+
+    /// With the image on the middle of a pixel its place goes with neither flux nor background, and its variance is
+    /// 1/Σ (∂m/∂x)²/(m + r²) over the pixels of the fit (Cramér and Rao): the bias is no light and makes no noise.
+    #[test]
+    fn the_sigma_of_a_centre_is_the_bound_of_its_light_background_and_readout() {
+        let offsets = || (-10..=10).map(f64::from);
+        let mean = |x: f64, y: f64| BACKGROUND_E + FLUX_E * share(x).0 * share(y).0;
+        let dn =
+            offsets().flat_map(|y| offsets().map(move |x| (READOUT.bias_dn + mean(x, y)).round() as u16));
+        let frame = Frame::new(0, 21, 21, 12, dn.collect(), None).unwrap();
+        let mut detector = Detector::default();
+        detector.look(&frame);
+        let mut blobs = detector.detect(&frame, Thresholds { low_dn: 200, high_dn: 300 }, 150.0, 10).to_vec();
+        CentroidFitter::new(Some(SIGMA_PX), READOUT).fit(&frame, &detector, &mut blobs);
+        let fitted = blobs[0].fitted.unwrap();
+        // Four pixels to either side: five widths of the image.
+        let inside = || offsets().filter(|d| d.abs() < 4.5);
+        let information = inside().flat_map(|y| inside().map(move |x| (x, y))).map(|(x, y)| {
+            let slope = FLUX_E * share(x).1 * share(y).0;
+            slope * slope / (mean(x, y) + 25.0 + 1.0 / 12.0)
+        });
+        let bound_px = 1.0 / information.sum::<f64>().sqrt();
+        // Rounding to whole electrons moves light and background by less than a percent.
+        assert!((fitted.sigma_px / bound_px - 1.0).abs() < 0.01, "{} of {bound_px}", fitted.sigma_px);
+        assert!(fitted.position.distance(PixelPoint::new(10.0, 10.0)) < 1e-3, "{:?}", fitted.position);
+    }
+}

@@ -138,6 +138,9 @@ class Scenario:
     def load(scenario: _Word) -> Scenario:
         """Reads a built-in scenario, a TOML file, or the `run.toml` of a run."""
     @staticmethod
+    def of_case(study: _Word, case: int) -> Scenario:
+        """The scenario of a case of a study."""
+    @staticmethod
     def builtin_names() -> list[str]:
         """Names of the built-in scenarios."""
     @property
@@ -217,6 +220,9 @@ class StudyResult:
     def summary(self) -> dict[str, Any]:
         """summary.json."""
     @property
+    def first_failure(self) -> tuple[int, int, str] | None:
+        """The first failure of the pipeline: (case, frame, reason)."""
+    @property
     def rows(self) -> Table:
         """A row a case."""
 
@@ -238,7 +244,7 @@ def study(
     path: _Word,
     *,
     out: _Word | None = None,
-    pipeline: str | None = None,
+    pipeline: _Pipeline | str | None = None,
     jobs: int | None = None,
     timeout_s: float = 10.0,
 ) -> StudyResult:

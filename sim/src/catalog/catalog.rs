@@ -1,5 +1,16 @@
 //! A catalogue: stars in ascending order of their numbers, and the hash of where they came from.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -93,7 +104,7 @@ impl Catalog {
 
     /// The star of a number.
     pub fn star(&self, id: u32) -> Option<&CatalogStar> {
-        self.stars.binary_search_by_key(&id, |star| star.id).ok().map(|index| &self.stars[index])
+        self.stars.binary_search_by_key(&id, |star| star.id).ok().and_then(|index| self.stars.get(index))
     }
 
     /// SHA-256 of the source's bytes (for the embedded catalogue: of hip2.dat), in hexadecimal.

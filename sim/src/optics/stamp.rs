@@ -28,7 +28,8 @@ pub struct StampTruth {
     pub electrons: f64,
     /// Its brightest pixel, electrons.
     pub peak_electrons: f64,
-    /// Signal-to-noise ratio of a matched filter that knows the noise: sqrt(Σ s²/(s + b + σ²)).
+    /// Signal-to-noise ratio of a matched filter that knows the noise: sqrt(Σ s²/(s + b + σ²)), s no more than what a pixel
+    /// still has room for above its background.
     pub snr: f64,
     /// Distance from the centre to the farthest pixel centre in which it exceeds the noise of the empty
     /// background, sqrt(b + σ²), px; at least 0.5.
@@ -141,9 +142,10 @@ impl Stamp {
     }
 
     /// What the truth table tells, over a flat background of `background_e` electrons a pixel (sky and dark
-    /// current) and a readout that adds a noise of `readout_noise_e` to a pixel.
-    pub fn truth(&self, background_e: f64, readout_noise_e: f64) -> StampTruth {
-        widest(Truth { stamp: self, background_e, readout_noise_e })
+    /// current), a readout that adds a noise of `readout_noise_e` to a pixel, and pixels that tell no more than
+    /// `saturation_e` electrons.
+    pub fn truth(&self, background_e: f64, readout_noise_e: f64, saturation_e: f64) -> StampTruth {
+        widest(Truth { stamp: self, background_e, readout_noise_e, saturation_e })
     }
 
     /// Distance from the centre to the farthest pixel centre with more than `electrons`, px; at least 0.5.
@@ -230,6 +232,7 @@ struct Truth<'a> {
     stamp: &'a Stamp,
     background_e: f64,
     readout_noise_e: f64,
+    saturation_e: f64,
 }
 
 impl Work for Truth<'_> {
@@ -237,17 +240,19 @@ impl Work for Truth<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> StampTruth {
-        let Self { stamp, background_e, readout_noise_e } = self;
+        let Self { stamp, background_e, readout_noise_e, saturation_e } = self;
         let variance = background_e + readout_noise_e * readout_noise_e;
         let noise_e = variance.sqrt();
         let none = Eight::splat(simd, 0.0);
         // Where there is neither light nor noise the quotient is 0, not no number.
         let noise2 = Eight::splat(simd, variance.max(f64::MIN_POSITIVE));
+        let room = Eight::splat(simd, (saturation_e - background_e).max(0.0));
         let [mut electrons, mut snr2, mut peaks] = [none; 3];
         for signals in stamp.electrons.as_chunks::<LANES>().0 {
             let lit = Eight::of(simd, signals).or_larger(none);
             electrons = electrons.plus(lit);
-            snr2 = snr2.plus(lit.times(lit.over(lit.plus(noise2))));
+            let told = lit.or_smaller(room);
+            snr2 = snr2.plus(told.times(told.over(told.plus(noise2))));
             peaks = peaks.or_larger(lit);
         }
         let peak_electrons = peaks.largest();
@@ -293,13 +298,24 @@ mod tests {
 
     #[test]
     fn the_truth_of_a_stamp_is_what_its_formulas_say() {
-        let truth = two_by_two().truth(9.0, 4.0);
+        let truth = two_by_two().truth(9.0, 4.0, f64::INFINITY);
         assert_eq!(truth.electrons, 150.0);
         assert_eq!(truth.peak_electrons, 100.0);
         let snr = (1e4 / 125.0 + 900.0 / 55.0 + 400.0 / 45.0_f64).sqrt();
         assert!((truth.snr - snr).abs() < 1e-12);
         // The noise is 5 e⁻: pixels one away exceed it, the diagonal one does not.
         assert_eq!(truth.radius_px, 1.0);
+    }
+
+    #[test]
+    fn only_what_a_pixel_has_room_for_is_signal() {
+        let stamp = two_by_two();
+        // Room for 40 e⁻ above the background of 9.
+        let snr = (1600.0 / 65.0 + 900.0 / 55.0 + 400.0 / 45.0_f64).sqrt();
+        assert!((stamp.truth(9.0, 4.0, 49.0).snr - snr).abs() < 1e-12);
+        // The background alone fills the pixels: there is an object, and nothing to find.
+        let full = stamp.truth(60.0, 4.0, 49.0);
+        assert_eq!((full.snr, full.electrons, full.peak_electrons), (0.0, 150.0, 100.0));
     }
 
     #[test]
@@ -326,7 +342,7 @@ mod tests {
     fn a_faint_object_has_the_radius_of_a_pixel() {
         let mut stamp = Stamp::new();
         stamp.set_pixel(3, 4, 1.0);
-        assert_eq!(stamp.truth(100.0, 10.0).radius_px, 0.5);
+        assert_eq!(stamp.truth(100.0, 10.0, f64::INFINITY).radius_px, 0.5);
     }
 
     #[test]

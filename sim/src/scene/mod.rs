@@ -3,6 +3,7 @@
 mod background;
 mod disk;
 pub mod docking;
+pub(crate) mod earth;
 pub(crate) mod moon;
 pub(crate) mod planets;
 mod spacecraft;
@@ -16,6 +17,9 @@ use contract::{Angle, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
 
 use crate::optics::Projection;
 use crate::truth::ObjectKind;
+
+/// More than aberration (26″ from an orbit about the Earth) and the Sun's deflection (2″) move a star: 0.1°.
+const ABERRATION_MARGIN_RAD: f64 = 0.1 * std::f64::consts::PI / 180.0;
 
 /// Where the camera looks during an exposure.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,7 +9,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::disk::Disk;
 use super::star_field::is_within;
-use super::{CameraMotion, Source};
+use super::{ABERRATION_MARGIN_RAD, CameraMotion, Source};
 use crate::constants::{AU_KM, LIGHT_SPEED_KM_S};
 use crate::optics::{ImagePoint, Projection, Radiometry};
 use crate::truth::moon::{self, MOON_B_V, MOON_MEAN_DISTANCE_KM, MOON_RADIUS_KM};
@@ -33,6 +33,8 @@ pub(crate) struct LitMoon {
     across: [Vector3<f64>; 2],
     /// Tangent of its radius as seen.
     tan_radius: f64,
+    /// Cosine of the disk's radius and [`ABERRATION_MARGIN_RAD`].
+    cos_near: f64,
     /// Unit vector from its centre to the Sun.
     sun: Vector3<f64>,
     /// From the centre of the Earth, km: the observer and the Sun.
@@ -84,6 +86,7 @@ impl LitMoon {
             towards,
             across: [first, towards.cross(&first)],
             tan_radius: sine / (1.0 - sine * sine).sqrt(),
+            cos_near: libm::cos(libm::asin(sine) + ABERRATION_MARGIN_RAD),
             sun: sun_km.normalize(),
             observer_km: chaser.position_km,
             earth_to_sun_km,
@@ -136,6 +139,11 @@ impl LitMoon {
             magnitude: Some(magnitude),
             electrons_per_s,
         })
+    }
+
+    /// Whether it may stand before a far source with this astrometric direction: far quicker to tell than where it appears.
+    pub(crate) fn is_near(&self, astrometric: &Direction<Icrs>) -> bool {
+        self.apparent.vector().dot(astrometric.vector()) > self.cos_near
     }
 
     /// Whether it stands before a far source that an ideal camera sees in the direction `apparent`.

@@ -229,12 +229,12 @@ mod tests {
         let config = SensorConfig { blooming: bloom, full_well_e: 5000.0, ..twelve_bit() };
         let sensor = Sensor::new(&config, 65, 48).unwrap();
         let (stamp, mut bloomed) = (star(&sensor, 1e5), Stamp::new());
-        let peak_e = |stamp: &Stamp| stamp.truth(20.0, 15.0).peak_electrons;
+        let peak_e = |stamp: &Stamp| stamp.truth(20.0, 15.0, f64::INFINITY).peak_electrons;
         assert!(sensor.bloom_stamp(&stamp, peak_e(&stamp), 20.0, &mut bloomed));
         // Some ten columns round to a whole electron each, at either end.
         assert!((sum(&bloomed) - sum(&stamp)).abs() < 20.0, "{}", sum(&bloomed) - sum(&stamp));
         // It overflows 16 times: over some ten columns, four of which have most of it.
-        let radius_px = stamp.truth(20.0, 15.0).radius_px;
+        let radius_px = stamp.truth(20.0, 15.0, f64::INFINITY).radius_px;
         assert!(stamp.height_px(15.7) <= radius_px && bloomed.height_px(15.7) > 1.5 * radius_px);
         let faint = star(&sensor, 1e3);
         assert!(!sensor.bloom_stamp(&faint, peak_e(&faint), 20.0, &mut bloomed));

@@ -175,7 +175,8 @@ pub struct ObjectTruth {
     /// Expected electrons in its brightest pixel, before saturation.
     pub peak_electrons: f64,
     /// Matched-filter signal-to-noise ratio over its own pixels: sqrt(Σ s²/(s + b + σ²)), where σ² is the variance of the
-    /// readout: noise of pixel, row and column, and gain²/12 of the converter's rounding.
+    /// readout: noise of pixel, row and column, and gain²/12 of the converter's rounding. Of s counts what the pixel has room
+    /// for above the background before it saturates: 0 where the background alone fills it.
     pub snr: f64,
     /// Radius within which its image exceeds the noise of one pixel (σ of background), px; at least 0.5. Of an object that
     /// overflows, the image is that before blooming.

@@ -23,6 +23,7 @@ pub(super) fn to_cells(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> [Stri
 }
 
 /// The covariance as it comes back from its cells.
+#[expect(clippy::indexing_slicing, reason = "the places are those of a matrix of six")]
 pub(super) fn as_filed(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> Matrix6<f64> {
     let mut filed = Matrix6::zeros();
     for (i, j) in places() {
@@ -34,6 +35,7 @@ pub(super) fn as_filed(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> Matri
 }
 
 /// The covariance that the cells say; `None` when all of them are empty.
+#[expect(clippy::indexing_slicing, reason = "the places are those of a matrix of six")]
 pub(super) fn read(
     row: &CsvRow<'_>,
     columns: [&'static str; CELLS],

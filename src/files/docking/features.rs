@@ -100,6 +100,10 @@ impl Row for FeatureRow {
         ]
     }
 
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "`row` is below the number of rows of the batch, which all its columns have"
+    )]
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
         use arrow_array::Array;
         let (field, index) = (columns.u64("field")?, columns.u32("index")?);

@@ -43,6 +43,7 @@ const COVARIANCE: [&str; CELLS] = [
 const PAPER: [&str; 6] =
     ["paper_d1_m", "paper_d2_m", "paper_d3_m", "paper_phi1_deg", "paper_phi2_deg", "paper_phi3_deg"];
 
+#[expect(clippy::indexing_slicing, reason = "a constant: out of bounds it would not compile")]
 const LAYOUT: [(&str, Presence); 43] = {
     let mut layout = [("field", Required); 43];
     layout[1] = ("status", Required);
@@ -112,8 +113,7 @@ impl FieldMeasurementWriter {
             _ => None,
         };
         let sigmas: Option<[f64; 6]> = best.map(|best| {
-            let scale = scale();
-            std::array::from_fn(|i| best.covariance[(i, i)].max(0.0).sqrt() * scale[i])
+            best.covariance.diagonal().map(|variance| variance.max(0.0).sqrt()).component_mul(&scale()).into()
         });
         let covariance = best.map_or([const { String::new() }; CELLS], |best| {
             covariance::to_cells(&best.covariance, &scale())

@@ -91,6 +91,7 @@ const CROSS: [&str; 9] = [
     "cov_d3_phi3",
 ];
 
+#[expect(clippy::indexing_slicing, reason = "a constant: out of bounds it would not compile")]
 const LAYOUT: [(&str, Presence); 78] = {
     let mut layout = [("field", Required); 78];
     layout[1] = ("estimator", Optional);
@@ -163,13 +164,15 @@ impl MotionWriter {
             phi_deg.y,
             phi_deg.z,
         ];
-        let in_files = |i: usize, sigma: f64| if i < 2 { sigma } else { sigma.to_degrees() };
-        let sigmas: Option<[f64; 7]> =
-            Shown::sigmas(motion).map(|s| std::array::from_fn(|i| in_files(i, s[i])));
+        let sigmas: Option<[f64; 7]> = Shown::sigmas(motion).map(|mut sigmas| {
+            sigmas.iter_mut().skip(2).for_each(|sigma| *sigma = sigma.to_degrees());
+            sigmas
+        });
         let (d, v) = (&motion.pose.position_m, &motion.velocity_m_s);
         let phi_rate = motion.phi_rate_rad_s.map(f64::to_degrees);
         let state = [d.x, d.y, d.z, v.x, v.y, v.z, phi_rate.x, phi_rate.y, phi_rate.z];
-        let cross = std::array::from_fn::<_, 9, _>(|i| motion.cross_covariance[(i / 3, i % 3)].to_degrees());
+        // Row by row, where the matrix lies column by column.
+        let cross: [[f64; 3]; 3] = motion.cross_covariance.map(f64::to_degrees).transpose().into();
         self.0.write(
             [field.to_string(), estimator.to_owned(), cell(motion.time_s), motion.fields.to_string()]
                 .into_iter()
@@ -178,7 +181,7 @@ impl MotionWriter {
                 .chain(state.map(cell))
                 .chain(covariance::to_cells(&motion.position_covariance, &Vector6::repeat(1.0)))
                 .chain(covariance::to_cells(&motion.attitude_covariance, &degrees()))
-                .chain(cross.map(cell)),
+                .chain(cross.into_iter().flatten().map(cell)),
         )
     }
 
@@ -283,7 +286,7 @@ fn parse(row: &CsvRow<'_>) -> Result<Motion, FileError> {
             let [_, _, _, _, s1, s2, s3] = sigmas;
             Matrix6::from_diagonal(&Vector6::new(variance(s1), variance(s2), variance(s3), 0.0, 0.0, 0.0))
         }),
-        cross_covariance: Matrix3::from_fn(|i, j| cross[3 * i + j].to_radians()),
+        cross_covariance: Matrix3::from_row_slice(&cross.map(f64::to_radians)),
         fields,
     })
 }

@@ -100,6 +100,10 @@ impl Row for FieldTruth {
         columns
     }
 
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "`row` is below the number of rows of the batch, which all its columns have"
+    )]
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
         let (field, camera) = (columns.u64("field")?, columns.u32("camera")?);
         let time: &Timestamps = columns.every("time_utc")?;
@@ -188,6 +192,7 @@ impl Row for FieldTruth {
 }
 
 /// Columns that stand together, all of them there or none.
+#[expect(clippy::indexing_slicing, reason = "there are as many arrays as names, N")]
 fn optional<'a, const N: usize>(
     columns: &'a Columns<'_>,
     names: [&str; N],
@@ -196,7 +201,6 @@ fn optional<'a, const N: usize>(
     for name in names {
         arrays.push(columns.optional_f64(name)?);
     }
-    // As many as there are names.
     Ok(std::array::from_fn(|i| arrays[i]))
 }
 

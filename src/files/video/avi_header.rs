@@ -144,8 +144,9 @@ fn palette(walker: &Walker, chunk: &Chunk, bytes: &[u8]) -> Result<Option<Box<[u
         return Ok(None);
     }
     let mut table = Box::new([0; 256]);
-    for (grey, colour) in table.iter_mut().zip(colours.chunks_exact(4)) {
-        *grey = grey_of_bgr(colour[0], colour[1], colour[2]);
+    let colours = colours.chunks_exact(4).filter_map(|colour| colour.first_chunk());
+    for (grey, &[blue, green, red]) in table.iter_mut().zip(colours) {
+        *grey = grey_of_bgr(blue, green, red);
     }
     Ok(Some(table))
 }

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use contract::Camera;
 use contract::docking::{DockingSetup, Field, FieldTelemetry};
 
 use super::super::FileError;
@@ -16,6 +17,7 @@ use super::whole_frame::{Format, WholeFrame};
 pub(super) struct ListedField {
     path: PathBuf,
     row: FieldRow,
+    camera: Camera,
 }
 
 /// The fields that a folder's table lists. Every image is looked for; none is read yet.
@@ -27,9 +29,9 @@ pub(super) fn listed(
     let table = directory.join("telemetry.csv");
     let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
     let locate = |(line, row): (u64, FieldRow)| {
-        check_camera(&table, line, &row, setup)?;
+        let camera = camera_of(&table, line, &row, setup)?.clone();
         match locate_image(directory, &root, row.file.as_deref()) {
-            Ok(path) => Ok(ListedField { path, row }),
+            Ok(path) => Ok(ListedField { path, row, camera }),
             Err(reason) => Err(FileError::MissingImage {
                 path: table.clone(),
                 line,
@@ -42,25 +44,24 @@ pub(super) fn listed(
     rows.into_iter().map(locate).collect()
 }
 
-/// Checks that a row's camera is one of the setup.
-pub(super) fn check_camera(
+/// The camera of a row, which is one of the setup.
+pub(super) fn camera_of<'a>(
     table: &Path,
     line: u64,
     row: &FieldRow,
-    setup: &DockingSetup,
-) -> Result<(), FileError> {
+    setup: &'a DockingSetup,
+) -> Result<&'a Camera, FileError> {
     let camera = row.telemetry.camera;
-    if camera < setup.cameras.len() {
-        return Ok(());
-    }
-    let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
-    Err(FileError::value(table, Place::Line(line), "camera", camera, expected))
+    setup.cameras.get(camera).ok_or_else(|| {
+        let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
+        FileError::value(table, Place::Line(line), "camera", camera, expected)
+    })
 }
 
 impl ListedField {
     /// Reads the image.
     pub(super) fn read(&self, setup: &DockingSetup) -> Result<(Field, FieldTelemetry), FileError> {
-        let camera = &setup.cameras[self.row.telemetry.camera];
+        let camera = &self.camera;
         let image = read_image(&self.path)?;
         let rows = self.row.lines.rows(camera.rows);
         check_size(&self.path, (image.columns, image.rows), (camera.columns, rows), "lines of the camera")?;
@@ -121,7 +122,7 @@ fn natural_key(path: &Path) -> (Vec<NamePart>, PathBuf) {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let part = |run: &[char]| {
         let text: String = run.iter().collect();
-        if run[0].is_ascii_digit() {
+        if run.first().is_some_and(char::is_ascii_digit) {
             let digits = text.trim_start_matches('0');
             NamePart::Number(digits.len(), digits.to_owned())
         } else {

@@ -40,8 +40,8 @@ impl Input {
     /// Fills the buffer, or as much of it as there are bytes left; the number of bytes.
     pub(super) fn fill(&mut self, buffer: &mut [u8]) -> Result<usize, FileError> {
         let mut filled = 0;
-        while filled < buffer.len() {
-            match self.bytes.read(&mut buffer[filled..]) {
+        while let Some(rest) = buffer.get_mut(filled..).filter(|rest| !rest.is_empty()) {
+            match self.bytes.read(rest) {
                 Ok(0) => break,
                 Ok(n) => filled += n,
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}

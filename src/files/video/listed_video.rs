@@ -8,6 +8,7 @@ use contract::docking::{DockingSetup, Field, FieldTelemetry, Lines};
 use super::super::FileError;
 use super::super::error::Place;
 use super::super::field_telemetry::FieldRow;
+use super::folder::camera_of;
 use super::whole_frame::{WholeFrame, take_rows};
 
 /// What a video with telemetry may be called, in the order in which they are looked for.
@@ -38,7 +39,7 @@ impl<F: Iterator<Item = Result<WholeFrame, FileError>>> ListedVideo<F> {
         frames: F,
     ) -> Result<Self, FileError> {
         for (line, row) in &rows {
-            super::folder::check_camera(&table, *line, row, setup)?;
+            camera_of(&table, *line, row, setup)?;
         }
         Ok(Self { table, setup: setup.clone(), rows: rows.into_iter(), frames, frame: None })
     }
@@ -53,7 +54,7 @@ impl<F: Iterator<Item = Result<WholeFrame, FileError>>> ListedVideo<F> {
                 return Err(FileError::value(&self.table, Place::Line(line), "field", row.field, expected));
             }
         };
-        let camera = &self.setup.cameras[row.telemetry.camera];
+        let camera = camera_of(&self.table, line, row, &self.setup)?;
         let (lines, depth) = (row.lines, self.setup.bit_depth);
         let wrong = |source| FileError::contract(&self.table, source);
         let dn = take_rows(&frame.dn, camera.columns, lines);

@@ -65,7 +65,7 @@ impl Uncompressed {
         let mut grey = Vec::with_capacity(self.columns * self.rows);
         for row in 0..self.rows {
             let from = if self.bottom_up { self.rows - 1 - row } else { row } * stride;
-            self.push_row(&frame[from..from + self.row_bytes()], &mut grey);
+            self.push_row(frame.get(from..from + self.row_bytes())?, &mut grey);
         }
         Some(grey)
     }
@@ -76,10 +76,13 @@ impl Uncompressed {
                 grey.extend(row.iter().map(|&y| u16::from(y)))
             }
             Layout::Grey { palette: Some(table) } => {
-                grey.extend(row.iter().map(|&index| u16::from(table[usize::from(index)])));
+                grey.extend(
+                    row.iter().map(|&index| table.get(usize::from(index)).map_or(0, |&grey| u16::from(grey))),
+                );
             }
             Layout::Bgr { bytes } => {
-                grey.extend(row.chunks_exact(*bytes).map(|p| u16::from(grey_of_bgr(p[0], p[1], p[2]))));
+                let pixels = row.chunks_exact(*bytes).filter_map(|pixel| pixel.first_chunk());
+                grey.extend(pixels.map(|&[blue, green, red]| u16::from(grey_of_bgr(blue, green, red))));
             }
             Layout::Packed422 { first } => {
                 grey.extend(row.iter().skip(*first).step_by(2).take(self.columns).map(|&y| u16::from(y)));

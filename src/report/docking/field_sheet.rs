@@ -9,9 +9,10 @@ use sim::docking::{DockingSimulator, FieldTruth};
 use super::{DockingRun, answer_words};
 use crate::docking_renderer::DockingRenderer;
 use crate::failure::Failure;
-use crate::files::TableReader;
 use crate::files::docking::FeatureRow;
 use crate::report::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
+use crate::report::read::rows_of_each;
+use crate::report::words::{capital, spoken};
 use crate::scenario::ScenarioSource;
 
 /// Smallest side of a picture across columns, px.
@@ -56,7 +57,8 @@ impl FieldSheet {
     pub fn pictures(&self, run: &DockingRun, rows: &[usize]) -> Result<Vec<Picture>, Failure> {
         let Ok((simulator, setup)) = &self.simulator else { return Ok(Vec::new()) };
         let mut workspace = simulator.workspace()?;
-        let features = self.features_of(run, rows)?;
+        let fields: Vec<u64> = rows.iter().map(|&row| run.truths[row].field).collect();
+        let features = rows_of_each::<FeatureRow>(self.features.as_deref(), &fields)?;
         let mut pictures = Vec::with_capacity(rows.len());
         for (&row, features) in rows.iter().zip(features) {
             let (truth, unit) = (&run.truths[row], &run.verdicts[row]);
@@ -71,7 +73,7 @@ impl FieldSheet {
             picture.title = match (unit.verdict.as_str(), &unit.cause) {
                 ("success", _) => "Measured.".to_owned(),
                 ("range_only", _) => "Range alone.".to_owned(),
-                (verdict, Some(cause)) => format!("{}: {}.", capital(verdict), cause.replace('_', " ")),
+                (verdict, Some(cause)) => format!("{}: {}.", capital(verdict), spoken(cause)),
                 (verdict, None) => format!("{}.", capital(verdict)),
             };
             picture.caption = format!(
@@ -88,29 +90,6 @@ impl FieldSheet {
         }
         Ok(pictures)
     }
-
-    /// The features of some rows, in their order, in one pass over the table.
-    fn features_of(&self, run: &DockingRun, rows: &[usize]) -> Result<Vec<Vec<FeatureRow>>, Failure> {
-        let mut features: Vec<Vec<FeatureRow>> = vec![Vec::new(); rows.len()];
-        let Some(path) = &self.features else { return Ok(features) };
-        let mut ascending: Vec<usize> = (0..rows.len()).collect();
-        ascending.sort_by_key(|&place| rows[place]);
-        let mut table = TableReader::<FeatureRow>::open(path)?;
-        let mut last: Option<usize> = None;
-        for place in ascending {
-            features[place] = match last.filter(|&last| rows[last] == rows[place]) {
-                Some(same) => features[same].clone(),
-                None => table.rows_of(run.truths[rows[place]].field)?,
-            };
-            last = Some(place);
-        }
-        Ok(features)
-    }
-}
-
-fn capital(word: &str) -> String {
-    let mut letters = word.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The window around what was recognised, or around the true target; the whole field where neither is in it.
@@ -165,16 +144,12 @@ fn feature_mark(row: &FeatureRow) -> Mark {
         "cross" => (Shape::Cross(9.0), "measured", format!("cross, recognised: {place}")),
         "mark" => {
             let class = if row.usage == "used" { "measured" } else { "other" };
-            (
-                Shape::Circle(3.0),
-                class,
-                format!("mark {}, {}: {place}", row.index, row.usage.replace('_', " ")),
-            )
+            (Shape::Circle(3.0), class, format!("mark {}, {}: {place}", row.index, spoken(&row.usage)))
         }
         kind => {
             let radius = row.radius_px.filter(|radius| radius.is_finite()).unwrap_or(3.0);
             let class = if kind == "circle" { "measured" } else { "cluster" };
-            let title = format!("{}, recognised: {place}, radius {radius:.2} px", kind.replace('_', " "));
+            let title = format!("{}, recognised: {place}, radius {radius:.2} px", spoken(kind));
             (Shape::Circle(radius.max(0.5)), class, title)
         }
     };

@@ -15,6 +15,7 @@ pub use run::{DockingRun, PortionReport};
 use super::chart::{Chart, bars, rounded, stacked_bars};
 use super::figures::{figure_table, percent_cell, shown_percent};
 use super::page::{DataTable, Page, Section};
+use super::words::spoken;
 use crate::failure::Failure;
 use crate::score::docking::DockingGroup;
 use crate::score::{Figure, UnitVerdict};
@@ -109,7 +110,7 @@ fn verdicts(run: &DockingRun) -> Section {
         data.push(cells);
         let frames = score.groups.values().map(|group| group.frames.max(1) as f64);
         let percent = counts.iter().zip(frames).map(|(count, of)| rounded(100.0 * *count as f64 / of, 3));
-        let name = if cause.is_empty() { what.to_owned() } else { format!("{what}: {cause}") };
+        let name = if cause.is_empty() { what.to_owned() } else { format!("{what}: {}", spoken(cause)) };
         traces.push(bars(&name, groups.clone(), percent.collect()).hover_template("%{x}: %{y} %"));
     };
     let counted = |of: &dyn Fn(&DockingGroup) -> u64| score.groups.values().map(of).collect::<Vec<u64>>();

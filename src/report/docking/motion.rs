@@ -20,13 +20,13 @@ const SAMPLED: &str = "Every so many reports; motion.csv has all of them.";
 const BAND: &str = "rgba(47,127,193,0.2)";
 /// The seven parameters of the paper (3.2): name, unit, decimals.
 const PARAMETERS: [(&str, &str, i32); 7] = [
-    ("ρ", "m", 4),
-    ("u", "m/s", 5),
-    ("α", "°", 4),
-    ("β", "°", 4),
-    ("φ1", "°", 4),
-    ("φ2", "°", 4),
-    ("φ3", "°", 4),
+    ("ρ", "m", 6),
+    ("u", "m/s", 6),
+    ("α", "°", 5),
+    ("β", "°", 5),
+    ("φ1", "°", 5),
+    ("φ2", "°", 5),
+    ("φ3", "°", 5),
 ];
 
 /// What an estimator said at the end of a portion, metres and degrees.
@@ -108,7 +108,8 @@ fn parameters(run: &DockingRun, best: &[Said]) -> Chart {
         traces.push(points("best estimate", x, y, MEASURED));
         let (x, y) = truth.iter().map(|(time_s, values)| (*time_s, rounded(values[i], *decimals))).unzip();
         traces.push(line("true", x, y, TRUTH));
-        let range = limits(best.iter().map(|said| said.values[i]).chain(truth.iter().map(|row| row.1[i])));
+        let of_band = |said: &Said| [-3.0, 3.0].map(|sigmas| said.values[i] + sigmas * said.sigmas[i]);
+        let range = limits(best.iter().flat_map(of_band).chain(truth.iter().map(|row| row.1[i])));
         Panel { range: Some(range), ..Panel::new(format!("{name}, {unit}"), traces) }
     });
     let (traces, layout) = stacked("time, s", panels.collect());
@@ -119,7 +120,8 @@ fn parameters(run: &DockingRun, best: &[Said]) -> Chart {
     for bin in bins(best.len(), TABLE_BINS) {
         let said = &best[bin.start];
         let mut cells = vec![format!("{:.2}", said.time_s), said.field.to_string()];
-        cells.extend(said.values.iter().chain(&said.sigmas).map(|value| format!("{value:.4}")));
+        cells.extend(said.values.iter().map(|value| format!("{value:.5}")));
+        cells.extend(said.sigmas.iter().map(|sigma| format!("{sigma:.7}")));
         data.push(cells);
     }
     let caption = "Range, range rate, passive pitch and yaw, and the three active angles at the last moment of every portion, with three \
@@ -131,14 +133,16 @@ fn parameters(run: &DockingRun, best: &[Said]) -> Chart {
 fn sigmas(best: &[Said]) -> Chart {
     let of = |name: &str, i: usize, colour| {
         let kept = thinned(best.len(), &[&|k| best[k].sigmas[i]]);
-        let (x, y) = series(best, &kept, 6, |said| said.sigmas[i]);
+        let (x, y) = series(best, &kept, 7, |said| said.sigmas[i]);
         line(name, x, y, colour)
     };
+    // From decimetres far away to micrometres at the end.
+    let log = |title: &str, traces| Panel { is_log: true, ..Panel::new(title, traces) };
     let panels = vec![
-        Panel::new("σ of ρ, m", vec![of("ρ, u, α, φ1", 0, MEASURED)]),
-        Panel::new("σ of u, m/s", vec![of("u", 1, MEASURED)]),
-        Panel::new("σ of α, β, °", vec![of("α", 2, MEASURED), of("β", 3, BESIDE)]),
-        Panel::new("σ of φ, °", vec![of("φ1", 4, MEASURED), of("φ2", 5, BESIDE), of("φ3", 6, REFERENCE)]),
+        log("σ of ρ, m", vec![of("ρ, u, α, φ1", 0, MEASURED)]),
+        log("σ of u, m/s", vec![of("u", 1, MEASURED)]),
+        log("σ of α, β, °", vec![of("α", 2, MEASURED), of("β", 3, BESIDE)]),
+        log("σ of φ, °", vec![of("φ1", 4, MEASURED), of("φ2", 5, BESIDE), of("φ3", 6, REFERENCE)]),
     ];
     let (mut traces, layout) = stacked("time, s", panels);
     // The colours of the last two panels, which the first, whose legend it is, has not.
@@ -150,7 +154,7 @@ fn sigmas(best: &[Said]) -> Chart {
     let mut data = DataTable::new(head).caption(SAMPLED);
     for bin in bins(best.len(), TABLE_BINS) {
         let said = &best[bin.start];
-        let sigmas = said.sigmas.iter().map(|sigma| format!("{sigma:.5}"));
+        let sigmas = said.sigmas.iter().map(|sigma| format!("{sigma:.7}"));
         data.push([format!("{:.2}", said.time_s)].into_iter().chain(sigmas));
     }
     let caption = "Standard deviations that the pipeline tells, at the last moment of every portion.";
@@ -160,16 +164,15 @@ fn sigmas(best: &[Said]) -> Chart {
 /// Errors against the truth, with bands of three standard deviations.
 fn errors(best: &[Said], paper: &[Said]) -> Chart {
     let panels = PARAMETERS.iter().enumerate().map(|(i, (name, unit, decimals))| {
-        let decimals = decimals + 1;
         let kept = thinned(best.len(), &[&|k| best[k].errors[i], &|k| best[k].sigmas[i]]);
-        let of = |sigmas: f64| series(best, &kept, decimals, |said| sigmas * said.sigmas[i]);
+        let of = |sigmas: f64| series(best, &kept, *decimals, |said| sigmas * said.sigmas[i]);
         let (x, low) = of(-3.0);
         let mut traces = Vec::from(band("3 σ", x.clone(), low, of(3.0).1, BAND));
-        let y = series(best, &kept, decimals, |said| said.errors[i]).1;
+        let y = series(best, &kept, *decimals, |said| said.errors[i]).1;
         traces.push(points("best estimate", x, y, MEASURED));
         if !paper.is_empty() {
             let kept = thinned(paper.len(), &[&|k| paper[k].errors[i]]);
-            let (x, y) = series(paper, &kept, decimals, |said| said.errors[i]);
+            let (x, y) = series(paper, &kept, *decimals, |said| said.errors[i]);
             traces.push(points("paper's formulas", x, y, BESIDE));
         }
         // The paper's formulas scatter far more: the axis is that of the best estimate.
@@ -188,7 +191,7 @@ fn errors(best: &[Said], paper: &[Said]) -> Chart {
     for bin in bins(best.len(), TABLE_BINS) {
         let said = &best[bin];
         let mut cells = vec![format!("{:.2}", said[0].time_s)];
-        (0..7).for_each(|i| cells.extend(summary(said.iter().map(|said| said.errors[i]), 5)));
+        (0..7).for_each(|i| cells.extend(summary(said.iter().map(|said| said.errors[i]), 6)));
         data.push(cells);
     }
     let caption = "Errors against the truth, measured minus true, with bands of three standard deviations as the pipeline tells them. \

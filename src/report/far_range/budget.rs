@@ -10,9 +10,9 @@ use crate::inject::Stage;
 use crate::report::chart::{BESIDE, Chart, MEASURED, axes, intervals, rounded};
 use crate::report::figures::{cell, percent_cell};
 use crate::report::page::{DataTable, Section};
-use crate::report::read::{missing, read_json};
+use crate::report::read::{missing, read_json, world_of};
 use crate::run_file::RunFile;
-use crate::scenario::FarRangeScenario;
+use crate::scenario::{FarRangeScenario, World};
 use crate::score::{Score, names};
 
 /// A run of the same frames that was told the truth for one stage.
@@ -34,6 +34,9 @@ impl InjectedRun {
         }
         let path = directory.join("run.toml");
         let refuse = |what: &str| Err(Failure::Usage(format!("{}: {what}", path.display())));
+        if world_of(directory)? != World::FarRange {
+            return refuse("`scenario.world` is that of docking, expected a run of the far range");
+        }
         let run_file = RunFile::<FarRangeScenario>::read(&path)?;
         let Some(stage) = run_file.inject else {
             return refuse("`inject` is missing, expected a run with --inject STAGE");
@@ -76,8 +79,15 @@ impl InjectedRun {
 /// What each stage costs.
 pub(super) fn budget(run: &FarRangeRun) -> Section {
     let section = Section::new("budget", "Error budget by stage");
-    if run.budget.is_empty() {
+    if run.run_file.inject.is_some() {
         return section;
+    }
+    if run.budget.is_empty() {
+        return section.text(
+            "Nothing was held against this run. Of the built-in pipeline, `boresight run` with --inject STAGE and the same frames puts the truth in \
+             the place of a stage's result, and `boresight report` with --budget and the directory of that run, once a stage, shows here \
+             what each stage costs (docs/report.md).",
+        );
     }
     let honest = ("none: the honest run".to_owned(), &run.score);
     let injected = run.budget.iter().map(|injected| (injected.stage.to_string(), &injected.score));

@@ -2,16 +2,18 @@
 
 use std::path::Path;
 
-use contract::{Cluster, Label, Outcome, PixelPoint};
+use contract::{Cluster, Label, Outcome, PixelPoint, Window};
 use sim::truth::{ObjectKind, ObjectTruth, Visibility};
 use sim::{Exposure, Simulator};
 
-use super::FarRangeRun;
+use super::run::{FarRangeRun, shown_time};
 use crate::failure::Failure;
-use crate::files::{FrameCluster, TableReader};
+use crate::files::FrameCluster;
 use crate::report::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch, window_around};
+use crate::report::read::rows_of_each;
+use crate::report::words::spoken;
 use crate::scenario::ScenarioSource;
-use crate::score::{Cause, FrameVerdict, Verdict};
+use crate::score::{FrameVerdict, Verdict};
 
 /// The simulator of a run, and what the pipeline told of its clusters.
 pub struct FrameSheet {
@@ -47,23 +49,69 @@ impl FrameSheet {
     pub fn pictures(&self, run: &FarRangeRun, rows: &[usize]) -> Result<Vec<Picture>, Failure> {
         let Ok(simulator) = &self.simulator else { return Ok(Vec::new()) };
         let mut camera = simulator.camera()?;
-        let mut clusters = self.clusters_of(run, rows)?;
+        let clusters = self.clusters_of(run, rows)?;
         let picture = |(&row, clusters): (&usize, Vec<Cluster>)| {
             let exposure = camera.expose(run.truths[row].frame)?;
-            let verdict = &run.verdicts[row];
             let mut picture = framed(&exposure, run.outcomes[row].as_ref(), &clusters)?;
-            picture.title = title(verdict);
-            picture.caption = format!(
-                "Frame {}, {}, {:.2} km, exposure {:.4} s{}.",
-                verdict.frame,
-                verdict.group,
-                exposure.truth.range_km,
-                exposure.truth.exposure_s,
-                distance(run.outcomes[row].as_ref(), &exposure)
-            );
+            picture.title = title(&run.verdicts[row]);
+            picture.caption = caption(run, row, &exposure);
             Ok(picture)
         };
-        rows.iter().zip(clusters.drain(..)).map(picture).collect()
+        rows.iter().zip(clusters).map(picture).collect()
+    }
+
+    /// A row of a run as a picture of the whole detector.
+    ///
+    /// # Errors
+    /// As [`FrameSheet::pictures`].
+    pub fn whole(&self, run: &FarRangeRun, row: usize) -> Result<Option<Picture>, Failure> {
+        let Ok(simulator) = &self.simulator else { return Ok(None) };
+        let exposure = simulator.camera()?.expose(run.truths[row].frame)?;
+        let clusters = self.clusters_of(run, &[row])?.remove(0);
+        let mut picture = picture_of(&exposure, &[], 0.0)?;
+        draw_over(&mut picture, &exposure, run.outcomes[row].as_ref(), &clusters);
+        picture.title = title(&run.verdicts[row]);
+        picture.caption = caption(run, row, &exposure);
+        Ok(Some(picture))
+    }
+
+    /// Some rows of a run over one another: of every pixel the brightest.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a frame cannot be rendered.
+    pub fn overlaid(&self, run: &FarRangeRun, rows: &[usize]) -> Result<Option<Picture>, Failure> {
+        let (Ok(simulator), Some(&first), Some(&last)) = (&self.simulator, rows.first(), rows.last()) else {
+            return Ok(None);
+        };
+        let mut camera = simulator.camera()?;
+        let (mut brightest, mut marks): (Vec<u16>, Vec<Mark>) = (Vec::new(), Vec::new());
+        for &row in rows {
+            let exposure = camera.expose(run.truths[row].frame)?;
+            brightest.resize(exposure.frame.dn().len(), 0);
+            for (brightest, dn) in brightest.iter_mut().zip(exposure.frame.dn()) {
+                *brightest = (*brightest).max(*dn);
+            }
+            // Small ones: those of its wings would hide its track.
+            let small = |target| Mark { shape: Shape::Circle(4.0), ..true_mark(target) };
+            marks.extend(target(&exposure).map(small));
+        }
+        let size = &run.run_file.scenario.camera;
+        let (columns, rows_px) = (size.columns, size.rows);
+        let whole = Window { x: 0, y: 0, columns, rows: rows_px };
+        let pixels = Pixels { columns, rows: rows_px, dn: &brightest };
+        let mut picture = Picture::new(pixels, whole, RowPlace::WHOLE, Stretch::Stars)?;
+        picture.title = format!("{} images over one another.", rows.len());
+        picture.caption = format!(
+            "Frames {} to {}, {} to {} (UTC), {:.2} to {:.2} km.",
+            run.truths[first].frame,
+            run.truths[last].frame,
+            shown_time(&run.truths[first]),
+            shown_time(&run.truths[last]),
+            run.truths[first].range_km,
+            run.truths[last].range_km
+        );
+        picture.marks = marks;
+        Ok(Some(picture))
     }
 
     /// The first of some rows whose target lost such a share of its light to its region, as a close picture.
@@ -105,41 +153,37 @@ impl FrameSheet {
         Ok(None)
     }
 
-    /// The clusters of some rows, in their order, in one pass over the table.
+    /// The clusters of some rows, in their order.
     fn clusters_of(&self, run: &FarRangeRun, rows: &[usize]) -> Result<Vec<Vec<Cluster>>, Failure> {
-        let mut clusters = vec![Vec::new(); rows.len()];
-        let Some(path) = &self.clusters else { return Ok(clusters) };
-        let mut ascending: Vec<usize> = (0..rows.len()).collect();
-        ascending.sort_by_key(|&place| rows[place]);
-        let mut table = TableReader::<FrameCluster>::open(path)?;
-        let mut last: Option<usize> = None;
-        for place in ascending {
-            clusters[place] = match last.filter(|&last| rows[last] == rows[place]) {
-                Some(same) => clusters[same].clone(),
-                None => {
-                    let found = table.rows_of(run.truths[rows[place]].frame)?;
-                    found.into_iter().map(|row| row.cluster).collect()
-                }
-            };
-            last = Some(place);
-        }
-        Ok(clusters)
+        let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
+        let found = rows_of_each::<FrameCluster>(self.clusters.as_deref(), &frames)?;
+        let clusters = |rows: Vec<FrameCluster>| rows.into_iter().map(|row| row.cluster).collect();
+        Ok(found.into_iter().map(clusters).collect())
     }
 }
 
 /// What became of a frame, in words.
-pub(super) fn title(verdict: &FrameVerdict) -> String {
+fn title(verdict: &FrameVerdict) -> String {
     match verdict.verdict {
         Verdict::Correct { .. } => "Right.".to_owned(),
-        Verdict::Missed { cause } => format!("Missed: {}.", words(cause)),
+        Verdict::Missed { cause } => format!("Missed: {}.", spoken(cause.code())),
         Verdict::Wrong { cause, taken, .. } => {
-            format!("Wrong: {}; taken: {}.", words(cause), taken.code().replace('_', " "))
+            format!("Wrong: {}; taken: {}.", spoken(cause.code()), spoken(taken.code()))
         }
     }
 }
 
-fn words(cause: Cause) -> String {
-    cause.code().replace('_', " ")
+/// Which frame it is.
+fn caption(run: &FarRangeRun, row: usize, exposure: &Exposure) -> String {
+    let verdict = &run.verdicts[row];
+    format!(
+        "Frame {}, {}, {:.2} km, exposure {:.4} s{}.",
+        verdict.frame,
+        verdict.group,
+        exposure.truth.range_km,
+        exposure.truth.exposure_s,
+        distance(run.outcomes[row].as_ref(), exposure)
+    )
 }
 
 /// How far an answer is from the target.
@@ -157,16 +201,18 @@ fn target(exposure: &Exposure) -> Option<&ObjectTruth> {
     exposure.objects.iter().find(|object| object.kind == ObjectKind::Target)
 }
 
-/// A frame with everything that is known of it drawn over it.
-pub(super) fn framed(
-    exposure: &Exposure,
-    outcome: Option<&Outcome>,
-    clusters: &[Cluster],
-) -> Result<Picture, Failure> {
+/// A frame about the target and the answer, with everything that is known of it drawn over it.
+fn framed(exposure: &Exposure, outcome: Option<&Outcome>, clusters: &[Cluster]) -> Result<Picture, Failure> {
     let measured = outcome.and_then(Outcome::measurement).map(|measured| measured.position);
     let points: Vec<PixelPoint> =
         target(exposure).map(|target| target.position).into_iter().chain(measured).collect();
     let mut picture = picture_of(exposure, &points, 36.0)?;
+    draw_over(&mut picture, exposure, outcome, clusters);
+    Ok(picture)
+}
+
+/// Draws everything that is known of a frame over a picture of it.
+fn draw_over(picture: &mut Picture, exposure: &Exposure, outcome: Option<&Outcome>, clusters: &[Cluster]) {
     let window = picture.window;
     let is_shown = |at: PixelPoint| {
         let inside =
@@ -184,7 +230,6 @@ pub(super) fn framed(
     picture.marks.extend(others.map(other_mark));
     picture.marks.extend(target(exposure).map(true_mark));
     picture.marks.extend(answer_mark(outcome));
-    Ok(picture)
 }
 
 fn picture_of(exposure: &Exposure, points: &[PixelPoint], margin_px: f64) -> Result<Picture, Failure> {
@@ -228,12 +273,7 @@ fn other_mark(object: &ObjectTruth) -> Mark {
         at: object.position,
         shape: Shape::Circle(object.radius_px.clamp(2.5, 12.0)),
         class: if is_star { "star" } else { "other" },
-        title: format!(
-            "{} {}{magnitude}, SNR {:.1}",
-            object.kind.code().replace('_', " "),
-            object.id,
-            object.snr
-        ),
+        title: format!("{} {}{magnitude}, SNR {:.1}", spoken(object.kind.code()), object.id, object.snr),
     }
 }
 

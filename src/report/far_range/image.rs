@@ -1,16 +1,63 @@
-//! What is seen in the images: the track of the target, regions, frames of every kind.
+//! What is seen in the images: whole ones, the track of the target, regions, frames of every kind.
+
+use std::f64::consts::PI;
+use std::ops::Range;
 
 use contract::Outcome;
 use plotly::layout::{Axis, AxisConstrain, AxisRange};
 use plotly::{Layout, Trace};
+use sim::truth::{Elements, State};
 
 use super::FrameSheet;
 use super::run::{FarRangeRun, by_bins, thinning};
 use crate::failure::Failure;
 use crate::report::chart::{Chart, MEASURED, REFERENCE, WRONG, crosses, points, rounded};
 use crate::report::page::Section;
-use crate::report::thin::thinned;
+use crate::report::thin::{bins, thinned};
 use crate::score::{Cause, Verdict};
+
+/// Room about the detector, so that a mark at its edge is whole, px.
+const ROOM_PX: f64 = 8.0;
+/// Range of the images in the paper's Fig. 2, km.
+const SAMPLE_RANGE_KM: f64 = 16.0;
+/// Images that are laid over one another: ten degrees of an orbit from one to the next.
+const OVERLAID: usize = 36;
+
+/// Fig. 2: a whole image, and images of one orbit over one another.
+pub(super) fn sample(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, Failure> {
+    let section = Section::new("fig-2", "Fig. 2: a whole image, and the images of an orbit over one another");
+    if let Some(reason) = sheet.reason() {
+        return Ok(section.text(format!("There are no pictures: {reason}")));
+    }
+    let away = |row: &usize| (run.truths[*row].range_km - SAMPLE_RANGE_KM).abs();
+    let nearest = |rows: &mut dyn Iterator<Item = usize>| rows.min_by(|a, b| away(a).total_cmp(&away(b)));
+    let is_right = |row: &usize| matches!(run.verdicts[*row].verdict, Verdict::Correct { .. });
+    let right = nearest(&mut (0..run.verdicts.len()).filter(is_right));
+    let Some(row) = right.or_else(|| nearest(&mut (0..run.verdicts.len()))) else { return Ok(section) };
+    let orbit = one_orbit(run, row);
+    let overlaid: Vec<usize> = bins(orbit.len(), OVERLAID).map(|bin| orbit.start + bin.start).collect();
+    let pictures = [sheet.whole(run, row)?, sheet.overlaid(run, &overlaid)?];
+    Ok(section
+        .text(
+            "The frame nearest to the paper's 16 km, with everything in it that can be detected, and frames of the orbit around it, of which every \
+             pixel is shown as it was at its brightest: the target runs along its ellipse, stars along their tracks.",
+        )
+        .pictures(pictures.into_iter().flatten().collect()))
+}
+
+/// The rows of a run within half an orbit of one of them, and in its group.
+fn one_orbit(run: &FarRangeRun, row: usize) -> Range<usize> {
+    let truth = &run.truths[row];
+    let state = State { position_km: truth.position_km, velocity_km_s: truth.velocity_km_s };
+    let half_s = Elements::from_state(&state).map_or(0.0, |orbit| PI / orbit.mean_motion_rad_s());
+    let is_of = |other: &usize| {
+        let other = &run.truths[*other];
+        other.group == truth.group && (other.time - truth.time).to_seconds().abs() <= half_s
+    };
+    let first = (0..row).rev().take_while(is_of).last().unwrap_or(row);
+    let last = (row..run.truths.len()).take_while(is_of).last().unwrap_or(row);
+    first..last + 1
+}
 
 /// Fig. 3: the target in the image.
 pub(super) fn track(run: &FarRangeRun) -> Section {
@@ -54,13 +101,13 @@ pub(super) fn track(run: &FarRangeRun) -> Section {
         .x_axis(
             Axis::new()
                 .title("x, px (columns)")
-                .range(vec![-0.5, columns - 0.5])
+                .range(vec![-0.5 - ROOM_PX, columns - 0.5 + ROOM_PX])
                 .constrain(AxisConstrain::Domain),
         )
         .y_axis(
             Axis::new()
                 .title("y, px (rows, downwards)")
-                .range(AxisRange::from(vec![rows - 0.5, -0.5]))
+                .range(AxisRange::from(vec![rows - 0.5 + ROOM_PX, -0.5 - ROOM_PX]))
                 .scale_anchor("x")
                 .constrain(AxisConstrain::Domain),
         );

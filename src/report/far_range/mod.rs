@@ -1,5 +1,6 @@
 //! The report of a far-range run: the figures of the far-range paper by name, its Table 2, causes, frames.
 
+mod approach;
 mod attitude;
 mod budget;
 mod frame_sheet;
@@ -18,6 +19,7 @@ use self::run::shown_time;
 use super::chart::{Chart, bars, rounded, stacked_bars};
 use super::figures::{figure_table, percent_cell, shown_percent};
 use super::page::{DataTable, Page, Section};
+use super::words::spoken;
 use crate::failure::Failure;
 use crate::scenario::is_argon;
 use crate::score::{ARGON_TABLE_2, GroupScore};
@@ -46,7 +48,9 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Page, Fai
     );
     let mut sections = vec![
         figures_section(run),
+        image::sample(run, sheet)?,
         image::track(run),
+        approach::relative_position(run)?,
         series::errors(run),
         image::regions(run, sheet)?,
         series::stars(run),
@@ -163,7 +167,7 @@ fn causes(run: &FarRangeRun) -> Section {
                 .zip(score.groups.values())
                 .map(|(count, group)| rounded(100.0 * *count as f64 / group.frames.max(1) as f64, 3));
             let names = groups.iter().map(|group| (*group).clone()).collect();
-            traces.push(bars(cause, names, percent.collect()).hover_template("%{x}: %{y} %"));
+            traces.push(bars(&spoken(cause), names, percent.collect()).hover_template("%{x}: %{y} %"));
         }
         section = section.chart(Chart::new(
             format!("{title} by cause, percent of the frames of a group."),

@@ -41,7 +41,7 @@
     for (const { place, figure } of charts) {
       const layout = { ...figure.layout, template: template(dark.matches && !isPrinted), autosize: true };
       // A sheet of A4 between its margins: the width of the screen is not that of the paper.
-      if (isPrinted) Object.assign(layout, { autosize: false, width: 690, height: place.clientHeight });
+      if (isPrinted) Object.assign(layout, { autosize: false, width: 680, height: place.clientHeight });
       Plotly.react(place, structuredClone(figure.data), layout, config);
     }
   };

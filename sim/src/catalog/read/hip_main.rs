@@ -53,7 +53,7 @@ struct Fields<'a> {
 impl<'a> Fields<'a> {
     fn new(path: &'a Path, line: usize, content: &'a str) -> Result<Self, CatalogError> {
         let texts: Vec<&str> = content.split('|').collect();
-        if texts.len() == FIELDS && texts[0] == "H" {
+        if texts.len() == FIELDS && texts.first() == Some(&"H") {
             return Ok(Self { path, line, texts });
         }
         let problem =
@@ -63,8 +63,9 @@ impl<'a> Fields<'a> {
 
     /// Field H`number`, below [`FIELDS`].
     fn get(&self, number: usize, name: &'static str) -> Field<'a> {
-        let before: usize = self.texts[..number].iter().map(|text| text.chars().count() + 1).sum();
-        Field { path: self.path, line: self.line, column: before + 1, name, text: self.texts[number] }
+        let before: usize = self.texts.iter().take(number).map(|text| text.chars().count() + 1).sum();
+        let text = self.texts.get(number).copied().unwrap_or("");
+        Field { path: self.path, line: self.line, column: before + 1, name, text }
     }
 }
 

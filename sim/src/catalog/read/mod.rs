@@ -1,5 +1,16 @@
 //! Reading a user's catalogue.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 mod csv;
 mod hip2;
 mod hip_main;
@@ -15,7 +26,7 @@ type Parsed = (Vec<(usize, CatalogStar)>, Vec<Exclusion>);
 /// Parses a file of any known format; `path` tells the format and is named in errors.
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Parsed, CatalogError> {
     let text = std::str::from_utf8(bytes).map_err(|error| {
-        let line = 1 + bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count();
+        let line = 1 + bytes.iter().take(error.valid_up_to()).filter(|byte| **byte == b'\n').count();
         CatalogError::Line { path: path.to_path_buf(), line, problem: "not UTF-8 text".to_owned() }
     })?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);

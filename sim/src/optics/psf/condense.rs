@@ -120,7 +120,7 @@ mod tests {
                 row.iter().enumerate().for_each(|(i, e)| sum[y * 60 + x + i] += e);
             }
         }
-        let peak = stamp.truth(0.0, 0.0).peak_electrons;
+        let peak = stamp.truth(0.0, 0.0, f64::INFINITY).peak_electrons;
         for (x, y, row) in stamp.rows() {
             for (i, e) in row.iter().enumerate() {
                 let error = e - sum[y * 60 + x + i];

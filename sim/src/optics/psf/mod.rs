@@ -281,7 +281,7 @@ mod tests {
     fn the_peak_pixel_holds_the_closed_form_fraction() {
         // erf(0.5 / (0.8 √2))² = 0.46803²: from a table of the error function.
         let stamp = stamp_of(&gaussian(0.8), PixelPoint::new(100.0, 100.0), 1.0, 1e-12);
-        let peak = stamp.truth(0.0, 1.0).peak_electrons;
+        let peak = stamp.truth(0.0, 1.0, f64::INFINITY).peak_electrons;
         assert!((peak - 0.468_028_6 * 0.468_028_6).abs() < 1e-6, "{peak}");
         assert!((Psf::new(&gaussian(0.8)).unwrap().peak_share() - peak).abs() < 1e-15);
     }

@@ -4,6 +4,17 @@
 //! program of optical design prints, or a measured image after deconvolution. A cell's centre is `1/oversampling` px
 //! from the next.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::Path;
 
 use super::tabulated::Tabulated;

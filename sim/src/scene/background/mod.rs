@@ -40,7 +40,7 @@ pub struct BackgroundConfig {
     pub faint_stars_s10: f64,
     /// Scattered light of the Sun; needs radiometry of kind "spectral".
     pub sun: Option<StrayLightConfig>,
-    /// Scattered light of the sunlit Earth; needs radiometry of kind "spectral".
+    /// The Earth: scattered light of its sunlit part, and it hides what is behind it; needs radiometry of kind "spectral".
     pub earth: Option<EarthLightConfig>,
     /// Scattered light of the Moon; needs radiometry of kind "spectral".
     pub moon: Option<StrayLightConfig>,
@@ -135,6 +135,11 @@ struct Node {
 }
 
 impl Background {
+    /// Whether the Earth is part of the scene: it shines, and stands before what is behind it.
+    pub(crate) fn has_earth(&self) -> bool {
+        self.config.earth.is_some()
+    }
+
     /// Prepares the background of a camera; `None` when all of it is off.
     ///
     /// # Errors

@@ -1,5 +1,16 @@
 //! A docking target as data: the tables of a target file, what they mean as a scene and to a pipeline.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use contract::docking::TargetModel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

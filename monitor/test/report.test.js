@@ -1,0 +1,203 @@
+// Reports in a browser: every chart is drawn, values show on hover, the page has an error nowhere and can ask nothing of any network.
+// Run by `npm test --prefix monitor`, with BORESIGHT naming the command.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, describe, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { browser, problemsOf, run } from "./browser.js";
+
+const STUDY = `
+title = "two frames of ARGON"
+scenario = "argon"
+seed = 5
+frames = "2000..2002"
+[stop]
+cases = 8
+[[vary]]
+path = "psf.sigma_px"
+law = { kind = "normal", mean = 0.8, sigma = 0.1 }
+`;
+
+/** How each kind of report is made in the directory DIR, and what it must show. */
+const REPORTS = {
+  "far range": {
+    words: ["run", "argon", "--frames", "9000..9060", "--out", "DIR"],
+    headings: [
+      /^Table 2, beside the published one$/,
+      /^Fig\. 2: .*images? of an orbit/,
+      /^Fig\. 3: track of the target in pixels$/,
+      /^Fig\. 4: position of the chaser/,
+      /^Fig\. 5: errors of right ascension and declination$/,
+      /^Fig\. 6: a whole and a truncated region/,
+      /^Fig\. 7: stars/,
+      /^Fig\. 8: attitude of the camera/,
+      /^Fig\. 9: angles of the correction of aberration$/,
+      /^Causes/,
+      /^Error budget by stage$/,
+      /^Frames$/,
+    ],
+    pictures: 3,
+  },
+  docking: {
+    words: ["run", "docking", "--frames", "24000..24060", "--out", "DIR"],
+    headings: [/^Figures$/, /^Fig\. 5: parameters of the motion$/, /^Fig\. 6: accuracy of the motion$/, /^Fields$/],
+    pictures: 1,
+  },
+  study: {
+    words: ["study", "run", "STUDY", "--out", "DIR"],
+    headings: [/^Figures$/, /^Sensitivities$/, /^Worst cases$/],
+    pictures: 0,
+  },
+  visibility: {
+    words: ["visibility", "uasc-far-range", "--frames", "0", "--out", "DIR"],
+    headings: [/^Detection against magnitude$/, /^Stars over the sky$/, /^Window of exposures against range$/],
+    pictures: 0,
+  },
+};
+
+let chromium;
+let directory;
+before(async () => {
+  directory = mkdtempSync(join(tmpdir(), "boresight-report-"));
+  const study = join(directory, "study.toml");
+  writeFileSync(study, STUDY);
+  for (const [name, { words }] of Object.entries(REPORTS)) {
+    run(...words.map((word) => ({ DIR: join(directory, name), STUDY: study })[word] ?? word));
+  }
+  chromium = await browser();
+});
+after(async () => {
+  await chromium?.close();
+  rmSync(directory, { recursive: true, force: true });
+});
+
+const address = (name) => pathToFileURL(join(directory, name, "report.html")).href;
+
+/** Opens a report as a reader does, from its file. */
+async function open(name, options = {}) {
+  const page = await chromium.newPage({ viewport: { width: 1280, height: 900 }, ...options });
+  const own = address(name);
+  const problems = problemsOf(page, (asked) => asked === own || asked.startsWith("data:") || asked.startsWith("blob:"));
+  await page.goto(own);
+  await page.waitForFunction(() => [...document.querySelectorAll(".plot")].every((plot) => plot.querySelector(".main-svg")));
+  return { page, problems };
+}
+
+/** Of every chart: its traces, those that have anything to draw, and the marks that are on the page. */
+const charts = (page) =>
+  page.$$eval(".plot", (plots) =>
+    plots.map((plot) => ({
+      caption: plot.closest("figure").querySelector("figcaption").textContent,
+      traces: plot.data.length,
+      filled: plot.data.filter(({ x, z, lat }) => (x ?? z ?? lat)?.length > 0).length,
+      marks: plot.querySelectorAll(".scatterlayer path, .barlayer path, .heatmaplayer image, .layer.frontplot path").length,
+      width: plot.querySelector(".main-svg").getBoundingClientRect().width,
+    })),
+  );
+
+for (const [name, { headings, pictures }] of Object.entries(REPORTS)) {
+  describe(name, () => {
+    for (const colorScheme of ["light", "dark"]) {
+      test(`${colorScheme}: what is asked for is there and drawn, without an error and without a request`, async (context) => {
+        const { page, problems } = await open(name, { colorScheme });
+        context.after(() => page.close());
+        const found = await page.$$eval("main h2", (all) => all.map(({ textContent }) => textContent));
+        headings.forEach((heading) => assert.ok(found.some((text) => heading.test(text)), `${heading} in ${found}`));
+        for (const { caption, filled, marks } of await charts(page)) {
+          assert.ok(filled > 0 && marks > 0, `nothing is drawn: ${caption}`);
+        }
+        // A picture that cannot be decoded has no size.
+        const sizes = await page.$$eval(".picture image", (images) =>
+          Promise.all(
+            images.map(async (image) => {
+              const picture = new Image();
+              picture.src = image.href.baseVal;
+              await picture.decode();
+              return picture.naturalWidth;
+            }),
+          ),
+        );
+        assert.ok(sizes.length >= pictures && sizes.every((size) => size > 20), `pictures: ${sizes}`);
+        const grey = (text) => Number(/\d+/.exec(text)[0]);
+        const ground = await page.$eval("body", (body) => getComputedStyle(body).backgroundColor);
+        const ink = await page.$eval(".plot .xtick text, .plot .infolayer text", (text) => text.style.fill);
+        const [dark, light] = colorScheme === "dark" ? [ground, ink] : [ink, ground];
+        assert.ok(grey(dark) < 80 && grey(light) > 180, `ground ${ground}, ink ${ink}`);
+        const beyond = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+        assert.ok(beyond <= 0, `the page is ${beyond} px wider than the window`);
+        assert.deepEqual(problems, []);
+      });
+    }
+
+    test("on paper it is light, and no chart is wider than the sheet", async (context) => {
+      const { page, problems } = await open(name, { colorScheme: "dark" });
+      context.after(() => page.close());
+      await page.emulateMedia({ media: "print" });
+      await page.waitForFunction(() => getComputedStyle(document.body).backgroundColor === "rgb(255, 255, 255)");
+      // 210 mm less two margins of 14 mm, at 96 px an inch.
+      const paper = (210 - 2 * 14) * (96 / 25.4);
+      // The charts are told of the paper after the style is: they are given the time to be drawn again.
+      const fits = (most) =>
+        [...document.querySelectorAll(".plot .main-svg")].every((chart) => chart.getBoundingClientRect().width <= most);
+      await page.waitForFunction(fits, paper, { timeout: 20_000 }).catch(() => {});
+      for (const { caption, width } of await charts(page)) {
+        assert.ok(width <= paper, `${width} px: ${caption}`);
+      }
+      assert.deepEqual(problems, []);
+    });
+  });
+}
+
+test("a reader who points at a chart is told the value, and finds the numbers in the table behind", async (context) => {
+  const { page } = await open("far range");
+  context.after(() => page.close());
+  const chart = page.locator("#fig-5 .plot");
+  await chart.scrollIntoViewIfNeeded();
+  const { x, y } = await chart.locator(".scatterlayer .points path").first().boundingBox();
+  await page.mouse.move(x + 2, y + 2, { steps: 3 });
+  const told = await page.locator("#fig-5 .hovertext").first().textContent();
+  assert.match(told, /frame 9\d{3}.*°/);
+  assert.ok(!(await page.locator("#fig-5 details table").isVisible()));
+  await page.locator("#fig-5 summary").click();
+  assert.ok(await page.locator("#fig-5 details table").isVisible());
+  assert.ok((await page.locator("#fig-5 details tbody tr").count()) >= 10);
+});
+
+test("the page cannot reach anything, even if a script in it tried", async (context) => {
+  let requests = 0;
+  const server = createServer((_, response) => {
+    requests += 1;
+    response.writeHead(200, { "Access-Control-Allow-Origin": "*" }).end();
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  context.after(() => server.close());
+  const page = await chromium.newPage();
+  context.after(() => page.close());
+  await page.goto(address("docking"));
+  const outcome = await page.evaluate(async (url) => {
+    const element = (name, values) =>
+      new Promise((resolve) => {
+        const made = Object.assign(document.createElement(name), values);
+        made.onload = () => resolve("loaded");
+        made.onerror = () => resolve("refused");
+        document.head.append(made);
+      });
+    const form = Object.assign(document.createElement("form"), { action: url, method: "post" });
+    document.body.append(form);
+    form.submit();
+    navigator.sendBeacon(url);
+    return Promise.all([
+      fetch(url).then(() => "loaded", () => "refused"),
+      element("img", { src: url }),
+      element("script", { src: url }),
+      element("link", { rel: "stylesheet", href: url }),
+    ]);
+  }, `http://127.0.0.1:${server.address().port}/`);
+  assert.deepEqual(outcome, ["refused", "refused", "refused", "refused"]);
+  await page.waitForTimeout(300);
+  assert.equal(requests, 0);
+});

@@ -1,0 +1,116 @@
+//! A pipeline that is written in Python, for the cases of a study: they ask it side by side, one call at a time.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use boresight::failure::Failure;
+use boresight::scenario::{Scenario, World};
+use boresight::study::{Study, StudyPipeline};
+use contract::docking::{DockingPipeline, DockingPipelineFactory, DockingSetup};
+use contract::{ContractError, Pipeline, PipelineFactory, Setup};
+use pipeline::docking::DockingConfig;
+use pipeline::external::{docking_protocol, protocol};
+use pipeline::far_range::FarRangeConfig;
+use pyo3::prelude::*;
+
+use crate::errors::BoresightError;
+use crate::json::text_to_python;
+use crate::python_pipeline::{PythonPipeline, check, name};
+use crate::wait::Ended;
+
+/// A callable of (frame, telemetry), or a class of them, of which every case has an instance of its own.
+pub(crate) struct PythonStudyPipeline {
+    name: String,
+    given: Py<PyAny>,
+    /// SHA-256 of its name and its source.
+    hash: [u8; 32],
+    ended: Arc<Ended>,
+}
+
+impl PythonStudyPipeline {
+    /// A pipeline for the cases of a study; `ended` is set by what it raises that is no `Exception`.
+    pub(crate) fn new(given: &Bound<'_, PyAny>, ended: &Arc<Ended>) -> PyResult<Self> {
+        check(given)?;
+        let hash =
+            given.py().import("boresight._values")?.call_method1("callable_hash", (given,))?.extract()?;
+        Ok(Self { name: name(given), given: given.clone().unbind(), hash, ended: Arc::clone(ended) })
+    }
+
+    fn again(&self) -> Self {
+        let given = Python::attach(|py| self.given.clone_ref(py));
+        Self { name: self.name.clone(), given, hash: self.hash, ended: Arc::clone(&self.ended) }
+    }
+
+    /// The pipeline of a case, whose setup is what a greeting of the protocol says.
+    fn of_case(
+        &self,
+        greeting: impl FnOnce() -> Result<Vec<u8>, String>,
+        size_px: (usize, usize),
+    ) -> Result<PythonPipeline, ContractError> {
+        let made = Python::attach(|py| {
+            let setup = || {
+                let line = greeting().map_err(BoresightError::new_err)?;
+                text_to_python(py, &String::from_utf8_lossy(&line))
+            };
+            PythonPipeline::of_case(self.given.bind(py), setup, size_px, &self.ended)
+        });
+        made.map_err(|error| ContractError::CannotBuild {
+            pipeline: self.name.clone(),
+            reason: error.to_string(),
+        })
+    }
+}
+
+impl StudyPipeline for PythonStudyPipeline {
+    fn check(&self, _: &Scenario) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn hash(&self, _: World) -> Option<[u8; 32]> {
+        Some(self.hash)
+    }
+
+    fn replay(&self, study: &Study, path: &Path, case: u64) -> String {
+        let range = study.file.frames.as_ref().and_then(|frames| frames.split_once(".."));
+        let frames = range.map(|(from, to)| format!(", frames=range({}, {})", from.trim(), to.trim()));
+        format!(
+            "boresight.run(boresight.Scenario.of_case({:?}, {case}){}, pipeline={})",
+            path.display().to_string(),
+            frames.unwrap_or_default(),
+            self.name
+        )
+    }
+
+    fn factory(&self, _: &FarRangeConfig, _: &Path) -> Result<Box<dyn PipelineFactory>, Failure> {
+        Ok(Box::new(self.again()))
+    }
+
+    fn docking_factory(
+        &self,
+        _: &DockingConfig,
+        _: &Path,
+    ) -> Result<Box<dyn DockingPipelineFactory>, Failure> {
+        Ok(Box::new(self.again()))
+    }
+}
+
+impl PipelineFactory for PythonStudyPipeline {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
+        let size_px = (setup.camera.columns, setup.camera.rows);
+        Ok(Box::new(self.of_case(|| protocol::greeting(setup), size_px)?))
+    }
+}
+
+impl DockingPipelineFactory for PythonStudyPipeline {
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn build(&self, setup: &DockingSetup) -> Result<Box<dyn DockingPipeline>, ContractError> {
+        Ok(Box::new(self.of_case(|| docking_protocol::greeting(setup), (0, 0))?))
+    }
+}

@@ -1,0 +1,43 @@
+//! Programs in the place of the pipeline end with this process, also when it is interrupted.
+//!
+//! They run in process groups of their own, which the interrupt of a terminal does not reach, and one that hangs does not notice that its
+//! input is closed. A process that is killed (SIGKILL) cannot end them: then the closed input is all that they get.
+
+/// Ends the programs of pipelines on SIGINT, SIGTERM and SIGHUP, and then this process, with the status of a shell: 128 and the number.
+/// Asked again, it does nothing.
+#[cfg(unix)]
+pub(super) fn end_programs_when_interrupted() {
+    static STARTED: std::sync::Once = std::sync::Once::new();
+    STARTED.call_once(|| {
+        // Without a thread, or without signals, they are what they are without this: a closed input.
+        let _ = std::thread::Builder::new().name("interrupt".to_owned()).spawn(|| {
+            if let Ok(number) = first_signal() {
+                pipeline::external::end_all();
+                std::process::exit(128 + number);
+            }
+        });
+    });
+}
+
+/// Waits for the first of the signals that end a process; its number.
+#[cfg(unix)]
+fn first_signal() -> std::io::Result<i32> {
+    use tokio::signal::unix::{SignalKind, signal};
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    runtime.block_on(async {
+        let kinds = [SignalKind::interrupt(), SignalKind::terminate(), SignalKind::hangup()];
+        let mut signals = kinds.into_iter().map(signal).collect::<std::io::Result<Vec<_>>>()?;
+        std::future::poll_fn(|context| {
+            let mut both = kinds.iter().zip(&mut signals);
+            match both.find_map(|(kind, signal)| signal.poll_recv(context).is_ready().then_some(kind)) {
+                Some(kind) => std::task::Poll::Ready(Ok(kind.as_raw_value())),
+                None => std::task::Poll::Pending,
+            }
+        })
+        .await
+    })
+}
+
+/// Elsewhere a program ends when its input does.
+#[cfg(not(unix))]
+pub(super) fn end_programs_when_interrupted() {}
