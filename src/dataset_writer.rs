@@ -1,6 +1,6 @@
 //! What a run and a rendered dataset have in common on disk: everything but measurements and score.
 
-use contract::Direction;
+use contract::{Direction, Frame};
 use hifitime::Epoch;
 use sha2::{Digest, Sha256};
 use sim::truth::{FrameTruth, ObjectTruth, Observer};
@@ -56,11 +56,12 @@ impl DatasetWriter {
         })
     }
 
-    /// Adds a frame to the tables. Its image, if images are kept, was saved by [`save_image`].
+    /// Adds a frame to the tables, and gives back its image, which is not in them: if images are kept, it was saved by
+    /// [`save_image`].
     ///
     /// # Errors
     /// [`FileError`] when a table cannot be written.
-    pub fn add(&mut self, exposure: Exposure) -> Result<(), FileError> {
+    pub fn add(&mut self, exposure: Exposure) -> Result<Frame, FileError> {
         let number = exposure.frame.number();
         self.telemetry.write(&TelemetryRow {
             frame: number,
@@ -69,7 +70,8 @@ impl DatasetWriter {
             windows: exposure.frame.windows().map(<[_]>::to_vec),
         })?;
         self.frames.write([exposure.truth])?;
-        self.objects.write(exposure.objects)
+        self.objects.write(exposure.objects)?;
+        Ok(exposure.frame)
     }
 
     /// Completes the tables, that of the telemetry last: it makes a dataset of the directory.

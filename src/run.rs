@@ -2,9 +2,10 @@
 
 use std::ops::Range;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 use contract::docking::{DockingOutcome, DockingSolution, NoPose};
-use contract::{NoSolution, Outcome, Pipeline, PipelineFactory, Setup, Solution};
+use contract::{Frame, NoSolution, Outcome, Pipeline, PipelineFactory, Setup, Solution};
 use hifitime::Epoch;
 use sim::Simulator;
 use sim::truth::{FrameTruth, ObjectTruth};
@@ -127,9 +128,9 @@ impl Prepared {
     pub fn render(&self, directory: &RunDirectory, flight: &Flight, done: impl Fn()) -> Result<(), Failure> {
         let mut dataset = self.dataset(directory, flight)?;
         self.fly(directory, flight, |exposure| {
-            dataset.add(exposure)?;
+            let frame = dataset.add(exposure)?;
             done();
-            Ok(())
+            Ok(frame)
         })?;
         dataset.finish()?;
         Ok(directory.seal()?)
@@ -168,8 +169,8 @@ impl Prepared {
             };
             answers.add(exposure.frame.number(), &outcome)?;
             scorer.add(&exposure.truth, &exposure.objects, Some(&outcome)).map_err(unscorable)?;
-            dataset.add(exposure)?;
-            go_on()
+            let frame = dataset.add(exposure)?;
+            go_on().map(|()| frame)
         })?;
         dataset.finish()?;
         let first_failure = answers.finish()?;
@@ -214,6 +215,7 @@ impl Prepared {
             let outcome = pipeline.process(&exposure.frame, &exposure.telemetry);
             first_failure = first_failure.or_else(|| FirstFailure::of(frame, &outcome));
             scorer.add(&exposure.truth, &exposure.objects, Some(&outcome)).map_err(unscorable)?;
+            camera.reuse(exposure.frame);
         }
         Ok(Ran { scored: scorer.finish(), first_failure })
     }
@@ -225,13 +227,18 @@ impl Prepared {
         DatasetWriter::create(directory, &self.run_file, &self.stars, self.star_epoch, flight.images)
     }
 
+    /// Makes frames and hands them to `take`, which gives back their images: later ones are made in their memory.
     fn fly(
         &self,
         directory: &RunDirectory,
         flight: &Flight,
-        take: impl FnMut(sim::Exposure) -> Result<(), Failure>,
+        mut take: impl FnMut(sim::Exposure) -> Result<Frame, Failure>,
     ) -> Result<(), Failure> {
+        let spare = Mutex::new(Vec::new());
+        let spares = || spare.lock().unwrap_or_else(PoisonError::into_inner);
         let make = |camera: &mut sim::SimulatedCamera<'_>, frame| {
+            let reused = spares().pop();
+            reused.into_iter().for_each(|frame| camera.reuse(frame));
             let exposure = camera.expose(frame)?;
             if let Some(format) = flight.images {
                 save_image(directory, format, &self.simulator, &self.run_file, &exposure)?;
@@ -244,7 +251,10 @@ impl Prepared {
             }
             Ok(exposure)
         };
-        fly(&self.simulator, flight.frames.clone(), flight.jobs, make, take)
+        fly(&self.simulator, flight.frames.clone(), flight.jobs, make, |exposure| {
+            spares().push(take(exposure)?);
+            Ok(())
+        })
     }
 }
 

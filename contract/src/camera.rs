@@ -151,4 +151,25 @@ mod tests {
         refused("camera.radial", |c| c.radial[2] = 1e300);
         refused("camera.tangential", |c| c.tangential[1] = -2.0);
     }
+
+    #[test]
+    fn a_focal_length_in_pixels_is_that_of_each_direction() {
+        let wide = Camera { pixel_width_um: 8.3, pixel_height_um: 10.0, ..camera() };
+        let (across, along) = wide.focal_length_px();
+        assert!((across - 2915.662_650_6).abs() < 1e-6 && (along - 2420.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_mounting_that_is_no_number_is_named() {
+        Mounting { phi_deg: 400.0, ..Mounting::default() }.check().unwrap();
+        for (field, wrong) in [
+            ("mounting.phi_deg", Mounting { phi_deg: f64::NAN, ..Mounting::default() }),
+            ("mounting.theta_deg", Mounting { theta_deg: f64::INFINITY, ..Mounting::default() }),
+            ("mounting.psi_deg", Mounting { psi_deg: f64::NEG_INFINITY, ..Mounting::default() }),
+        ] {
+            assert!(
+                matches!(wrong.check(), Err(ContractError::OutOfRange { field: named, .. }) if named == field)
+            );
+        }
+    }
 }

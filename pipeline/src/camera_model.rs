@@ -237,6 +237,53 @@ pub(crate) mod tests {
         assert!(model.back_project(PixelPoint::new(395.0 - 386.0, 288.0)).is_none());
     }
 
+    /// x = u s + 2 p1 u v + p2 (r² + 2 u²), y = v s + p1 (r² + 2 v²) + 2 p2 u v with s = 1 + k1 r² + k2 r⁴ + k3 r⁶, worked out apart
+    /// from this code.
+    #[test]
+    fn the_distortion_is_that_of_its_formula() {
+        let camera = Camera { radial: [3e-8, -2e-13, 4e-19], tangential: [5e-7, -8e-7], ..argon_camera() };
+        let model = CameraModel::new(&camera).unwrap();
+        for ((u, v), (x, y)) in [
+            ((300.0, -200.0), (695.111_640_000_000, 87.921_240_000_000)),
+            ((-250.0, 120.0), (144.481_934_839_100, 408.257_591_677_232)),
+        ] {
+            let place = model.place_of_ideal(u, v).unwrap();
+            assert!(place.distance(PixelPoint::new(x, y)) < 1e-9, "{place:?}");
+            let ideal = model.to_ideal(place).unwrap();
+            assert!((ideal.0 - u).abs() < 1e-8 && (ideal.1 - v).abs() < 1e-8, "{ideal:?}");
+            let (fx, fy) = model.focal_px();
+            let direction = Direction::from_vector(Vector3::new(u / fx, v / fy, 1.0)).unwrap();
+            assert!(model.project(&direction).unwrap().distance(place) < 1e-9);
+        }
+        assert_eq!(model.focal_px(), camera.focal_length_px());
+    }
+
+    #[test]
+    fn the_detector_ends_at_the_borders_of_its_outer_pixels() {
+        let model = argon();
+        assert_eq!(model.size_px(), (752, 580));
+        for (x, y, is_on) in
+            [(-0.5, -0.5, true), (751.5, 579.5, true), (-0.6, 3.0, false), (3.0, 579.6, false)]
+        {
+            assert_eq!(model.is_on_detector(PixelPoint::new(x, y)), is_on, "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn the_cone_ends_at_the_corner_that_is_farthest() {
+        let plain = Camera { radial: [0.0; 3], pixel_width_um: 8.0, pixel_height_um: 8.0, ..argon_camera() };
+        let f_px = plain.focal_length_px().0;
+        // The principal point in each quarter: the opposite corner is the far one, 500 by 400 px away.
+        for (x, y) in [(499.5, 399.5), (251.5, 399.5), (499.5, 179.5), (251.5, 179.5)] {
+            let camera = Camera { principal_x_px: x, principal_y_px: y, ..plain.clone() };
+            let cos = CameraModel::new(&camera).unwrap().cos_half_field();
+            let expected = f_px / (f_px * f_px + 500.0 * 500.0 + 400.0 * 400.0).sqrt();
+            assert!((cos - expected).abs() < 1e-12, "{x} {y}: {cos}");
+        }
+        let folded = Camera { radial: [-1e-6, 0.0, 0.0], ..argon_camera() };
+        assert_eq!(CameraModel::new(&folded).unwrap().cos_half_field(), 0.0);
+    }
+
     #[test]
     fn the_cone_holds_every_pixel() {
         let model = argon();

@@ -443,6 +443,42 @@ mod tests {
         assert!(score.figures.values().all(|figure| figure.value.is_some() == (figure.of > 0)));
     }
 
+    #[test]
+    fn every_score_has_the_figures_of_the_list_in_its_order() {
+        assert!(figure_names().iter().eq(score(&day()).figures.keys()) && figure_names().len() == 16);
+    }
+
+    #[test]
+    fn frames_of_a_group_share_its_name_and_no_frame_has_that_of_another() {
+        let mut scorer = scorer();
+        for (number, group) in ["day 1", "day 1", "day 2", "day 1"].into_iter().enumerate() {
+            let truth = FrameTruth { group: group.to_owned(), ..frame(number as u64) };
+            scorer.add(&truth, &[], None).unwrap();
+        }
+        let groups: Vec<_> = scorer.finish().verdicts.into_iter().map(|verdict| verdict.group).collect();
+        assert_eq!(groups, ["day 1", "day 1", "day 2", "day 1"].map(Arc::from));
+        assert!(Arc::ptr_eq(&groups[0], &groups[1]));
+    }
+
+    #[test]
+    fn units_are_the_frames_and_add_up_to_the_figures() {
+        let mut scorer = scorer();
+        for (number, outcome) in day().iter().enumerate() {
+            let truth = frame(number as u64);
+            let objects = [ObjectTruth { frame: truth.frame, ..target_with(1000.0) }];
+            scorer.add(&truth, &objects, outcome.as_ref()).unwrap();
+        }
+        let scored = scorer.finish();
+        let table = scored.units();
+        assert_eq!(
+            table.units.iter().map(|unit| unit.number).collect::<Vec<_>>(),
+            (0..10).collect::<Vec<_>>()
+        );
+        assert_eq!((table.units[6].group.as_str(), table.units[6].verdict.as_str()), ("day 1", "wrong"));
+        assert_eq!(table.units[8].cause.as_deref(), Some("not_reported"));
+        assert_eq!(table.figures.len(), scored.score.figures.len());
+    }
+
     /// The pixel of the hand-made camera is the paper's.
     #[test]
     fn the_hand_made_pixel_is_one_pixel() {

@@ -126,9 +126,20 @@ mod tests {
 
     #[test]
     fn angles_across_the_cut_differ_by_little() {
-        let just = |sign: f64| Vector3::new(sign * 1e-6, 0.0, -1.0);
-        let error = LineOfSightError::between(&just(1.0), &just(-1.0)).unwrap();
-        assert!(error.ra.abs().radians() < 1e-5, "{error:?}");
+        let behind = |x: f64| Vector3::new(x, 0.0, -1.0);
+        let ra = |measured, truth| LineOfSightError::between(&measured, &truth).unwrap().ra.radians();
+        // Seen from the camera's back, what lies to the right has the smaller angle.
+        assert!((ra(behind(1e-6), behind(-1e-6)) + 2e-6).abs() < 1e-12);
+        assert!((ra(behind(-1e-6), behind(1e-6)) - 2e-6).abs() < 1e-12);
+        assert_eq!(ra(behind(0.0), Vector3::z()), std::f64::consts::PI);
+        assert_eq!(ra(Vector3::z(), behind(0.0)), -std::f64::consts::PI);
+    }
+
+    #[test]
+    fn one_angle_that_is_no_number_is_no_error_at_all() {
+        for measured in [Vector3::new(f64::NAN, 0.0, 1.0), Vector3::new(0.0, f64::NAN, 1.0)] {
+            assert_eq!(LineOfSightError::between(&measured, &Vector3::z()), None);
+        }
     }
 
     #[test]

@@ -74,6 +74,8 @@ pub struct Table2Distance {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::score::{Figure, GroupScore};
+    use indexmap::IndexMap;
 
     /// The days weighted by their images must give the last column: a check of the transcription.
     #[test]
@@ -91,6 +93,64 @@ mod tests {
         for rates in [table.ra_within_1px, table.ra_within_2px, table.dec_within_1px, table.dec_within_2px] {
             assert!(all(detected, rates) < 0.01, "{rates:?}");
         }
+    }
+
+    /// A score whose cells are those of the table, but for what `off` adds to a figure of a column, in points.
+    fn score(off: impl Fn(&str, usize) -> f64) -> Score {
+        let figure = |points: f64| {
+            let value = Some(points / 100.0);
+            Figure { value, count: 0, of: 1, effective: 1.0, low: None, high: None }
+        };
+        let figures = |column: usize| {
+            let of = |(name, rates): (&str, [f64; 6])| {
+                (name.to_owned(), figure(rates[column] + off(name, column)))
+            };
+            ARGON_TABLE_2.rates().map(of).into_iter().collect::<IndexMap<_, _>>()
+        };
+        let group = |day| GroupScore {
+            frames: 1,
+            figures: figures(day),
+            misses: IndexMap::new(),
+            wrong: IndexMap::new(),
+            wrong_taken: IndexMap::new(),
+        };
+        Score {
+            scenario: "argon".to_owned(),
+            seed: 1,
+            version: "0.1.0".to_owned(),
+            inject: None,
+            frames: 5,
+            figures: figures(5),
+            groups: (0..5).map(|day| (format!("day {day}"), group(day))).collect(),
+            misses: IndexMap::new(),
+            wrong: IndexMap::new(),
+            wrong_taken: IndexMap::new(),
+        }
+    }
+
+    #[test]
+    fn the_distance_is_the_mean_and_the_worst_of_thirty_cells() {
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+        let own = ARGON_TABLE_2.distance(&score(|_, _| 0.0)).unwrap();
+        assert!(near(own.mean_points, 0.0) && near(own.worst_points, 0.0), "{own:?}");
+        // Two cells, one too low and one of the whole too high.
+        let off = |name: &str, column: usize| match (name, column) {
+            (names::HIT_RATE, 2) => -6.0,
+            (names::DEC_WITHIN_2PX, 5) => 1.5,
+            _ => 0.0,
+        };
+        let distance = ARGON_TABLE_2.distance(&score(off)).unwrap();
+        assert!(near(distance.mean_points, 0.25) && near(distance.worst_points, 6.0), "{distance:?}");
+    }
+
+    #[test]
+    fn a_score_of_other_days_or_with_an_empty_cell_has_no_distance() {
+        let mut four = score(|_, _| 0.0);
+        four.groups.pop();
+        assert_eq!(ARGON_TABLE_2.distance(&four), None);
+        let mut empty = score(|_, _| 0.0);
+        empty.figures[names::HIT_RATE].value = None;
+        assert_eq!(ARGON_TABLE_2.distance(&empty), None);
     }
 
     /// The script that fits the scenario has the table too, without its last column.

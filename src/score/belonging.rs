@@ -86,6 +86,19 @@ mod tests {
         PixelPoint::new(CENTRE.x + x_px, CENTRE.y + y_px)
     }
 
+    #[test]
+    fn what_regions_cut_away_entirely_is_nobodys() {
+        let cut = ObjectTruth { cut: 1.0, ..star_at(1, CENTRE, 1000.0) };
+        assert_eq!(belonging_to(CENTRE, std::slice::from_ref(&cut)), None);
+        assert_eq!(merged_with(&target_with(100.0), &[cut]), None);
+    }
+
+    #[test]
+    fn of_equals_the_first_is_the_brightest() {
+        let stars = [1, 2, 3].map(|id| star_at(id, CENTRE, if id == 1 { 10.0 } else { 20.0 }));
+        assert_eq!(brightest(stars.iter()).map(|star| star.id), Some(2));
+    }
+
     /// A star that bleeds 40 px up and down from the centre.
     fn bleeding() -> ObjectTruth {
         ObjectTruth { radius_px: 6.0, bloom_px: 34.0, ..star_at(3, CENTRE, 1e6) }

@@ -233,6 +233,12 @@ mod tests {
     }
 
     #[test]
+    fn a_hot_pixel_beside_it_does_not_excuse_a_target_that_is_called_a_star() {
+        let hot_pixel = hot_pixel_at(3, right_of_target(1.0), 5000.0);
+        assert_eq!(of(&labelled(Label::Star(7)), &[hot_pixel]), Cause::TakenForStar);
+    }
+
+    #[test]
     fn a_frame_without_a_row_is_not_reported() {
         assert_eq!(cause(&frame(0), &[target_with(1000.0)], None, DETECTOR), Cause::NotReported);
     }
@@ -262,7 +268,8 @@ mod tests {
 
     #[test]
     fn a_target_mostly_outside_the_windows_is_cut() {
-        for (cut, expected) in [(0.6, Cause::CutByRoi), (0.4, Cause::Unexplained)] {
+        for (cut, expected) in [(0.6, Cause::CutByRoi), (0.5, Cause::Unexplained), (0.4, Cause::Unexplained)]
+        {
             let target = ObjectTruth { cut, ..target_with(1000.0) };
             assert_eq!(cause(&frame(0), &[target], Some(&no_target()), DETECTOR), expected);
         }

@@ -147,3 +147,26 @@ pub struct UnitTable {
     /// What they say of each figure.
     pub figures: Vec<FigureTerms>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reduction_comes_back_from_its_word() {
+        assert_eq!(Reduction::ALL.map(Reduction::code), ["rate", "mean", "rms", "median"]);
+        assert_eq!(
+            Reduction::ALL.map(|reduction| Reduction::parse(reduction.code())),
+            Reduction::ALL.map(Some)
+        );
+        assert_eq!(Reduction::parse("mode"), None);
+    }
+
+    #[test]
+    fn a_unit_adds_the_sum_of_its_values_and_their_number() {
+        let definition =
+            Definition::pooled("held", |unit: &u32, values| values.extend((0..*unit).map(f64::from)));
+        assert_eq!(definition.term(&4), Term { sum: 6.0, of: 4 });
+        assert_eq!(definition.term(&0), Term { sum: 0.0, of: 0 });
+    }
+}

@@ -256,9 +256,10 @@ fn taken(object: &ObjectTruth) -> Taken {
 mod tests {
     use super::*;
     use crate::score::hand_made::{
-        CENTRE, COLUMNS, ROWS, cosmic_ray_at, detected_at, frame, hot_pixel_at, star_at, target_with,
-        unproject,
+        CENTRE, COLUMNS, ROWS, cluster, cosmic_ray_at, detected_at, frame, hot_pixel_at, star_at,
+        target_with, unproject,
     };
+    use contract::Label;
 
     fn verdict(objects: &[ObjectTruth], outcome: &Outcome) -> Verdict {
         judge(&frame(0), objects, Some(outcome), Detector { columns: COLUMNS, rows: ROWS }, &unproject)
@@ -352,6 +353,35 @@ mod tests {
             &|_| None,
         );
         assert_eq!(nowhere, missed);
+    }
+
+    #[test]
+    fn what_was_taken_has_a_word_and_a_number_in_files() {
+        let taken = [
+            Taken::Star(7),
+            Taken::Planet(5),
+            Taken::Moon,
+            Taken::HotPixel(99),
+            Taken::CosmicRay(2),
+            Taken::Nothing,
+        ];
+        let words = ["star", "planet", "moon", "hot_pixel", "cosmic_ray", "nothing"];
+        assert_eq!(taken.map(Taken::code), words);
+        assert_eq!(taken.map(Taken::id), [Some(7), Some(5), Some(0), Some(99), Some(2), None]);
+    }
+
+    /// Outshone is who is there and has less than another: what the pipeline says of the cluster does not count then.
+    #[test]
+    fn a_target_outshone_by_a_star_is_merged_whatever_its_cluster_is_called() {
+        let place = right_of_target(0.5);
+        let answer = Outcome { clusters: vec![cluster(place, Label::Candidate)], ..detected_at(place) };
+        let cause = |target| match verdict(&[target, star_at(7, right_of_target(1.0), 3000.0)], &answer) {
+            Verdict::Wrong { cause, .. } => cause,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(cause(target_with(1000.0)), Cause::MergedWithStar);
+        // Without light it is not there, and the reason is sought elsewhere.
+        assert_eq!(cause(target_with(0.0)), Cause::LostMotionTest);
     }
 
     #[test]

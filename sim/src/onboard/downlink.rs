@@ -8,16 +8,28 @@ use crate::sensor::RawImage;
 /// Bytes that say where a region is: its first column and row, its columns and rows, two bytes each.
 const REGION_HEADER_BYTES: usize = 8;
 
-/// The frame that arrives: with `windows`, every pixel outside them is 0; without, the whole image.
+/// The frame that arrives: with `windows`, every pixel outside them is 0; without, the whole image. It is made in the memory of `spare`,
+/// where there is one of the same size.
 ///
 /// # Errors
 /// [`SimError::Contract`] when a window leaves the image.
-pub fn downlink(image: &RawImage, number: u64, windows: Option<Vec<Window>>) -> Result<Frame, SimError> {
+pub fn downlink(
+    image: &RawImage,
+    number: u64,
+    windows: Option<Vec<Window>>,
+    spare: Option<Frame>,
+) -> Result<Frame, SimError> {
     let (columns, rows) = image.size();
-    let dn = match &windows {
-        None => image.dn().to_vec(),
-        Some(windows) => {
-            let mut dn = vec![0; columns * rows];
+    let spare = spare.filter(|frame| (frame.columns(), frame.rows()) == (columns, rows));
+    let dn = match (&windows, spare) {
+        (None, None) => image.dn().to_vec(),
+        (None, Some(frame)) => {
+            let mut dn = frame.into_dn();
+            dn.copy_from_slice(image.dn());
+            dn
+        }
+        (Some(windows), spare) => {
+            let mut dn = spare.map_or_else(|| vec![0; columns * rows], blank);
             for window in windows {
                 for y in window.y..window.y.saturating_add(window.rows).min(rows) {
                     let from = y * columns + window.x.min(columns);
@@ -29,6 +41,22 @@ pub fn downlink(image: &RawImage, number: u64, windows: Option<Vec<Window>>) -> 
         }
     };
     Ok(Frame::new(number, columns, rows, image.bit_depth(), dn, windows)?)
+}
+
+/// The memory of a frame, all zeros: where it had regions, nothing but them has to be cleared.
+fn blank(frame: Frame) -> Vec<u16> {
+    let columns = frame.columns();
+    let windows = frame.windows().map(<[_]>::to_vec);
+    let mut dn = frame.into_dn();
+    match windows {
+        None => dn.fill(0),
+        Some(windows) => {
+            for Window { x, y, columns: width, rows } in windows {
+                (y..y + rows).for_each(|y| dn[y * columns + x..y * columns + x + width].fill(0));
+            }
+        }
+    }
+    dn
 }
 
 /// Size of a frame in telemetry, bytes: the pixels of each region, packed to the bits of the converter and filled up
@@ -64,7 +92,7 @@ mod tests {
     fn outside_the_regions_everything_is_zero() {
         let windows =
             vec![Window { x: 2, y: 1, columns: 3, rows: 2 }, Window { x: 4, y: 2, columns: 6, rows: 3 }];
-        let frame = downlink(&image(), 7, Some(windows.clone())).unwrap();
+        let frame = downlink(&image(), 7, Some(windows.clone()), None).unwrap();
         for y in 0..5 {
             for x in 0..10 {
                 let sent = windows.iter().any(|window| window.contains(x, y));
@@ -77,16 +105,33 @@ mod tests {
 
     #[test]
     fn without_regions_the_whole_image_arrives() {
-        let frame = downlink(&image(), 7, None).unwrap();
+        let frame = downlink(&image(), 7, None, None).unwrap();
         assert_eq!((frame.number(), frame.dn()), (7, image().dn()));
         assert_eq!(downlink_bytes(&frame), 75);
+    }
+
+    #[test]
+    fn a_frame_in_the_memory_of_another_is_that_in_memory_of_its_own() {
+        let windows = |x, y| {
+            Some(vec![Window { x, y, columns: 3, rows: 2 }, Window { x: 7, y: 0, columns: 3, rows: 5 }])
+        };
+        let kinds = [None, windows(0, 0), windows(2, 3), Some(Vec::new())];
+        let made =
+            |windows: &Option<Vec<Window>>, spare| downlink(&image(), 7, windows.clone(), spare).unwrap();
+        for before in &kinds {
+            for after in &kinds {
+                assert_eq!(made(after, Some(made(before, None))), made(after, None));
+            }
+        }
+        let other = downlink(&RawImage::from_dn(5, 10, 12, vec![3; 50]), 1, None, None).unwrap();
+        assert_eq!(made(&kinds[1], Some(other)), made(&kinds[1], None));
     }
 
     #[test]
     fn a_region_outside_the_image_is_refused() {
         for (x, y) in [(8, 0), (0, 5), (1 << 40, 1 << 20)] {
             let window = Window { x, y, columns: 3, rows: 1 };
-            assert!(downlink(&image(), 0, Some(vec![window])).is_err());
+            assert!(downlink(&image(), 0, Some(vec![window]), None).is_err());
         }
     }
 }

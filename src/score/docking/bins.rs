@@ -61,7 +61,8 @@ mod tests {
     #[test]
     fn a_lens_goes_by_its_field_of_view() {
         let (narrow, wide) = (camera(2917.0), camera(1055.0));
-        assert_eq!(lens_names(&[narrow.clone(), wide]), ["15.0°", "40.0°"]);
-        assert_eq!(lens_names(&[narrow.clone(), narrow]), ["15.0° (0)", "15.0° (1)"]);
+        assert_eq!(lens_names(&[narrow.clone(), wide.clone()]), ["15.0°", "40.0°"]);
+        assert_eq!(lens_names(&[narrow.clone(), narrow.clone()]), ["15.0° (0)", "15.0° (1)"]);
+        assert_eq!(lens_names(&[narrow.clone(), wide, narrow]), ["15.0° (0)", "40.0°", "15.0° (2)"]);
     }
 }

@@ -5,6 +5,10 @@ use super::*;
 use crate::score::docking::hand_made::{ahead, field, measured, range_only, setup};
 
 fn score(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScore {
+    scored(fields).finish()
+}
+
+fn scored(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScorer {
     let context = DockingContext {
         scenario: "hand-made".to_owned(),
         seed: 42,
@@ -16,7 +20,7 @@ fn score(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScore {
     for (truth, outcome) in fields {
         scorer.add(truth, outcome.as_ref()).unwrap();
     }
-    scorer.finish()
+    scorer
 }
 
 fn at(d: [f64; 3], phi: [f64; 3]) -> Option<DockingOutcome> {
@@ -160,6 +164,53 @@ fn silence_after_a_report_is_told() {
     fields[9].1.as_mut().unwrap().motion = Some(report(time_s, 10.0));
     let figure = score(&fields).figures[names::RENEWED_WITHIN_1S];
     assert_eq!((figure.count, figure.of), (9, 29));
+}
+
+/// A field between the measured ones is part of the portion that they make.
+#[test]
+fn a_portion_counts_the_fields_that_were_missed_in_it() {
+    let mut fields: Vec<_> = (0..8).map(|i| (field(i, 10.0), at([0.0, 0.0, 10.0], [0.0; 3]))).collect();
+    for missed in [0, 3, 4] {
+        fields[missed].1 = None;
+    }
+    fields[7].1.as_mut().unwrap().motion = Some(report(fields[7].0.time_s, 10.0));
+    assert_eq!(value(&score(&fields), names::PORTION_LATENCY_FIELDS), 7.0);
+}
+
+#[test]
+fn the_latency_is_from_the_first_clear_field_to_the_first_success() {
+    let missed = |number| (field(number, 10.0), None);
+    let right = |number| (field(number, 10.0), at([0.0, 0.0, 10.0], [0.0; 3]));
+    let of = |fields: &[_]| score(fields).figures[names::LATENCY_FIELDS].value;
+    let hidden = (TrueField { view: View::Part, ..field(0, 10.0) }, None);
+    assert_eq!(of(&[hidden, missed(1), missed(2), missed(3), right(4)]), Some(3.0));
+    assert_eq!(of(&[right(0), missed(1)]), Some(0.0));
+    assert_eq!(of(&[missed(0), missed(1)]), None);
+}
+
+/// A bar of 3 cm is resolved at 10 m, and not at 300 m.
+#[test]
+fn a_field_is_clear_when_the_target_is_whole_and_resolved() {
+    let fields = [(View::Whole, 10.0), (View::Part, 10.0), (View::Whole, 300.0), (View::Outside, 300.0)];
+    let fields: Vec<_> = (0..)
+        .zip(fields)
+        .map(|(number, (view, range_m))| (TrueField { view, ..field(number, range_m) }, None))
+        .collect();
+    assert_eq!(score(&fields).figures[names::CLEAR_SUCCESS_RATE].of, 1);
+}
+
+#[test]
+fn units_are_the_fields_with_their_verdicts_and_causes() {
+    let table = scored(&mixed()).units();
+    let told: Vec<_> =
+        table.units.iter().map(|unit| (unit.verdict.as_str(), unit.cause.as_deref())).collect();
+    assert_eq!(told[..2], [("missed", Some("no_target")), ("success", None)]);
+    assert_eq!(told[4..7], [("wrong", Some("range")), ("wrong", Some("roll")), ("range_only", None)]);
+    assert!(table.units.iter().map(|unit| unit.number).eq(0..10));
+    assert!(table.units.iter().all(|unit| unit.group == "10–5 m, 15.0°"), "{:?}", table.units[0].group);
+    let names: Vec<_> = table.figures.iter().map(|figure| figure.name.clone()).collect();
+    assert_eq!(figure_names()[..names.len()], names);
+    assert!(figure_names().iter().eq(score(&mixed()).figures.keys()));
 }
 
 /// Two misses, then portions of ten fields at 50 fields a second, the tenth of each with a report.
