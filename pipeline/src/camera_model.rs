@@ -121,10 +121,23 @@ impl CameraModel {
         )
     }
 
-    /// Newton's method on [`CameraModel::distort`], started at the distorted offset.
-    fn undistort(&self, x: f64, y: f64) -> Option<(f64, f64)> {
+    /// The derivatives of [`CameraModel::distort`]: of its first coordinate by u, of either by the other, of its second by v.
+    fn slopes(&self, u: f64, v: f64) -> (f64, f64, f64) {
         let [k1, k2, k3] = self.radial;
         let [p1, p2] = self.tangential;
+        let r2 = u * u + v * v;
+        let scale = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+        // d(scale)/d(r²), so that d(scale)/du = 2 u slope.
+        let slope = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3);
+        (
+            scale + 2.0 * u * u * slope + 2.0 * p1 * v + 6.0 * p2 * u,
+            2.0 * u * v * slope + 2.0 * p1 * u + 2.0 * p2 * v,
+            scale + 2.0 * v * v * slope + 6.0 * p1 * v + 2.0 * p2 * u,
+        )
+    }
+
+    /// Newton's method on [`CameraModel::distort`], started at the distorted offset.
+    fn undistort(&self, x: f64, y: f64) -> Option<(f64, f64)> {
         let (mut u, mut v) = (x, y);
         for _ in 0..MAX_NEWTON_STEPS {
             let (du, dv) = self.distort(u, v);
@@ -132,13 +145,7 @@ impl CameraModel {
             if rx.abs() + ry.abs() <= 1e-13 * (1.0 + x.abs() + y.abs()) {
                 break;
             }
-            let r2 = u * u + v * v;
-            let scale = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-            // d(scale)/d(r²), so that d(scale)/du = 2 u slope.
-            let slope = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3);
-            let a = scale + 2.0 * u * u * slope + 2.0 * p1 * v + 6.0 * p2 * u;
-            let b = 2.0 * u * v * slope + 2.0 * p1 * u + 2.0 * p2 * v;
-            let d = scale + 2.0 * v * v * slope + 6.0 * p1 * v + 2.0 * p2 * u;
+            let (a, b, d) = self.slopes(u, v);
             let determinant = a * d - b * b;
             u += (d * rx - b * ry) / determinant;
             v += (a * ry - b * rx) / determinant;
@@ -256,6 +263,26 @@ pub(crate) mod tests {
             assert!(model.project(&direction).unwrap().distance(place) < 1e-9);
         }
         assert_eq!(model.focal_px(), camera.focal_length_px());
+    }
+
+    /// A wrong slope finds the same inverse, in more steps: so the slopes are held against differences.
+    #[test]
+    fn the_slopes_are_those_of_the_distortion() {
+        let camera = Camera { radial: [3e-7, -2e-12, 4e-18], tangential: [5e-5, -8e-5], ..argon_camera() };
+        let model = CameraModel::new(&camera).unwrap();
+        for (u, v) in [(310.0, -200.0), (-250.0, 120.0), (40.0, 390.0)] {
+            let h = 1e-3;
+            let difference = |step: (f64, f64)| {
+                let (above, below) =
+                    (model.distort(u + step.0, v + step.1), model.distort(u - step.0, v - step.1));
+                ((above.0 - below.0) / (2.0 * h), (above.1 - below.1) / (2.0 * h))
+            };
+            let ((xu, yu), (xv, yv)) = (difference((h, 0.0)), difference((0.0, h)));
+            let (a, b, d) = model.slopes(u, v);
+            for (slope, expected) in [(a, xu), (b, yu), (b, xv), (d, yv)] {
+                assert!((slope - expected).abs() < 1e-8, "{u} {v}: {slope}, expected {expected}");
+            }
+        }
     }
 
     #[test]

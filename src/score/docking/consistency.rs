@@ -58,7 +58,7 @@ pub fn within_3_sigma(error: f64, sigma: f64) -> Option<bool> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Matrix2, Matrix6, Vector2, Vector6};
+    use nalgebra::{Matrix2, Matrix3, Matrix6, Vector2, Vector3, Vector6};
     use sim::randomness::{Effect, Seed, normal};
 
     use super::*;
@@ -68,6 +68,20 @@ mod tests {
         let error = Vector2::new(3.0, -0.1);
         let value = nees(&error, &Matrix2::new(4.0, 0.0, 0.0, 0.01)).unwrap();
         assert!((value - (2.25 + 1.0) / 2.0).abs() < 1e-15);
+    }
+
+    /// Worked out in fractions: eᵀ P⁻¹ e = 1473/479.
+    #[test]
+    fn three_correlated_errors_count_as_worked_out_in_fractions() {
+        let covariance = Matrix3::new(4.0, 2.0, 1.0, 2.0, 9.0, 3.0, 1.0, 3.0, 16.0);
+        let value = nees(&Vector3::new(1.0, -2.0, 5.0), &covariance).unwrap();
+        assert!((value - 1473.0 / 479.0 / 3.0).abs() < 1e-14, "{value}");
+    }
+
+    #[test]
+    fn errors_that_are_said_to_go_together_exactly_say_nothing() {
+        assert_eq!(nees(&Vector2::new(1.0, 1.0), &Matrix2::new(1.0, 1.0, 1.0, 1.0)), None);
+        assert_eq!(nees(&Vector2::new(1.0, 1.0), &Matrix2::new(1.0, f64::NAN, f64::NAN, 1.0)), None);
     }
 
     /// For correlation c: (x² − 2 c x y + y²)/(1 − c²)/2, in closed form.

@@ -147,4 +147,14 @@ mod tests {
         assert_eq!(errors.lateral_m, 0.5);
         assert!((errors.beta_rad - turn).abs() < 1e-15);
     }
+
+    /// The same across rows: of a camera at d2 the origin is at x2/x3 = d2/d3 + φ1.
+    #[test]
+    fn a_step_up_with_the_turn_that_hides_it_is_a_tilt_and_no_displacement() {
+        let turn = libm::atan2(0.5, 10.0);
+        let errors =
+            PoseErrors::new(&pose([0.0, 0.5, 10.0], [-turn, 0.0, 0.0]), &pose([0.0, 0.0, 10.0], [0.0; 3]));
+        assert!(errors.place_rad < 1e-15 && (errors.tilt_rad - turn).abs() < 1e-15, "{errors:?}");
+        assert_eq!(errors.lateral_m, 0.5);
+    }
 }

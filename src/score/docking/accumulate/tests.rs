@@ -93,6 +93,7 @@ fn errors_of_the_right_fields_have_their_closed_forms() {
         (names::RANGE_RMS_M, rms(0.03 * 0.03 + range * range)),
         (names::LATERAL_RMS_M, rms(0.05 * 0.05)),
         (names::ATTITUDE_RMS_DEG, rms(0.02 * 0.02).to_degrees()),
+        ("range_rms_relative", rms(0.003 * 0.003 + range * range / 100.0)),
         ("d1_rms_m", rms(0.03 * 0.03)),
         ("phi3_rms_deg", rms(0.02 * 0.02).to_degrees()),
         // Errors over the standard deviation of 0.01 in each: 0; 3 and 4; 3 and 2.
