@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use crate::draw::ExpectedImage;
 use crate::moment::Moment;
-use crate::onboard::{RoiExtractor, downlink};
+use crate::onboard::{RoiExtractor, downlink_in};
 use crate::optics::{ImagePoint, Stamp};
 use crate::painter::Painter;
 use crate::scene::{CameraMotion, Source, planets};
@@ -160,7 +160,7 @@ impl<'a> SimulatedCamera<'a> {
             number,
             exposure_s,
         );
-        let frame = downlink(self.raw.raw(), number, windows, self.spare.take())?;
+        let frame = downlink_in(self.spare.take(), self.raw.raw(), number, windows)?;
         Ok(Exposure { frame, telemetry, truth, objects })
     }
 

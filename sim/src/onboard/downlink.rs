@@ -8,16 +8,23 @@ use crate::sensor::RawImage;
 /// Bytes that say where a region is: its first column and row, its columns and rows, two bytes each.
 const REGION_HEADER_BYTES: usize = 8;
 
-/// The frame that arrives: with `windows`, every pixel outside them is 0; without, the whole image. It is made in the memory of `spare`,
-/// where there is one of the same size.
+/// The frame that arrives: with `windows`, every pixel outside them is 0; without, the whole image.
 ///
 /// # Errors
 /// [`SimError::Contract`] when a window leaves the image.
-pub fn downlink(
+pub fn downlink(image: &RawImage, number: u64, windows: Option<Vec<Window>>) -> Result<Frame, SimError> {
+    downlink_in(None, image, number, windows)
+}
+
+/// [`downlink`] in the memory of `spare`, where there is one of the same size.
+///
+/// # Errors
+/// As [`downlink`].
+pub(crate) fn downlink_in(
+    spare: Option<Frame>,
     image: &RawImage,
     number: u64,
     windows: Option<Vec<Window>>,
-    spare: Option<Frame>,
 ) -> Result<Frame, SimError> {
     let (columns, rows) = image.size();
     let spare = spare.filter(|frame| (frame.columns(), frame.rows()) == (columns, rows));
@@ -92,7 +99,7 @@ mod tests {
     fn outside_the_regions_everything_is_zero() {
         let windows =
             vec![Window { x: 2, y: 1, columns: 3, rows: 2 }, Window { x: 4, y: 2, columns: 6, rows: 3 }];
-        let frame = downlink(&image(), 7, Some(windows.clone()), None).unwrap();
+        let frame = downlink(&image(), 7, Some(windows.clone())).unwrap();
         for y in 0..5 {
             for x in 0..10 {
                 let sent = windows.iter().any(|window| window.contains(x, y));
@@ -105,7 +112,7 @@ mod tests {
 
     #[test]
     fn without_regions_the_whole_image_arrives() {
-        let frame = downlink(&image(), 7, None, None).unwrap();
+        let frame = downlink(&image(), 7, None).unwrap();
         assert_eq!((frame.number(), frame.dn()), (7, image().dn()));
         assert_eq!(downlink_bytes(&frame), 75);
     }
@@ -117,13 +124,13 @@ mod tests {
         };
         let kinds = [None, windows(0, 0), windows(2, 3), Some(Vec::new())];
         let made =
-            |windows: &Option<Vec<Window>>, spare| downlink(&image(), 7, windows.clone(), spare).unwrap();
+            |windows: &Option<Vec<Window>>, spare| downlink_in(spare, &image(), 7, windows.clone()).unwrap();
         for before in &kinds {
             for after in &kinds {
                 assert_eq!(made(after, Some(made(before, None))), made(after, None));
             }
         }
-        let other = downlink(&RawImage::from_dn(5, 10, 12, vec![3; 50]), 1, None, None).unwrap();
+        let other = downlink(&RawImage::from_dn(5, 10, 12, vec![3; 50]), 1, None).unwrap();
         assert_eq!(made(&kinds[1], Some(other)), made(&kinds[1], None));
     }
 
@@ -131,7 +138,7 @@ mod tests {
     fn a_region_outside_the_image_is_refused() {
         for (x, y) in [(8, 0), (0, 5), (1 << 40, 1 << 20)] {
             let window = Window { x, y, columns: 3, rows: 1 };
-            assert!(downlink(&image(), 0, Some(vec![window]), None).is_err());
+            assert!(downlink(&image(), 0, Some(vec![window])).is_err());
         }
     }
 }

@@ -4,6 +4,7 @@ mod downlink;
 mod roi;
 mod shutter;
 
+pub(crate) use downlink::downlink_in;
 pub use downlink::{downlink, downlink_bytes, image_bytes};
 pub use roi::{RoiConfig, RoiExtractor, ScanOrder};
 pub use shutter::{Shutter, ShutterConfig};

@@ -320,7 +320,7 @@ mod tests {
             let image = RawImage::from_dn(100, 50, bit_depth, dn);
             let found = RoiExtractor::new(&config, 100, 50).unwrap().extract(&image);
             assert_eq!(found.len(), 10);
-            let frame = crate::onboard::downlink(&image, 0, Some(found), None).unwrap();
+            let frame = crate::onboard::downlink(&image, 0, Some(found)).unwrap();
             assert_eq!(config.budget_bytes(bit_depth), crate::onboard::downlink_bytes(&frame));
         }
         // Ten of 8 bytes and 48 pixels of 12 bits.

@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""Mutation testing (cargo-mutants) of what an oracle must not have wrong: score, statistics, astrometry, cameras, attitude.
+
+A mutant is compiled in seconds instead of minutes, because every crate is pruned to the modules in question and what they need,
+in a copy of the tree; a module sees the same code, and is tested by its own tests. Survivors that are no faults are argued away in
+`.cargo/mutants.toml`.
+
+    python3 tests/mutants/run.py                  every group; exit 1 when a mutant survives
+    python3 tests/mutants/run.py score sim        some
+    python3 tests/mutants/run.py --list           the groups and how many mutants they have
+
+Needs cargo-mutants 27 (`cargo install --locked cargo-mutants@27.1.0`). What became of each mutant is in target/mutants/GROUP/mutants.out.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+# By group: package, files, further tests than those of the library, words that choose tests and words that leave tests out.
+GROUPS = {
+    "score": ("boresight", ["src/score/**"], [], ["score::"], []),
+    # Laws of intervals are tried by thousands of samples, which without optimisation takes a minute.
+    "statistics": ("boresight", ["src/statistics/**"], [], ["statistics::"], ["covers_the_truth", "wild_laws", "cover_the_truth"]),
+    "contract": ("boresight-contract", ["contract/src/camera.rs"], [], ["camera"], []),
+    "sim": (
+        "boresight-sim",
+        ["sim/src/optics/projection.rs", "sim/src/truth/apparent.rs"],
+        ["golden_apparent"],
+        ["projection", "apparent"],
+        [],
+    ),
+    "pipeline": (
+        "boresight-pipeline",
+        [f"pipeline/src/{name}.rs" for name in ("camera_model", "far_range/aberration", "far_range/attitude", "far_range/line_of_sight")],
+        [],
+        [],
+        [],
+    ),
+}
+
+# What is left of the module trees.
+PRUNED = {
+    "src/lib.rs": "pub mod score;\npub mod statistics;",
+    "sim/src/lib.rs": "pub mod catalog;\nmod constants;\nmod error;\npub mod optics;\npub mod regular_file;\npub mod truth;\npub use error::SimError;",
+    "sim/src/optics/mod.rs": "mod projection;\npub use projection::*;",
+    "sim/src/truth/mod.rs": "mod apparent;\npub mod clock;\npub mod ecliptic;\npub mod ephemeris;\nmod kepler;\nmod planets;\n"
+    "pub use apparent::{Observer, StarMotion, aberrate, deflect, unaberrate};\npub use planets::{Planet, PlanetSight};",
+    "pipeline/src/lib.rs": "mod camera_model;\nmod error;\npub mod far_range;\npub use camera_model::CameraModel;\npub use error::PipelineError;",
+    "pipeline/src/far_range/mod.rs": "mod aberration;\nmod attitude;\nmod line_of_sight;\n"
+    "pub use aberration::aberration_correction;\npub use attitude::{AttitudeConfig, StarWeights};",
+}
+# score and statistics use types of the whole simulator, astrometry and optics nothing of it: two trees.
+WHOLE = {"boresight": ("sim/", "pipeline/"), "boresight-contract": ("sim/", "pipeline/"), "boresight-sim": (), "boresight-pipeline": ("sim/",)}
+
+
+def prune(tree: Path, group: str) -> None:
+    """Makes `tree` the pruned copy that a group is tested in."""
+    package, _, tests, _, _ = GROUPS[group]
+    shutil.rmtree(tree, ignore_errors=True)
+    listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True, capture_output=True)
+    for name in listed.stdout.decode().split("\0"):
+        first, *rest = Path(name).parts or [""]
+        inner = rest[0] if first in ("contract", "sim", "pipeline") and rest else first
+        is_test = inner == "tests" and Path(name).stem not in tests
+        if not name or is_test or inner in ("benches", "examples") or first in ("python", "fuzz", "monitor", "docs") or not (ROOT / name).is_file():
+            continue
+        if name in ("src/main.rs", "build.rs"):
+            continue
+        (tree / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(ROOT / name, tree / name)
+    for name, text in PRUNED.items():
+        if not name.startswith(WHOLE[package]):
+            (tree / name).write_text(f"//! Pruned.\n#![allow(missing_docs, dead_code, unused, unreachable_pub)]\n{text}\n" if name.endswith("lib.rs") else f"//! Pruned.\n{text}\n")
+    for manifest in tree.rglob("Cargo.toml"):
+        text = re.sub(r"\[\[bench\]\][^\[]*", "", manifest.read_text())
+        manifest.write_text(text.replace(', "python", "fuzz"', "").replace('default-run = "boresight"\n', ""))
+
+
+def run(group: str, tree: Path, arguments: list[str]) -> int:
+    package, files, tests, chosen, skipped = GROUPS[group]
+    cargo = ["--cargo-arg=--lib"] + [f"--cargo-arg={word}" for test in tests for word in ("--test", test)]
+    files = [word for file in files for word in ("-f", file)]
+    filters = chosen + [word for name in skipped for word in ("--skip", name)]
+    command = ["cargo", "mutants", "-d", str(tree), "--package", package, *files, *arguments]
+    if "--list" not in arguments:
+        command += ["--timeout", "120", "--no-shuffle", "--output", str(tree.parent / group), *cargo, "--", "--", *filters]
+    environment = os.environ | {"CARGO_PROFILE_DEV_OPT_LEVEL": "0", "CARGO_PROFILE_DEV_DEBUG": "false"}
+    environment.pop("CARGO_TARGET_DIR", None)  # a target directory that is shared would take one mutant for another
+    return subprocess.run(command, env=environment).returncode
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Mutation testing of score, statistics, astrometry, cameras and attitude.")
+    parser.add_argument("groups", nargs="*", metavar="GROUP", help=f"of {', '.join(GROUPS)} (all)")
+    parser.add_argument("--list", action="store_true", help="only what there is to test")
+    options = parser.parse_args()
+    for group in options.groups:
+        if group not in GROUPS:
+            parser.error(f"`{group}` is no group, expected one of {', '.join(GROUPS)}")
+    if shutil.which("cargo-mutants") is None:
+        sys.exit("cargo-mutants is not installed: cargo install --locked cargo-mutants@27.1.0")
+    folder = ROOT / "target" / "mutants"
+    failed = []
+    for group in options.groups or GROUPS:
+        print(f"{group}:", flush=True)
+        prune(folder / "tree", group)
+        if run(group, folder / "tree", ["--list"] if options.list else []):
+            failed.append(group)
+    if failed:
+        print(f"mutants survive in: {', '.join(failed)}")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
