@@ -156,7 +156,7 @@ mod tests {
     fn a_focal_length_in_pixels_is_that_of_each_direction() {
         let wide = Camera { pixel_width_um: 8.3, pixel_height_um: 10.0, ..camera() };
         let (across, along) = wide.focal_length_px();
-        assert!((across - 2915.662_650_6).abs() < 1e-6 && (along - 2420.0).abs() < 1e-9);
+        assert!((across - 2_915.662_650_6).abs() < 1e-6 && (along - 2420.0).abs() < 1e-9);
     }
 
     #[test]
