@@ -89,6 +89,20 @@ mod tests {
             .collect()
     }
 
+    /// Worked out apart from this code, by the definition above.
+    #[test]
+    fn short_series_count_as_worked_out_by_the_definition() {
+        let a = vec![5.0, 6.0, 8.0, 7.0, 9.0, 4.0, 3.0, 5.0, 4.0, 2.0, 3.0, 6.0];
+        let b = vec![1.0, 2.0, 2.0, 4.0, 3.0, 3.0, 1.0, 0.0];
+        for (sequences, expected) in [
+            (vec![a.clone()], 5.535_603_715_170_28),
+            (vec![b.clone()], 4.8),
+            (vec![a, b], 17.201_044_386_422_98),
+        ] {
+            assert!((effective_size(&sequences) - expected).abs() < 1e-9, "{}", effective_size(&sequences));
+        }
+    }
+
     #[test]
     fn independent_values_count_in_full() {
         for place in 0..10 {

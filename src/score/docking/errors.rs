@@ -39,7 +39,7 @@ impl PoseErrors {
         let position_m = measured.position_m - truth.position_m;
         let (is, was) = (Seen::of(measured), Seen::of(truth));
         let attitude_rad = is.ideal_from_camera.angle_to(&was.ideal_from_camera);
-        let r = was.origin_m.norm();
+        let r = was.from_origin_m.norm();
         Self {
             position_m,
             phi_rad: phi_error(measured, truth),
@@ -48,9 +48,10 @@ impl PoseErrors {
             beta_rad: shown[3],
             lateral_m: position_m.xy().norm(),
             attitude_rad,
-            place_rad: angle(&is.origin_m, &was.origin_m),
+            place_rad: angle(&is.from_origin_m, &was.from_origin_m),
             tilt_rad: angle(&is.normal, &was.normal),
-            speed_score: if r > 0.0 { (is.origin_m - was.origin_m).norm() / r } else { 0.0 } + attitude_rad,
+            speed_score: if r > 0.0 { (is.from_origin_m - was.from_origin_m).norm() / r } else { 0.0 }
+                + attitude_rad,
         }
     }
 }
@@ -71,8 +72,8 @@ pub(super) fn phi_error(measured: &Pose, truth: &Pose) -> Vector3<f64> {
 struct Seen {
     /// exp(\[φ\]×).
     ideal_from_camera: UnitQuaternion<f64>,
-    /// The target's origin, m.
-    origin_m: Vector3<f64>,
+    /// The way from the target's origin to the camera, m.
+    from_origin_m: Vector3<f64>,
     /// The disk's normal.
     normal: Vector3<f64>,
 }
@@ -80,10 +81,10 @@ struct Seen {
 impl Seen {
     fn of(pose: &Pose) -> Self {
         let ideal_from_camera = UnitQuaternion::from_scaled_axis(pose.phi_rad);
-        // x = Aᵀ (y − d), A = diag(1, −1, −1) exp([φ]×), at y = 0 and for the direction y3.
+        // x = Aᵀ (y − d), A = diag(1, −1, −1) exp([φ]×): Aᵀ d is the way from y = 0, and Aᵀ turns the direction y3.
         let flip = |v: Vector3<f64>| Vector3::new(v.x, -v.y, -v.z);
         let to_camera = |v: Vector3<f64>| ideal_from_camera.inverse() * flip(v);
-        Self { ideal_from_camera, origin_m: to_camera(-pose.position_m), normal: to_camera(Vector3::z()) }
+        Self { ideal_from_camera, from_origin_m: to_camera(pose.position_m), normal: to_camera(Vector3::z()) }
     }
 }
 

@@ -107,7 +107,10 @@ mod tests {
         };
         let verdict = MotionVerdict::of(&sights, &truth, &motion(4.9, 10.02), false);
         assert!(!verdict.is_wrong && verdict.errors.iter().all(|error| error.abs() < 1e-12), "{verdict:?}");
+        assert!(!MotionVerdict::of(&sights, &truth, &motion(4.0, 10.2), false).is_wrong, "a second old");
         assert!(MotionVerdict::of(&sights, &truth, &motion(3.9, 10.22), false).is_wrong, "too old");
+        // A tenth of a microsecond is the rounding of a file, and moves nothing.
+        assert_eq!(MotionVerdict::of(&sights, &truth, &motion(5.0 + 1e-7, 10.0), false).errors, [0.0; 7]);
     }
 
     #[test]

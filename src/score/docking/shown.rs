@@ -114,6 +114,13 @@ mod tests {
         assert_eq!((shown.rho_m, shown.u_m_s, shown.alpha_rad, shown.beta_rad), (5.0, -0.2, 0.0, 0.0));
     }
 
+    #[test]
+    fn at_the_targets_centre_the_range_changes_in_no_direction() {
+        let pose = Pose { position_m: Vector3::zeros(), phi_rad: Vector3::zeros() };
+        let shown = Shown::of(&pose, &Vector3::new(0.1, 0.0, -0.2));
+        assert_eq!((shown.rho_m, shown.u_m_s), (0.0, 0.0));
+    }
+
     /// The gradients against differences of the parameters themselves.
     #[test]
     fn sigmas_are_those_of_differences_of_the_parameters() {

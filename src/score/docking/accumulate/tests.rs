@@ -167,6 +167,21 @@ fn silence_after_a_report_is_told() {
     assert_eq!((figure.count, figure.of), (9, 29));
 }
 
+/// Ranges and their rates are in metres, angles in degrees.
+#[test]
+fn a_motion_to_the_side_is_told_in_degrees() {
+    let mut outcome = at([0.0, 0.0, 10.0], [0.0; 3]);
+    let truth = field(0, 10.0);
+    let mut told = report(truth.time_s, 10.0);
+    told.best.as_mut().unwrap().pose.position_m = Vector3::new(0.0, 0.1, 10.0);
+    outcome.as_mut().unwrap().motion = Some(told);
+    let score = score(&[(truth, outcome)]);
+    assert!((value(&score, "motion_alpha_rms_deg") - 0.572_938_7).abs() < 1e-6);
+    assert!(
+        (value(&score, "motion_range_rate_rms_m_s") - 0.2 * (1.0 - 1.0 / 1.0001_f64.sqrt())).abs() < 1e-9
+    );
+}
+
 /// A field between the measured ones is part of the portion that they make.
 #[test]
 fn a_portion_counts_the_fields_that_were_missed_in_it() {
