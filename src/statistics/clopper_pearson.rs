@@ -79,4 +79,33 @@ mod tests {
         let (low, high) = clopper_pearson(100, 100, 0.95);
         assert!((low - libm::pow(0.05, 0.01)).abs() < 1e-12 && high == 1.0);
     }
+
+    /// scipy: binom.sf(count − 1, n, p), on either side of the mean.
+    #[test]
+    fn tails_agree_with_the_binomial_law() {
+        for (count, n, p, expected) in [
+            (3, 10, 0.2, 0.322_200_473_6),
+            (8, 10, 0.7, 0.382_782_786_4),
+            (1, 5, 0.01, 0.049_009_950_1),
+            (60, 100, 0.5, 0.028_443_966_820_490_4),
+        ] {
+            let tail = binomial_at_least(count, n, p);
+            assert!((tail - expected).abs() < 1e-12, "{count} of {n} at {p}: {tail}");
+        }
+    }
+
+    /// One less everything below it would leave nothing but rounding. scipy: binom.sf(59, 100, 0.2).
+    #[test]
+    fn a_small_tail_keeps_its_digits() {
+        assert!((binomial_at_least(60, 100, 0.2) / 2.515819199533466e-18 - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_cannot_happen_and_what_must_has_no_tail() {
+        assert_eq!(binomial_at_least(0, 10, 0.0), 1.0);
+        assert_eq!(binomial_at_least(1, 10, 0.0), 0.0);
+        assert_eq!(binomial_at_least(11, 10, 0.5), 0.0);
+        assert_eq!(binomial_at_least(11, 10, 1.0), 0.0);
+        assert_eq!(binomial_at_least(10, 10, 1.0), 1.0);
+    }
 }
