@@ -214,6 +214,21 @@ mod tests {
         joint_test(figures, &Exchanges::new(figures[0].effects.len()), alpha)
     }
 
+    #[test]
+    fn few_blocks_have_all_their_sets_and_many_have_drawn_ones() {
+        for blocks in [1, 2, 13] {
+            let exchanges = Exchanges::new(blocks);
+            assert_eq!((exchanges.blocks(), exchanges.sets().count()), (blocks, 1 << blocks));
+            assert_eq!(exchanges.for_an_interval(), (1 << blocks) - 1);
+        }
+        for blocks in [14, 200] {
+            let exchanges = Exchanges::new(blocks);
+            assert_eq!((exchanges.blocks(), exchanges.sets().count()), (blocks, DRAWN + 1));
+            assert_eq!(exchanges.for_an_interval(), FOR_AN_INTERVAL);
+            assert!(exchanges.sets().next().is_some_and(|empty| (0..blocks).all(|block| !empty.has(block))));
+        }
+    }
+
     /// Of nine discordant pairs eight were lost: McNemar's exact test is that of a fair coin, (9 + 1)/2⁹.
     #[test]
     fn with_single_frames_it_is_mcnemars_exact_test() {
