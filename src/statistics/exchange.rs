@@ -214,6 +214,29 @@ mod tests {
         joint_test(figures, &Exchanges::new(figures[0].effects.len()), alpha)
     }
 
+    /// Of seven powers of two every set has a sum of its own, 1 to 127: the third from either end is left as limit.
+    #[test]
+    fn an_interval_by_sets_leaves_a_fortieth_at_either_end() {
+        let sum = |taken: &[bool]| {
+            taken
+                .iter()
+                .enumerate()
+                .filter(|(_, taken)| **taken)
+                .map(|(block, _)| f64::from(1 << block))
+                .sum::<f64>()
+        };
+        let interval = interval_by_sets(&Exchanges::new(7), |taken| Some(sum(taken))).unwrap();
+        assert_eq!((interval.low, interval.high), (3.0, 125.0));
+        // Of fewer than six blocks the whole range.
+        let interval = interval_by_sets(&Exchanges::new(5), |taken| Some(sum(taken))).unwrap();
+        assert_eq!((interval.low, interval.high), (1.0, 31.0));
+        // A difference that most sets do not have is none: 63 of 127 are too few, 64 are enough.
+        let below = |limit: f64| {
+            interval_by_sets(&Exchanges::new(7), |taken| Some(sum(taken)).filter(|sum| *sum < limit))
+        };
+        assert!(below(64.0).is_none() && below(65.0).is_some());
+    }
+
     #[test]
     fn few_blocks_have_all_their_sets_and_many_have_drawn_ones() {
         for blocks in [1, 2, 13] {

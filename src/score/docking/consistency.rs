@@ -80,7 +80,8 @@ mod tests {
 
     #[test]
     fn errors_that_are_said_to_go_together_exactly_say_nothing() {
-        assert_eq!(nees(&Vector2::new(1.0, 1.0), &Matrix2::new(1.0, 1.0, 1.0, 1.0)), None);
+        assert_eq!(nees(&Vector2::new(1.0, -1.0), &Matrix2::new(1.0, 1.0, 1.0, 1.0)), None);
+        assert_eq!(nees(&Vector2::new(1.0, 1.0), &Matrix2::new(0.0, 0.0, 0.0, 1.0)), None);
         assert_eq!(nees(&Vector2::new(1.0, 1.0), &Matrix2::new(1.0, f64::NAN, f64::NAN, 1.0)), None);
     }
 
