@@ -115,16 +115,17 @@ mod tests {
 
     #[test]
     fn errors_and_their_normalised_squares_are_those_of_a_sum_by_hand() {
-        let truth = field(0, 10.0);
+        let mut truth = TrueField { phi_rate_rad_s: Vector3::new(0.0, 0.0, 0.010), ..field(0, 10.0) };
+        truth.pose.phi_rad.y = 0.002;
         let sights = Sights::new(&setup());
         let motion = Motion {
             time_s: 0.0,
             pose: Pose {
                 position_m: Vector3::new(0.0, 0.0, 10.02),
-                phi_rad: Vector3::new(0.001, 0.0, -0.002),
+                phi_rad: Vector3::new(0.001, 0.002, -0.002),
             },
             velocity_m_s: Vector3::new(0.0, 0.0, -0.21),
-            phi_rate_rad_s: Vector3::zeros(),
+            phi_rate_rad_s: Vector3::new(0.0, 0.0, 0.012),
             position_covariance: Matrix6::from_diagonal_element(1e-4),
             attitude_covariance: Matrix6::from_diagonal_element(1e-6),
             cross_covariance: Matrix3::zeros(),
@@ -136,9 +137,9 @@ mod tests {
         for (error, expected) in verdict.errors.iter().zip(expected) {
             assert!((error - expected).abs() < 1e-12, "{:?}", verdict.errors);
         }
-        // 2σ, 1σ; of φ 1σ and 2σ.
+        // 2σ, 1σ; of φ 1σ and 2σ, of its rate 2σ.
         assert_eq!(verdict.within, [Some(true); 7]);
-        for (met, expected) in verdict.nees.iter().zip([(4.0 + 1.0 + 4.0) / 6.0, 5.0 / 6.0, 5.0 / 6.0]) {
+        for (met, expected) in verdict.nees.iter().zip([(4.0 + 1.0 + 4.0) / 6.0, 5.0 / 6.0, 9.0 / 6.0]) {
             assert!((met.unwrap() - expected).abs() < 1e-9, "{:?}", verdict.nees);
         }
     }
