@@ -53,5 +53,7 @@ mod tests {
         assert!(!sights.resolves(0, &ahead(44.1)) && sights.resolves(0, &ahead(44.0)));
         assert!(!sights.resolves(1, &ahead(16.2)) && sights.resolves(1, &ahead(16.1)));
         assert!(!sights.resolves(2, &ahead(5.0)), "a camera that is not there");
+        // The cross stands out 0.3 m: who is at it or behind it sees no bar.
+        assert!(sights.resolves(0, &ahead(0.31)) && !sights.resolves(0, &ahead(0.3)));
     }
 }
