@@ -218,4 +218,12 @@ mod tests {
         assert_eq!(at(310.0), Verdict::RangeOnly { error_m: 10.0, sigma_m: 5.0 });
         assert_eq!(at(361.0), Verdict::Wrong { gross: Gross::Outline });
     }
+
+    #[test]
+    fn a_turn_is_brought_to_half_a_turn_either_way() {
+        use std::f64::consts::TAU;
+        for (angle, expected) in [(TAU + 0.1, 0.1), (0.1 - TAU, 0.1), (3.0, 3.0), (3.5, 3.5 - TAU)] {
+            assert!((turn(angle) - expected).abs() < 1e-14, "{angle}");
+        }
+    }
 }
