@@ -237,6 +237,18 @@ mod tests {
         assert!(below(64.0).is_none() && below(65.0).is_some());
     }
 
+    /// Of 1999 drawn sets the fiftieth from either end.
+    #[test]
+    fn an_interval_by_drawn_sets_leaves_fifty_less_one_at_either_end() {
+        let calls = std::cell::Cell::new(0.0);
+        let interval = interval_by_sets(&Exchanges::new(14), |_| {
+            calls.set(calls.get() + 1.0);
+            Some(calls.get())
+        });
+        let interval = interval.unwrap();
+        assert_eq!((interval.low, interval.high), (50.0, 1950.0));
+    }
+
     #[test]
     fn few_blocks_have_all_their_sets_and_many_have_drawn_ones() {
         for blocks in [1, 2, 13] {
