@@ -58,7 +58,7 @@ pub fn within_3_sigma(error: f64, sigma: f64) -> Option<bool> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Matrix2, Matrix3, Matrix6, Vector2, Vector3, Vector6};
+    use nalgebra::{Matrix1, Matrix2, Matrix3, Matrix6, Vector1, Vector2, Vector3, Vector6};
     use sim::randomness::{Effect, Seed, normal};
 
     use super::*;
@@ -82,6 +82,7 @@ mod tests {
     fn errors_that_are_said_to_go_together_exactly_say_nothing() {
         assert_eq!(nees(&Vector2::new(1.0, -1.0), &Matrix2::new(1.0, 1.0, 1.0, 1.0)), None);
         assert_eq!(nees(&Vector2::new(1.0, 1.0), &Matrix2::new(0.0, 0.0, 0.0, 1.0)), None);
+        assert_eq!(nees(&Vector1::new(1.0), &Matrix1::new(0.0)), None);
         assert_eq!(nees(&Vector2::new(1.0, 1.0), &Matrix2::new(1.0, f64::NAN, f64::NAN, 1.0)), None);
     }
 
