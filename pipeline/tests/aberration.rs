@@ -1,36 +1,16 @@
 //! The correction of aberration on an image of stars that special relativity has moved.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helper functions too")]
 
+mod table_1;
+
 use boresight_pipeline::far_range::{AberrationConfig, FarRangeConfig, FarRangeFactory, Weights};
 use contract::{
-    AttitudeSource, Camera, CameraFrame, Direction, Frame, Icrs, ListedStar, PipelineFactory, PixelPoint,
-    Rotation, Setup, Telemetry,
+    AttitudeSource, CameraFrame, Direction, Frame, Icrs, ListedStar, PipelineFactory, Rotation, Setup,
+    Telemetry,
 };
 use hifitime::Epoch;
 use nalgebra::Vector3;
-
-const COLUMNS: usize = 752;
-const ROWS: usize = 580;
-
-/// Table 1 without distortion.
-fn camera() -> Camera {
-    Camera {
-        columns: COLUMNS,
-        rows: ROWS,
-        focal_length_mm: 20.187,
-        pixel_width_um: 8.6,
-        pixel_height_um: 8.3,
-        principal_x_px: 395.0,
-        principal_y_px: 288.0,
-        radial: [0.0; 3],
-        tangential: [0.0; 2],
-    }
-}
-
-fn pixel(direction: &Vector3<f64>) -> PixelPoint {
-    let (fx, fy) = (20.187e3 / 8.6, 20.187e3 / 8.3);
-    PixelPoint::new(395.0 + fx * direction.x / direction.z, 288.0 + fy * direction.y / direction.z)
-}
+use table_1::{COLUMNS, ROWS, camera, pixel};
 
 /// The boresight along the x axis of the sky, across the motion of the Earth at the time of [`telemetry`].
 fn camera_from_icrs() -> Rotation<CameraFrame, Icrs> {
@@ -68,7 +48,7 @@ fn image() -> Vec<u16> {
     let mut dn = vec![100.0; COLUMNS * ROWS];
     for star in stars() {
         let seen = (star.direction.vector() + velocity_km_s() / 299_792.458).normalize();
-        let at = pixel(&camera_from_icrs().rotate(&seen));
+        let at = pixel(camera_from_icrs().rotate(&seen));
         for y in at.y as usize - 5..at.y as usize + 7 {
             for x in at.x as usize - 5..at.x as usize + 7 {
                 let (dx, dy) = (x as f64 - at.x, y as f64 - at.y);

@@ -2,6 +2,8 @@
 //! hotspot that stays.
 #![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helper functions too")]
 
+mod table_1;
+
 use boresight_pipeline::far_range::{
     AberrationConfig, AttitudeConfig, CentroidConfig, FarRange, FarRangeConfig, FarRangeFactory,
     HotspotConfig, Identity, Overrides, StarWeights, Weights,
@@ -13,32 +15,11 @@ use contract::{
 };
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
+use table_1::{COLUMNS, ROWS, camera, pixel};
 
-const COLUMNS: usize = 752;
-const ROWS: usize = 580;
 const INTERVAL_S: f64 = 15.0;
 /// Between two columns of stars, which stream along y: nothing merges with it, nor with the target.
 const HOTSPOT: (usize, usize) = (660, 100);
-
-/// Table 1 without distortion: projection is then one line, which this file does on its own.
-fn camera() -> Camera {
-    Camera {
-        columns: COLUMNS,
-        rows: ROWS,
-        focal_length_mm: 20.187,
-        pixel_width_um: 8.6,
-        pixel_height_um: 8.3,
-        principal_x_px: 395.0,
-        principal_y_px: 288.0,
-        radial: [0.0; 3],
-        tangential: [0.0; 2],
-    }
-}
-
-fn pixel(direction: Vector3<f64>) -> PixelPoint {
-    let (fx, fy) = (20.187e3 / 8.6, 20.187e3 / 8.3);
-    PixelPoint::new(395.0 + fx * direction.x / direction.z, 288.0 + fy * direction.y / direction.z)
-}
 
 fn ray(point: PixelPoint) -> Vector3<f64> {
     let (fx, fy) = (20.187e3 / 8.6, 20.187e3 / 8.3);

@@ -198,7 +198,10 @@ fn group_score(sequences: &[&[&FrameVerdict]]) -> GroupScore {
 }
 
 /// How often each word occurs, in the order of `words`; those that do not occur are left out.
-fn counts(words: &[&str], occurrences: impl Iterator<Item = &'static str>) -> IndexMap<String, u64> {
+pub(super) fn counts(
+    words: &[&str],
+    occurrences: impl Iterator<Item = &'static str>,
+) -> IndexMap<String, u64> {
     let mut counts: IndexMap<String, u64> = words.iter().map(|word| ((*word).to_owned(), 0)).collect();
     for word in occurrences {
         *counts.entry(word.to_owned()).or_default() += 1;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Mutation testing (cargo-mutants) of what an oracle must not have wrong: score, statistics, astrometry, cameras, attitude.
 
-A mutant is compiled in seconds instead of minutes, because every crate is pruned to the modules in question and what they need,
+A mutant is compiled in seconds, because every crate is pruned to the modules in question and what they need,
 in a copy of the tree; a module sees the same code, and is tested by its own tests. Survivors that are no faults are argued away in
 `.cargo/mutants.toml`.
 

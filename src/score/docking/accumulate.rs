@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use contract::docking::{DockingOutcome, DockingSetup, Motion, MotionReport};
-use indexmap::IndexMap;
 
 use super::bins::{bin, group_name, lens_names};
 use super::cause::MissCause;
@@ -15,6 +14,7 @@ use super::report::{DockingGroup, DockingScore, names};
 use super::sight::Sights;
 use super::truth::{TrueField, View};
 use super::verdict::{Gross, Verdict, gross};
+use crate::score::accumulate::counts;
 use crate::score::{Figure, FigureTerms, ScoreError, UnitTable, UnitVerdict};
 
 /// What the score of a docking run needs besides the fields.
@@ -279,16 +279,6 @@ fn group_score(sequences: &[&[&FieldVerdict]]) -> DockingGroup {
         misses: counts(&MissCause::CODES, misses),
         wrong: counts(&Gross::ALL.map(Gross::code), wrong),
     }
-}
-
-/// How often each word occurs, in the order of `words`; those that do not occur are left out.
-fn counts(words: &[&str], occurrences: impl Iterator<Item = &'static str>) -> IndexMap<String, u64> {
-    let mut counts: IndexMap<String, u64> = words.iter().map(|word| ((*word).to_owned(), 0)).collect();
-    for word in occurrences {
-        *counts.entry(word.to_owned()).or_default() += 1;
-    }
-    counts.retain(|_, count| *count > 0);
-    counts
 }
 
 #[cfg(test)]

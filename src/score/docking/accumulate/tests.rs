@@ -1,4 +1,5 @@
 use contract::docking::{DockingSolution, Motion, MotionReport, NoPose, Pose};
+use indexmap::IndexMap;
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
 use super::*;
