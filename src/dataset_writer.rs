@@ -2,7 +2,6 @@
 
 use contract::{Direction, Frame};
 use hifitime::Epoch;
-use sha2::{Digest, Sha256};
 use sim::truth::{FrameTruth, ObjectTruth, Observer};
 use sim::{Exposure, Simulator};
 
@@ -130,9 +129,4 @@ fn world_coordinates(
         simulator.projection().project(&(truth.camera_from_icrs * observer.apparent_of(*astrometric)))
     })
     .map_err(|error| Failure::Usage(format!("frame {}: {error}", truth.frame)))
-}
-
-/// SHA-256 of a text, hexadecimal.
-pub fn sha256_hex(text: &str) -> String {
-    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }

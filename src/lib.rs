@@ -21,6 +21,7 @@ pub mod run;
 pub mod run_file;
 pub mod scenario;
 pub mod score;
+pub mod sha256;
 pub mod star_list;
 pub mod statistics;
 pub mod study;

@@ -16,12 +16,12 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::dataset_writer::sha256_hex;
 use crate::docking_renderer::MitsubaRecord;
 use crate::failure::Failure;
 use crate::files::{FileError, WholeFile};
 use crate::inject::Stage;
 use crate::scenario::FarRangeScenario;
+use crate::sha256::sha256_hex;
 use crate::toml_file;
 
 /// What was run: the resolved scenario of one world with all defaults, and what else the frames depend on.

@@ -11,6 +11,7 @@ use sha2::{Digest, Sha256};
 
 use super::error::Place;
 use super::{FileError, WholeFile};
+use crate::sha256::hex;
 
 /// The file's name.
 const NAME: &str = "SHA256SUMS";
@@ -101,7 +102,7 @@ fn sha256(path: &Path) -> Result<Option<String>, FileError> {
         let read = chunk.len();
         file.consume(read);
     }
-    Ok(Some(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()))
+    Ok(Some(hex(hash.finalize())))
 }
 
 #[cfg(test)]

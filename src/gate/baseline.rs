@@ -18,16 +18,16 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use super::blocks::{Blocks, LEAST_BLOCKS, Memory, length_for, memory};
 use super::effects::value;
 use super::identity::Identity;
-use super::read::Sample;
 use super::rows;
+use super::sample::Sample;
 use crate::failure::Failure;
 use crate::files::{Checksums, FileError, WholeFile};
 use crate::score::{FigureTerms, Reduction};
+use crate::sha256::sha256_hex;
 use crate::toml_file;
 
 /// Version of the form of these files.
@@ -260,5 +260,5 @@ fn paths(folder: &Path) -> [PathBuf; 2] {
 fn file_sha256(path: &Path) -> Result<String, FileError> {
     let bytes =
         sim::regular_file::read(path, MOST_BYTES).map_err(|source| FileError::io(path, "read", source))?;
-    Ok(Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(sha256_hex(&bytes))
 }

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use crate::dataset_writer::sha256_hex;
 use crate::failure::Failure;
+use crate::sha256::sha256_hex;
 
 /// What a result is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

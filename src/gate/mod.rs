@@ -19,6 +19,7 @@ mod junit;
 mod read;
 mod report;
 mod rows;
+mod sample;
 
 pub use baseline::{Baseline, BaselineFigure, BaselineHeader, BlockRule, Replace};
 pub use blocks::{Blocks, LEAST_BLOCKS};
@@ -26,5 +27,6 @@ pub use compare::{CompareOptions, compare};
 pub use flips::{Flip, FlipKind, Flips};
 pub use identity::{Identity, Pairing, SourceKind};
 pub use junit::{junit, junit_of_failure};
-pub use read::{Sample, read_result};
+pub use read::read_result;
 pub use report::{FigureReport, FigureVerdict, GateReport};
+pub use sample::Sample;

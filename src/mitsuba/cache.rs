@@ -8,6 +8,7 @@ use sim::vector::RadianceImage;
 
 use super::{MitsubaError, VARIANT, VERSION};
 use crate::files::{FileError, read_radiance};
+use crate::sha256::hex;
 
 /// A folder of images. Several processes may use it at once: an image gets its name when it is complete, and two that
 /// make the same one make the same bits.
@@ -47,8 +48,7 @@ impl Cache {
             part(mesh.file.as_bytes());
             part(&mesh.ply);
         }
-        let name: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-        self.folder.join(name + ".exr")
+        self.folder.join(hex(hash.finalize()) + ".exr")
     }
 
     /// A fresh folder beside the images, gone when it is dropped.

@@ -25,6 +25,7 @@ use parquet::file::properties::WriterProperties;
 use sha2::{Digest, Sha256};
 
 use crate::files::{FileError, ParquetFile, unwritten};
+use crate::sha256::hex;
 
 /// A drawn value.
 #[derive(Debug, Clone, PartialEq)]
@@ -117,7 +118,7 @@ impl CaseTable {
                 hash.update(figure.of.to_le_bytes());
             }
         }
-        hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hex(hash.finalize())
     }
 
     /// Writes the rows as Parquet: `case`, `seed`, `has_failed`, `set.PATH` for what was drawn, and NAME, NAME.count, NAME.of for each figure.

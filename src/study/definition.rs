@@ -28,6 +28,7 @@ use super::overlay::ValuePath;
 use super::tried::StudyPipeline;
 use crate::failure::Failure;
 use crate::scenario::{Scenario, ScenarioSource};
+use crate::sha256::{hex, sha256_hex};
 use crate::toml_file;
 
 /// Most cases of a study.
@@ -203,7 +204,7 @@ impl Study {
     /// The hash of rows by a pipeline.
     pub fn hash_with(&self, pipeline: &dyn StudyPipeline) -> String {
         match pipeline.hash(self.scenario().world()) {
-            Some(own) => hex(Sha256::digest(format!("{} {}", self.hash, hex(own)))),
+            Some(own) => sha256_hex(format!("{} {}", self.hash, hex(own))),
             None => self.hash.clone(),
         }
     }
@@ -442,10 +443,6 @@ fn recorded(value: &Value) -> Drawn {
         (Value::String(text), _) => Drawn::Text(text.clone()),
         (other, _) => Drawn::Text(other.to_string()),
     }
-}
-
-fn hex(bytes: impl AsRef<[u8]>) -> String {
-    bytes.as_ref().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn unwritable(error: serde_json::Error) -> Failure {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Mutation testing (cargo-mutants) of what an oracle must not have wrong: score, statistics, astrometry, cameras, attitude.
+"""Mutation testing (cargo-mutants) of what an oracle must not have wrong: score, gate, statistics, astrometry, cameras, attitude.
 
 A mutant is compiled in seconds, because every crate is pruned to the modules in question and what they need,
 in a copy of the tree; a module sees the same code, and is tested by its own tests. Survivors that are no faults are argued away in
@@ -27,6 +27,8 @@ GROUPS = {
     "score": ("boresight", ["src/score/**"], [], ["score::"], []),
     # Laws of intervals are tried by thousands of samples, which without optimisation takes a minute.
     "statistics": ("boresight", ["src/statistics/**"], [], ["statistics::"], ["covers_the_truth", "wild_laws", "cover_the_truth"]),
+    # What reads a run or a study (read.rs) has no mutants here: it needs the whole program.
+    "gate": ("boresight", ["src/gate/**"], [], ["gate::"], []),
     "contract": ("boresight-contract", ["contract/src/camera.rs"], [], ["camera"], []),
     "sim": (
         "boresight-sim",
@@ -55,6 +57,17 @@ PRUNED = {
     "pipeline/src/far_range/mod.rs": "mod aberration;\nmod attitude;\nmod line_of_sight;\n"
     "pub use aberration::aberration_correction;\npub use attitude::{AttitudeConfig, StarWeights};",
 }
+# And in the place of that, for some groups.
+PRUNED_FOR = {
+    "gate": {
+        "src/lib.rs": "pub mod failure;\npub mod files;\npub mod gate;\npub mod mitsuba;\npub mod score;\npub mod sha256;\npub mod statistics;\npub mod toml_file;",
+        "src/gate/mod.rs": "mod baseline;\nmod blocks;\nmod compare;\nmod effects;\nmod flips;\nmod identity;\nmod junit;\nmod report;\nmod rows;\nmod sample;\n"
+        "pub use baseline::*;\npub use blocks::*;\npub use compare::*;\npub use flips::*;\npub use identity::*;\npub use junit::*;\npub use report::*;\npub use sample::*;",
+        "src/files/mod.rs": "mod checksums;\nmod error;\nmod parquet_claims;\nmod parquet_file;\nmod parquet_table;\nmod thrift;\nmod whole_file;\n"
+        "pub use checksums::Checksums;\npub use error::{FileError, Place};\npub(crate) use parquet_file::ParquetFile;\npub(crate) use parquet_table::unwritten;\npub use whole_file::WholeFile;",
+        "src/mitsuba/mod.rs": "#[derive(Debug, thiserror::Error)]\n#[error(\"pruned\")]\npub struct MitsubaError;",
+    },
+}
 # score and statistics use types of the whole simulator, astrometry and optics nothing of it: two trees.
 WHOLE = {"boresight": ("sim/", "pipeline/"), "boresight-contract": ("sim/", "pipeline/"), "boresight-sim": (), "boresight-pipeline": ("sim/",)}
 
@@ -74,7 +87,7 @@ def prune(tree: Path, group: str) -> None:
             continue
         (tree / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, tree / name)
-    for name, text in PRUNED.items():
+    for name, text in (PRUNED | PRUNED_FOR.get(group, {})).items():
         if not name.startswith(WHOLE[package]):
             (tree / name).write_text(f"//! Pruned.\n#![allow(missing_docs, dead_code, unused, unreachable_pub)]\n{text}\n" if name.endswith("lib.rs") else f"//! Pruned.\n{text}\n")
     for manifest in tree.rglob("Cargo.toml"):
@@ -96,7 +109,7 @@ def run(group: str, tree: Path, arguments: list[str]) -> int:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description="Mutation testing of score, statistics, astrometry, cameras and attitude.")
+    parser = argparse.ArgumentParser(description="Mutation testing of score, gate, statistics, astrometry, cameras and attitude.")
     parser.add_argument("groups", nargs="*", metavar="GROUP", help=f"of {', '.join(GROUPS)} (all)")
     parser.add_argument("--list", action="store_true", help="only what there is to test")
     options = parser.parse_args()
@@ -109,8 +122,9 @@ def main() -> int:
     failed = []
     for group in options.groups or GROUPS:
         print(f"{group}:", flush=True)
-        prune(folder / "tree", group)
-        if run(group, folder / "tree", ["--list"] if options.list else []):
+        tree = folder / f"{group}-tree"
+        prune(tree, group)
+        if run(group, tree, ["--list"] if options.list else []):
             failed.append(group)
     if failed:
         print(f"mutants survive in: {', '.join(failed)}")
