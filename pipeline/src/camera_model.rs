@@ -239,9 +239,17 @@ pub(crate) mod tests {
         // The radial map r − 1e-6 r³ folds at r = 577 px; a direction at 1000 px would come back to 0.
         let beyond = Vector3::new(1000.0 / camera.focal_length_px().0, 0.0, 1.0);
         assert_eq!(model.project_vector(&beyond), None);
+        // The fold is a circle: on its diagonal it is 408 px away in either direction.
+        assert!(model.place_of_ideal(400.0, 400.0).is_some() && model.place_of_ideal(420.0, 420.0).is_none());
         // And 385 px is the largest radius that anything is seen at.
         assert!(model.back_project(PixelPoint::new(395.0 - 384.0, 288.0)).is_some());
         assert!(model.back_project(PixelPoint::new(395.0 - 386.0, 288.0)).is_none());
+    }
+
+    #[test]
+    fn a_place_that_overflows_in_one_coordinate_is_none() {
+        assert!(argon().place_of_ideal(1e3, 1.0).is_some());
+        assert_eq!(argon().place_of_ideal(1e110, 1.0), None);
     }
 
     /// x = u s + 2 p1 u v + p2 (r² + 2 u²), y = v s + p1 (r² + 2 v²) + 2 p2 u v with s = 1 + k1 r² + k2 r⁴ + k3 r⁶, worked out apart

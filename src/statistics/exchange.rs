@@ -293,6 +293,24 @@ mod tests {
         assert_eq!(nothing.figures[0], Tested { statistic: 0.0, p: 1.0, adjusted_p: 1.0 });
     }
 
+    /// Of effects that are powers of two every exchange has a sum of its own, 31, 29, 27, … of five blocks.
+    #[test]
+    fn the_critical_value_is_reached_by_more_than_alpha_and_exceeded_by_no_more() {
+        let powers = effects(&[1.0, 2.0, 4.0, 8.0, 16.0]);
+        for (alpha, sum) in [(0.05, 29.0), (0.0625, 27.0), (0.02, 31.0)] {
+            let critical = test_of(std::slice::from_ref(&powers), alpha).critical;
+            assert!((critical - sum / 341f64.sqrt()).abs() < 1e-12, "{alpha}: {critical}");
+        }
+    }
+
+    /// 0.1 + 0.2 - 0.3 is 0 but for its rounding, and so is the same with all signs turned: five of the eight exchanges reach it.
+    #[test]
+    fn exchanges_that_rounding_alone_tells_apart_are_equal() {
+        let test = test_of(&[effects(&[0.1, 0.2, -0.3])], 0.05);
+        assert_eq!(test.figures[0].p, 5.0 / 8.0);
+        assert!(test.figures[0].statistic > 0.0);
+    }
+
     /// A figure that repeats another, with any scale, costs nothing.
     #[test]
     fn figures_that_agree_count_as_one() {

@@ -349,6 +349,115 @@ mod tests {
         assert!(point.distance(PixelPoint::new(395.0 + u, 288.0 + v)) < 1e-10);
     }
 
+    /// All five coefficients at once, in rational numbers.
+    const BENT: Distortion = Distortion { radial: [3e-8, -2e-14, 5e-21], tangential: [2e-6, -3e-6] };
+
+    #[test]
+    fn the_distortion_is_that_of_its_formula() {
+        for (u, v, x, y) in [
+            (300.0, -200.0, 299.901_895_5, -199.934_597),
+            (-1200.0, 700.0, -1_241.006_742, 724.403_099_5),
+        ] {
+            let bent = BENT.apply(Offset { u, v });
+            assert!((bent.u - x).abs() < 1e-9 && (bent.v - y).abs() < 1e-9, "{bent:?}");
+            let back = BENT.remove(Offset { u: x, v: y }).unwrap();
+            assert!((back.u - u).abs() < 1e-9 && (back.v - v).abs() < 1e-9, "{back:?}");
+        }
+    }
+
+    /// Newton's method finds the same inverse with wrong slopes, in more steps: so they are held against differences.
+    #[test]
+    fn the_jacobian_is_that_of_the_distortion() {
+        let strong = Distortion { radial: [3e-7, -2e-12, 4e-18], tangential: [5e-5, -8e-5] };
+        for (u, v) in [(310.0, -200.0), (-250.0, 120.0), (40.0, 390.0)] {
+            let h = 1e-3;
+            let difference = |du: f64, dv: f64| {
+                let above = strong.apply(Offset { u: u + du, v: v + dv });
+                let below = strong.apply(Offset { u: u - du, v: v - dv });
+                ((above.u - below.u) / (2.0 * h), (above.v - below.v) / (2.0 * h))
+            };
+            let ((uu, vu), (uv, vv)) = (difference(h, 0.0), difference(0.0, h));
+            let jacobian = strong.jacobian(Offset { u, v });
+            for (slope, expected) in
+                [(jacobian.uu, uu), (jacobian.uv, uv), (jacobian.uv, vu), (jacobian.vv, vv)]
+            {
+                assert!((slope - expected).abs() < 1e-8, "{u} {v}: {slope}, expected {expected}");
+            }
+        }
+    }
+
+    /// r + k1 r³ turns back at r = 1/√(3 |k1|) = 577.35, v + 3 p1 v² at −1/(6 p1) = −166.67; of a grid of 256 rings the last before.
+    #[test]
+    fn the_distortion_is_one_to_one_up_to_its_fold() {
+        let radial = Distortion { radial: [-1e-6, 0.0, 0.0], tangential: [0.0; 2] };
+        let tangential = Distortion { radial: [0.0; 3], tangential: [1e-3, 0.0] };
+        let swapped = Distortion { radial: [0.0; 3], tangential: [0.0, -1e-3] };
+        for (distortion, fold_px) in [(radial, 577.35), (tangential, 166.67), (swapped, 166.67)] {
+            let radius = distortion.one_to_one_radius(1000.0);
+            assert!(radius <= fold_px && radius > fold_px - 1000.0 / 256.0, "{radius}, fold at {fold_px}");
+        }
+        assert_eq!(radial.one_to_one_radius(500.0), 500.0);
+        let none = Distortion { radial: [0.0; 3], tangential: [0.0; 2] };
+        assert_eq!(none.one_to_one_radius(500.0), f64::INFINITY);
+    }
+
+    /// A saddle has a positive slope along one axis and turns the other one round.
+    #[test]
+    fn a_jacobian_is_positive_definite_when_both_its_eigenvalues_are() {
+        let is_positive = |uu, uv, vv| Jacobian { uu, uv, vv }.is_positive_definite();
+        assert!(is_positive(1.0, 0.5, 2.0) && is_positive(2.0, -1.0, 1.0));
+        // Eigenvalues of opposite signs, both negative, and one of them nought.
+        assert!(!is_positive(1.0, 2.0, 1.0) && !is_positive(1.0, 0.0, -1.0) && !is_positive(-1.0, 0.5, -1.0));
+        assert!(!is_positive(1.0, 1.0, 1.0) && !is_positive(0.0, 0.0, 1.0));
+    }
+
+    /// The farthest corner of Table 1 is 395.5 px to the left of the principal point and 291.5 px below it.
+    #[test]
+    fn a_direction_is_projected_up_to_three_times_the_half_diagonal() {
+        let camera = table_1();
+        let projection = Projection::new(&camera).unwrap();
+        let (fx, fy) = camera.focal_length_px();
+        let along = |u: f64, v: f64| direction(u / fx, v / fy, 1.0);
+        let limit = 3.0 * libm::hypot(395.5, 291.5);
+        for (u, v) in [(1.0, 0.0), (0.0, -1.0), (-0.6, 0.8)] {
+            let inside = along(0.999 * limit * u, 0.999 * limit * v);
+            assert!(projection.project(&inside).is_some(), "{u} {v}");
+            assert_eq!(projection.project(&along(1.001 * limit * u, 1.001 * limit * v)), None, "{u} {v}");
+        }
+        // What comes back from a point so far away is none either.
+        let place = projection.place(0.999 * limit, 0.0);
+        assert!(projection.unproject(place).is_some());
+        assert_eq!(projection.unproject(PixelPoint::new(place.x + 10.0, place.y)), None);
+    }
+
+    #[test]
+    fn an_outline_goes_on_in_proportion_where_the_distortion_ends() {
+        let camera = Camera { radial: [-1e-7, 0.0, 0.0], ..table_1() };
+        let projection = Projection::new(&camera).unwrap();
+        let (fx, fy) = camera.focal_length_px();
+        let offset = |place: PixelPoint| (place.x - 395.0, place.y - 288.0);
+        for (u, v) in [(300.0, 100.0), (-0.6, 0.8), (-200.0, -120.0)] {
+            let seen = projection.project(&direction(u / fx, v / fy, 1.0)).unwrap();
+            assert!(projection.place(u, v).distance(seen) < 1e-9);
+        }
+        let (x, y) = offset(projection.place(-0.6 * projection.domain_px, 0.8 * projection.domain_px));
+        let far = projection.place(-1.8 * projection.domain_px, 2.4 * projection.domain_px);
+        assert!((offset(far).0 - 3.0 * x).abs() < 1e-6 && (offset(far).1 - 3.0 * y).abs() < 1e-6, "{far:?}");
+        assert!(projection.is_distorted());
+        let straight = Projection::new(&Camera { radial: [0.0; 3], ..camera }).unwrap();
+        assert!(!straight.is_distorted());
+        assert_eq!(offset(straight.place(1e6, -2e6)), (1e6, -2e6));
+    }
+
+    #[test]
+    fn the_plate_scale_is_the_focal_length_in_pixels() {
+        let projection = Projection::new(&table_1()).unwrap();
+        let (along_columns, along_rows) = projection.plate_scale_px_per_rad();
+        // 20.187 mm over 8.6 and 8.3 µm.
+        assert!((along_columns - 2347.325_581).abs() < 1e-6 && (along_rows - 2432.168_675).abs() < 1e-6);
+        assert_eq!(projection.detector(), (752, 580));
+    }
+
     #[test]
     fn nothing_behind_the_camera_is_projected() {
         let projection = Projection::new(&table_1()).unwrap();
