@@ -2,7 +2,7 @@
 // Run by `npm test --prefix monitor`, with BORESIGHT naming the command.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -57,7 +57,29 @@ const REPORTS = {
     headings: [/^Detection against magnitude$/, /^Stars over the sky$/, /^Window of exposures against range$/],
     pictures: 0,
   },
+  gate: {
+    before() {
+      const [good, baseline, worse] = ["far range", "baseline", "worse"].map((name) => join(directory, name));
+      run("gate", "baseline", good, "--out", baseline, "--reason", "it was good enough", "--block-length", "6");
+      cpSync(good, worse, { recursive: true });
+      loseEverySecond(worse);
+      mkdirSync(join(directory, "gate"));
+    },
+    words: ["gate", "BASELINE", "WORSE", "--report", "REPORT"],
+    headings: [/^What changed$/, /^Frames that flipped$/],
+    pictures: 1,
+  },
 };
+
+/** Takes the answer out of every second row of a run, on purpose: without its checksums. */
+function loseEverySecond(directory) {
+  const path = join(directory, "measurements.csv");
+  const [head, ...rows] = readFileSync(path, "utf8").trimEnd().split("\n");
+  const names = head.split(",");
+  const lost = ([frame]) => names.map((name, i) => (i === 0 ? frame : name === "status" ? "no_target" : "")).join(",");
+  writeFileSync(path, `${[head, ...rows.map((row, i) => (i % 2 ? lost(row.split(",")) : row))].join("\n")}\n`);
+  rmSync(join(directory, "SHA256SUMS"));
+}
 
 let chromium;
 let directory;
@@ -65,8 +87,16 @@ before(async () => {
   directory = mkdtempSync(join(tmpdir(), "boresight-report-"));
   const study = join(directory, "study.toml");
   writeFileSync(study, STUDY);
-  for (const [name, { words }] of Object.entries(REPORTS)) {
-    run(...words.map((word) => ({ DIR: join(directory, name), STUDY: study })[word] ?? word));
+  for (const [name, { before, words }] of Object.entries(REPORTS)) {
+    before?.();
+    const paths = {
+      DIR: join(directory, name),
+      STUDY: study,
+      BASELINE: join(directory, "baseline"),
+      WORSE: join(directory, "worse"),
+      REPORT: join(directory, name, "report.html"),
+    };
+    run(...words.map((word) => paths[word] ?? word));
   }
   chromium = await browser();
 });
