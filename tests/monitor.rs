@@ -12,11 +12,13 @@ use std::time::{Duration, Instant};
 
 use boresight::docking_renderer::DockingRenderer;
 use boresight::docking_run::PreparedDocking;
+use boresight::files::{TableReader, TableWriter};
 use boresight::monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::Prepared;
 use boresight::scenario::{Scenario, ScenarioSource};
 use serde_json::Value;
+use sim::truth::FrameTruth;
 use support::Bench;
 
 /// Longer than the monitor takes on a busy machine for anything that is asked here.
@@ -191,6 +193,33 @@ fn a_far_range_replay_shows_the_measurements_of_the_run_and_the_pictures_of_its_
         assert!(replayed.get(&picture).body == live.get(&picture).body, "frame {frame}");
     }
     assert_eq!(replayed.json("/api/session.json")["mode"], "replay");
+}
+
+/// A number of a frame after which there is none, and a table of answers that was changed.
+#[test]
+fn a_run_that_is_damaged_is_not_replayed() {
+    let bench = Bench::new();
+    bench.boresight("run argon --frames 9000..9003 --no-report --out run").done();
+    let refused = || {
+        let address = "127.0.0.1:0".parse().unwrap();
+        let served =
+            serve(&replay(bench.path("run")), address, |_| panic!("it is served"), std::future::pending());
+        served.unwrap_err().to_string()
+    };
+    let answers = bench.read("run/measurements.csv");
+    bench.write("run/measurements.csv", answers.replacen("detected", "detecter", 1));
+    let message = refused();
+    assert!(message.contains("measurements.csv") && message.contains("SHA-256"), "{message}");
+    bench.write("run/measurements.csv", answers);
+    bench.unseal("run");
+    let path = bench.path("run/truth/frames.parquet");
+    let (_, mut truth) = TableReader::<FrameTruth>::open(&path).unwrap().next().unwrap().unwrap();
+    truth[0].frame = u64::MAX;
+    std::fs::remove_file(&path).unwrap();
+    let mut table = TableWriter::create(&path).unwrap();
+    table.write(truth).unwrap();
+    table.finish().unwrap();
+    assert!(refused().contains("frame 18446744073709551615 is the last number"), "{}", refused());
 }
 
 #[test]
@@ -438,4 +467,38 @@ fn mistakes_are_told_before_anything_is_served() {
     }
     bench.boresight("run docking --frames 24000..24002 --out run").done();
     bench.boresight("monitor run --from 24001").refused(&["--from", "as it was flown"]);
+    for table in ["measurements.csv", "truth/fields.parquet"] {
+        std::fs::remove_file(bench.path("run").join(table)).unwrap();
+        let told = format!("run: run.toml is there and {table} is not");
+        bench.boresight("monitor run").refused(&[&told, "still goes on", "monitor SCENARIO"]);
+    }
+}
+
+#[test]
+fn a_built_in_scenario_is_itself_beside_a_folder_of_its_name() {
+    let bench = Bench::new();
+    bench.write("docking/nothing", "");
+    bench.boresight("monitor docking --from 25169").refused(&["--from is 25169"]);
+    bench.boresight("monitor ./docking").refused(&["./docking", "run.toml"]);
+}
+
+#[test]
+fn of_the_true_places_that_of_the_target_has_a_name() {
+    let monitor = Monitor::of(|| live("argon", 145..146));
+    let report = monitor.json("/api/frames/145.json");
+    let labels = report["truth_overlay"].as_array().unwrap().iter();
+    let named: Vec<_> = labels.filter_map(|shape| Some((&shape["kind"], shape["label"].as_str()?))).collect();
+    assert_eq!(named, [(&Value::from("truth target"), "target")]);
+}
+
+#[test]
+fn the_page_is_told_where_a_day_begins() {
+    let monitor = Monitor::of(|| live("argon", 0..1));
+    let session = monitor.json("/api/session.json");
+    let begins: Vec<u64> =
+        session["begins"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
+    assert_eq!(begins.first(), Some(&0));
+    assert_eq!(begins.len(), 5);
+    assert_eq!(session["plan"]["points"][0][0], 0);
+    assert_eq!(Monitor::docking(24000..24002).json("/api/session.json")["begins"], serde_json::json!([]));
 }

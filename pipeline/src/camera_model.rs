@@ -142,19 +142,29 @@ impl CameraModel {
         for _ in 0..MAX_NEWTON_STEPS {
             let (du, dv) = self.distort(u, v);
             let (rx, ry) = (x - du, y - dv);
-            if rx.abs() + ry.abs() <= 1e-13 * (1.0 + x.abs() + y.abs()) {
+            if rx.abs() + ry.abs() <= newton_tolerance_px(x, y) {
                 break;
             }
-            let (a, b, d) = self.slopes(u, v);
-            let determinant = a * d - b * b;
-            u += (d * rx - b * ry) / determinant;
-            v += (a * ry - b * rx) / determinant;
+            let (step_u, step_v) = solve(self.slopes(u, v), (rx, ry));
+            u += step_u;
+            v += step_v;
         }
         let (du, dv) = self.distort(u, v);
         let found = (x - du).abs() + (y - dv).abs() <= RESIDUAL_PX
             && u * u + v * v <= self.fold_radius_px * self.fold_radius_px;
         found.then_some((u, v))
     }
+}
+
+/// What Newton's method for the offset (x, y) may leave, px.
+fn newton_tolerance_px(x: f64, y: f64) -> f64 {
+    1e-13 * (1.0 + x.abs() + y.abs())
+}
+
+/// The solution (x, y) of a x + b y = p, b x + d y = q.
+fn solve((a, b, d): (f64, f64, f64), (p, q): (f64, f64)) -> (f64, f64) {
+    let determinant = a * d - b * b;
+    ((d * p - b * q) / determinant, (a * q - b * p) / determinant)
 }
 
 /// The first radius where d/dr (r + k1 r³ + k2 r⁵ + k3 r⁷) is not positive, looked for up to four times the
@@ -244,6 +254,63 @@ pub(crate) mod tests {
         // And 385 px is the largest radius that anything is seen at.
         assert!(model.back_project(PixelPoint::new(395.0 - 384.0, 288.0)).is_some());
         assert!(model.back_project(PixelPoint::new(395.0 - 386.0, 288.0)).is_none());
+    }
+
+    /// Beyond the fold, on the axes and between them: Newton's method ends anywhere, near the fold without a solution or at the one
+    /// that r − 1e-6 r³ has on the other side of it.
+    #[test]
+    fn beyond_the_fold_no_radius_has_a_direction() {
+        let camera = Camera { radial: [-1e-6, 0.0, 0.0], ..argon_camera() };
+        let model = CameraModel::new(&camera).unwrap();
+        let oblique = std::f64::consts::FRAC_1_SQRT_2;
+        for radius in 386..900 {
+            for (x, y) in [(1.0, 0.0), (0.0, 1.0), (oblique, oblique), (oblique, -oblique)] {
+                let point = PixelPoint::new(395.0 + f64::from(radius) * x, 288.0 + f64::from(radius) * y);
+                assert_eq!(model.back_project(point), None, "{point:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn two_equations_are_solved() {
+        // 2 · 3 + 1 · (−4) = 2 and 1 · 3 + 5 · (−4) = −17.
+        assert_eq!(solve((2.0, 1.0, 5.0), (2.0, -17.0)), (3.0, -4.0));
+    }
+
+    /// 1 + 3 k1 r² = 0, 1 + 5 k2 r⁴ = 0 and 1 + 7 k3 r⁶ = 0 at 400 px; and 1 + 3 k1 r² + 5 k2 r⁴ + 7 k3 r⁶ with terms of 1, −1 and −1.
+    #[test]
+    fn the_fold_is_where_the_radius_stops_growing() {
+        let r2 = 400.0 * 400.0;
+        let (k1, k2, k3) = (1.0 / (3.0 * r2), 1.0 / (5.0 * r2 * r2), 1.0 / (7.0 * r2 * r2 * r2));
+        for radial in [[-k1, 0.0, 0.0], [0.0, -k2, 0.0], [0.0, 0.0, -k3], [k1, -k2, -k3], [k1, -3.0 * k2, k3]]
+        {
+            let fold = fold_radius_px(&Camera { radial, ..argon_camera() });
+            // The steps of the search are 0.5 px.
+            assert!((fold - 400.0).abs() < 0.5, "{radial:?}: {fold}");
+        }
+        assert_eq!(fold_radius_px(&argon_camera()), f64::INFINITY);
+    }
+
+    /// Up to four times the distance of the corner that is farthest from the principal point, wherever that is.
+    #[test]
+    fn a_fold_is_looked_for_as_far_as_four_times_the_farthest_corner() {
+        let camera = |x: f64, y: f64, fold_px: f64| Camera {
+            columns: 100,
+            rows: 100,
+            principal_x_px: x,
+            principal_y_px: y,
+            radial: [-1.0 / (3.0 * fold_px * fold_px), 0.0, 0.0],
+            ..argon_camera()
+        };
+        for (x, y, corner_px) in [
+            (10.0, 10.0, libm::hypot(89.5, 89.5)),
+            (99.0, 99.0, libm::hypot(99.5, 99.5)),
+            (99.0, 0.0, libm::hypot(99.5, 99.5)),
+            (-5.0, 120.0, libm::hypot(104.5, 120.5)),
+        ] {
+            assert!(fold_radius_px(&camera(x, y, 3.99 * corner_px)).is_finite(), "{x} {y}");
+            assert_eq!(fold_radius_px(&camera(x, y, 4.01 * corner_px)), f64::INFINITY, "{x} {y}");
+        }
     }
 
     #[test]

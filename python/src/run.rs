@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use boresight::docking_run::DockingFlight;
 use boresight::failure::Failure;
-use boresight::files::{RunDirectory, arrow_of_csv, arrow_of_parquet};
+use boresight::files::{Checksums, RunDirectory, arrow_of_csv, arrow_of_parquet};
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::{Expectation, FirstFailure, Flight};
 use boresight::scenario::{Scenario as Values, ScenarioSource};
@@ -76,6 +76,7 @@ impl Run {
             )));
         }
         let source = ScenarioSource::read(&file.to_string_lossy()).map_err(raised)?;
+        Checksums::check(&directory, |_| true).map_err(file_error)?;
         let is_docking = matches!(source.scenario, Values::Docking(_));
         Ok(Self { path: directory, is_docking, first_failure: None, _temporary: None })
     }

@@ -1,4 +1,4 @@
-//! Files that a user names: read whole, if they have an end.
+//! Files that a user names: opened or read whole, if they have an end.
 
 #![cfg_attr(
     not(test),
@@ -11,22 +11,37 @@
     )
 )]
 
-use std::io::{Error, Result};
+use std::fs::File;
+use std::io::{Error, Read, Result};
 use std::path::Path;
+
+/// Opens a file for reading. A pipe or a device, which may have no end or nobody at the other one, is refused.
+///
+/// # Errors
+/// Those of the operating system, and for a file that is not regular.
+pub fn open(path: &Path) -> Result<File> {
+    // Asked before: opening a pipe waits for whoever writes into it.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(Error::other("it is not a regular file"));
+    }
+    File::open(path)
+}
 
 /// The bytes of a file of at most `max_bytes`. A pipe or a device, which may have no end, is refused.
 ///
 /// # Errors
 /// Those of the operating system, and for a file that is not regular or larger.
 pub fn read(path: &Path, max_bytes: u64) -> Result<Vec<u8>> {
-    let metadata = std::fs::metadata(path)?;
-    if !metadata.is_file() {
-        return Err(Error::other("it is not a regular file"));
+    let file = open(path)?;
+    let length = file.metadata()?.len();
+    let too_long = |length| Error::other(format!("it has {length} bytes, expected at most {max_bytes}"));
+    if length > max_bytes {
+        return Err(too_long(length));
     }
-    if metadata.len() > max_bytes {
-        return Err(Error::other(format!("it has {} bytes, expected at most {max_bytes}", metadata.len())));
-    }
-    std::fs::read(path)
+    let mut bytes = Vec::with_capacity(length as usize);
+    // It may have grown since.
+    file.take(max_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > max_bytes { Err(too_long(bytes.len() as u64)) } else { Ok(bytes) }
 }
 
 /// The text of such a file.
@@ -44,6 +59,7 @@ mod tests {
 
     #[test]
     fn what_may_have_no_end_or_is_too_large_is_refused() {
+        assert!(open(Path::new("/dev/zero")).is_err() && open(Path::new("/")).is_err());
         assert!(read(Path::new("/dev/zero"), 10).is_err());
         assert!(read_text(Path::new("/dev/zero"), 10).is_err());
         let own = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));

@@ -268,13 +268,14 @@ impl SequenceArguments {
 fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Answer, Failure> {
     let (path, sequence) = (&arguments.directory, &arguments.sequence);
     sequence.check_free(&path.join("telemetry.csv"))?;
-    let (setup, config) = match (&sequence.scenario, setup_file(path, sequence)) {
+    let setup_file = setup_file(path, sequence);
+    let (setup, config) = match (&sequence.scenario, &setup_file) {
         (Some(word), _) => {
             let prepared = PreparedDocking::new(&ScenarioSource::read(word)?, DockingRenderer::Fast)?;
             (prepared.setup().clone(), prepared.scenario().docking.clone())
         }
         (None, Some(file)) => {
-            let file = SetupFile::read(&file)?;
+            let file = SetupFile::read(file)?;
             (file.setup(), file.docking)
         }
         (None, None) => {
@@ -287,7 +288,10 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
     let scratch = super::scratch_directory()?;
     let factory = arguments.pipeline.choice().docking_factory(&config, scratch.path())?;
     let fields = FieldSource::open(path, &setup, &sequence.options())?;
-    check_sums(path)?;
+    let of_setup = setup_file.as_deref().filter(|_| sequence.scenario.is_none()).and_then(Path::parent);
+    for folder in [of_setup, Some(path.as_path()).filter(|path| path.is_dir())].into_iter().flatten() {
+        check_sums(folder)?;
+    }
     if arguments.out.as_deref() == Some(Path::new("-")) {
         output.check_free("--out -")?;
         let processed = stream_fields(fields, &setup, factory.as_ref())?;
@@ -315,9 +319,9 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
 }
 
 /// Holds what a pipeline is given against the checksums of a dataset, where it is one that has them.
-fn check_sums(path: &Path) -> Result<(), FileError> {
+fn check_sums(folder: &Path) -> Result<(), FileError> {
     const GIVEN: [&str; 4] = ["camera.toml", "setup.toml", "stars.csv", "telemetry.csv"];
-    if path.is_dir() { Checksums::check(path, |name| GIVEN.contains(&name)) } else { Ok(()) }
+    Checksums::check(folder, |name| GIVEN.contains(&name))
 }
 
 /// The file that tells cameras and target: the one asked for, or `setup.toml` in a folder or beside a video.

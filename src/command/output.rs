@@ -5,6 +5,7 @@ use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use pipeline::external::protocol::harmless;
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -50,7 +51,7 @@ impl Output {
     /// A remark on stderr.
     pub(super) fn note(&self, text: impl Display) {
         // Nobody can be told that stderr is closed.
-        let _ = writeln!(std::io::stderr(), "{text}");
+        let _ = writeln!(std::io::stderr(), "{}", harmless(&text.to_string()));
     }
 
     /// Tells of a pipeline that failed, so that a program which never started is not taken for a poor one.

@@ -1,6 +1,5 @@
 //! Tables as Arrow has them, for whoever hands them on: whole, in memory.
 
-use std::fs::File;
 use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -10,7 +9,8 @@ use arrow_schema::{ArrowError, Field, Schema, SchemaRef};
 
 use super::FileError;
 use super::csv_table::csv_error;
-use super::error::Place;
+use super::error::{Place, open_regular};
+use super::lines::Lines;
 use super::parquet_file::{ParquetFile, damaged};
 use super::parquet_table::{Row, schema};
 
@@ -53,7 +53,7 @@ pub fn arrow_of_parquet(path: &Path) -> Result<(SchemaRef, Vec<RecordBatch>), Fi
 /// # Errors
 /// [`FileError`] for a file that cannot be read, or a cell that is no number where its column holds numbers.
 pub fn arrow_of_csv(path: &Path) -> Result<RecordBatch, FileError> {
-    let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+    let file = Lines::new(open_regular(path)?);
     let mut reader = csv::Reader::from_reader(file);
     let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
     let rows: Result<Vec<csv::StringRecord>, _> = reader.records().collect();

@@ -3,7 +3,6 @@
 //! The lines are those of `sha256sum`, and `sha256sum --check SHA256SUMS` reads them. Boresight reads them itself, after the files: of
 //! damage that a reader of the file can tell, it tells the place.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::Path;
 
@@ -84,7 +83,7 @@ fn is_sum(text: &str) -> bool {
 
 /// SHA-256 of a file, hexadecimal; `None` when it is not there.
 fn sha256(path: &Path) -> Result<Option<String>, FileError> {
-    let file = match File::open(path) {
+    let file = match sim::regular_file::open(path) {
         Ok(file) => file,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(FileError::io(path, "open", source)),

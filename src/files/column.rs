@@ -1,18 +1,18 @@
 //! One column of numbers of anybody's CSV table.
 
-use std::fs::File;
 use std::path::Path;
 
 use super::FileError;
 use super::csv_table::csv_error;
-use super::error::Place;
+use super::error::{Place, open_regular};
+use super::lines::Lines;
 
 /// The numbers of a column, by its name in the header; other columns are ignored.
 ///
 /// # Errors
 /// [`FileError`] for a file that cannot be read, has no such column or no row, or a cell that is no finite number.
 pub fn read_column(path: &Path, name: &str) -> Result<Vec<f64>, FileError> {
-    let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+    let file = Lines::new(open_regular(path)?);
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
     let Some(index) = header.iter().position(|column| column == name) else {

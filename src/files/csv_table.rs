@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::error::Place;
+use super::error::{Place, open_regular};
+use super::lines::Lines;
 use super::{FileError, WholeFile};
 
 /// Whether a file may lack a column.
@@ -23,14 +24,14 @@ pub(super) struct CsvReader {
     layout: Layout,
     /// For each column of the layout, where the file has it.
     positions: Vec<Option<usize>>,
-    reader: csv::Reader<File>,
+    reader: csv::Reader<Lines<File>>,
     record: csv::StringRecord,
 }
 
 impl CsvReader {
     /// Opens a table and checks its header: every required column, no unknown one, none twice.
     pub(super) fn open(path: &Path, layout: Layout) -> Result<Self, FileError> {
-        let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+        let file = Lines::new(open_regular(path)?);
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(file);
         let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
         let mut positions = vec![None; layout.len()];

@@ -1,6 +1,7 @@
 //! The one error type of reading and writing.
 
 use std::fmt;
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -133,6 +134,11 @@ pub enum FileError {
     },
 }
 
+/// Opens a file of anybody's making for reading; a pipe or a device is refused.
+pub(crate) fn open_regular(path: &Path) -> Result<File, FileError> {
+    sim::regular_file::open(path).map_err(|source| FileError::io(path, "open", source))
+}
+
 impl FileError {
     pub(crate) fn io(path: &Path, doing: &'static str, source: io::Error) -> Self {
         Self::Io { path: path.to_owned(), doing, source }
@@ -164,6 +170,6 @@ impl FileError {
 }
 
 /// Creates a file for writing; one that exists is refused, not overwritten.
-pub(super) fn create_new(path: &Path) -> Result<std::fs::File, FileError> {
-    std::fs::File::create_new(path).map_err(|source| FileError::io(path, "create", source))
+pub(super) fn create_new(path: &Path) -> Result<File, FileError> {
+    File::create_new(path).map_err(|source| FileError::io(path, "create", source))
 }

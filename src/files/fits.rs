@@ -3,7 +3,6 @@
 //! Its upper layers are not used: `compat` writes no comments and no COMMENT cards of a chosen place, and
 //! `parse_fits` wants the whole file in memory and adds offsets unchecked, which a lying header can overflow.
 
-use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
@@ -16,7 +15,7 @@ use fitsio_pure::image_writer::ImageWriter;
 use fitsio_pure::primary::build_primary_header;
 use fitsio_pure::value::Value;
 
-use super::error::{Place, create_new};
+use super::error::{Place, create_new, open_regular};
 use super::raw_image::{RawImage, checked_size, dn_of_all};
 use super::{FileError, FrameHeader, fits_cards, windows};
 
@@ -48,7 +47,7 @@ pub(super) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
 /// Tile-compressed images are not read.
 pub(super) fn read(path: &Path) -> Result<RawImage, FileError> {
     let io = |source| FileError::io(path, "read", source);
-    let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+    let file = open_regular(path)?;
     let length = file.metadata().map_err(io)?.len();
     let mut reader = BufReader::new(file);
     let mut offset = 0_u64;
@@ -56,6 +55,7 @@ pub(super) fn read(path: &Path) -> Result<RawImage, FileError> {
         let start = offset;
         let cards = read_header(path, &mut reader, offset == 0)?;
         let header = Header { path, cards: &cards };
+        header.check_once()?;
         offset = reader.stream_position().map_err(io)?;
         let bytes = header.data_bytes()?;
         let end = offset.checked_add(bytes).filter(|&end| end <= length).ok_or_else(|| {
@@ -112,6 +112,16 @@ impl Header<'_> {
 
     fn value(&self, keyword: &str) -> Option<&Value> {
         self.cards.iter().find(|card| card.keyword_str() == keyword).and_then(|card| card.value.as_ref())
+    }
+
+    /// Refuses a keyword that says how the pixels are stored and stands there twice: which of the two other readers believe is their affair.
+    fn check_once(&self) -> Result<(), FileError> {
+        const STORED: [&str; 7] = ["BITPIX", "NAXIS", "NAXIS1", "NAXIS2", "BSCALE", "BZERO", "BLANK"];
+        let count = |keyword: &str| self.cards.iter().filter(|card| card.keyword_str() == keyword).count();
+        match STORED.into_iter().find(|keyword| count(keyword) > 1) {
+            Some(keyword) => Err(self.error(keyword, format!("there {} times", count(keyword)), "once")),
+            None => Ok(()),
+        }
     }
 
     /// A whole number; `None` when the keyword is not there.

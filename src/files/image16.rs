@@ -1,6 +1,5 @@
 //! Grey PNG and TIFF, 8 or 16 bits a pixel.
 
-use std::fs::File;
 use std::io::{BufReader, BufWriter, Write};
 use std::path::Path;
 
@@ -9,8 +8,11 @@ use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageBuffer, ImageDecoder, ImageEncoder, ImageReader, Limits, Luma};
 
 use super::FileError;
-use super::error::{Place, create_new};
+use super::error::{Place, create_new, open_regular};
 use super::raw_image::{RawImage, check_claim, checked_size};
+
+/// Most bytes that a decoder makes of what a file says besides its pixels.
+const ABOUT_PIXELS_BYTES: u64 = 1 << 23;
 
 /// Writes the digital numbers as 16-bit grey PNG, not stretched.
 pub(super) fn write_png(path: &Path, frame: &Frame) -> Result<(), FileError> {
@@ -44,15 +46,15 @@ pub(super) fn write_png_of_depth(path: &Path, frame: &Frame) -> Result<(), FileE
 /// Reads a grey image of 8 or 16 bits. Colour, alpha, palettes and fewer bits are refused: the values that a
 /// decoder makes of them are not digital numbers.
 pub(super) fn read(path: &Path, format: image::ImageFormat) -> Result<RawImage, FileError> {
-    let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+    let file = open_regular(path)?;
     let mut reader = ImageReader::with_format(BufReader::new(file), format);
     let mut limits = Limits::no_limits();
     limits.max_image_width = Some(Camera::MAX_SIDE_PX as u32);
     limits.max_image_height = Some(Camera::MAX_SIDE_PX as u32);
-    // Pixels, and as much again for the decoder's own strips.
-    limits.max_alloc = Some(4 * (Camera::MAX_SIDE_PX * Camera::MAX_SIDE_PX) as u64);
-    reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(|error| image_error(path, error))?;
+    // Colour profiles and the like, which no pixel of ours needs, unpack to no more.
+    limits.max_alloc = Some(ABOUT_PIXELS_BYTES);
+    reader.limits(limits.clone());
+    let mut decoder = reader.into_decoder().map_err(|error| image_error(path, error))?;
     let (columns, rows) = decoder.dimensions();
     let (columns, rows) = checked_size(path, u64::from(columns), u64::from(rows))?;
     let color = decoder.original_color_type();
@@ -61,6 +63,9 @@ pub(super) fn read(path: &Path, format: image::ImageFormat) -> Result<RawImage, 
         return Err(FileError::value(path, Place::Header, "pixel type", format!("{color:?}"), expected));
     }
     check_claim(path, decoder.total_bytes())?;
+    // Pixels, and as much again for the decoder's own strips.
+    limits.max_alloc = Some(ABOUT_PIXELS_BYTES.saturating_add(decoder.total_bytes().saturating_mul(2)));
+    decoder.set_limits(limits).map_err(|error| image_error(path, error))?;
     let image = image::DynamicImage::from_decoder(decoder).map_err(|error| image_error(path, error))?;
     let dn = match image {
         image::DynamicImage::ImageLuma8(pixels) => pixels.into_raw().into_iter().map(u16::from).collect(),
@@ -131,6 +136,22 @@ mod tests {
         fs::write(&path, bytes).unwrap();
         let message = read_frame(&path, 1, 12, None).unwrap_err().to_string();
         assert!(message.contains("bytes of pixels"), "{message}");
+    }
+
+    /// A colour profile of a gigabyte of zeros is a megabyte of a file.
+    #[test]
+    fn what_a_png_unpacks_besides_its_pixels_is_bounded() {
+        let directory = tempdir().unwrap();
+        let mut path = directory.path().join("a.png");
+        for (length, is_read) in [(1 << 20, true), (1 << 26, false)] {
+            let mut bytes = Vec::new();
+            let mut encoder = PngEncoder::new(&mut bytes);
+            encoder.set_icc_profile(vec![0; length]).unwrap();
+            encoder.write_image(&[0; 16], 4, 4, ExtendedColorType::L8).unwrap();
+            fs::write(&path, bytes).unwrap();
+            assert_eq!(read_frame(&path, 1, 8, None).is_ok(), is_read, "{length}");
+            path.set_file_name("b.png");
+        }
     }
 
     /// The checksum of a PNG chunk (PNG specification, annex D).

@@ -10,6 +10,7 @@ use parquet::arrow::ProjectionMask;
 use parquet::arrow::arrow_reader::{ParquetRecordBatchReader, ParquetRecordBatchReaderBuilder};
 
 use super::FileError;
+use super::error::open_regular;
 use super::parquet_claims::{check_claims, check_footer};
 
 /// A Parquet file whose claims were held against its length. Nothing but its headers is read yet.
@@ -25,7 +26,7 @@ impl ParquetFile {
     /// [`FileError::Io`]; [`FileError::Format`] for a file that is not Parquet, is cut short, claims more than it can hold, or has
     /// nested columns.
     pub(crate) fn open(path: &Path) -> Result<Self, FileError> {
-        let mut file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+        let mut file = open_regular(path)?;
         let length = file.metadata().map_err(|source| FileError::io(path, "read", source))?.len();
         check_footer(path, &mut file, length)?;
         let opened = file.try_clone().map_err(|source| FileError::io(path, "open", source))?;

@@ -1,10 +1,14 @@
 //! Files that are not there until they are complete.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::whole_file::{PARTIAL, taken};
 use super::{FileError, WholeFile};
 
-/// Files that get their names when they are complete; until then they go by `NAME.partial`, and are removed when
+/// Files that get their names when they are complete; until then they go by names of their own, and are removed when
 /// the value is dropped.
 #[derive(Debug)]
 pub struct PartialFiles {
@@ -20,18 +24,19 @@ impl PartialFiles {
     pub fn of(names: &[&Path]) -> Result<Self, FileError> {
         for name in names {
             if name.exists() {
-                let reason = "exists; nothing is overwritten";
-                return Err(FileError::OutputTaken { path: name.to_path_buf(), reason });
+                return Err(taken(name));
             }
         }
-        let partial = |name: &Path| {
-            let mut path = name.as_os_str().to_owned();
-            path.push(".partial");
-            PathBuf::from(path)
+        // Nobody else's: another process may be making the same files.
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let own = format!("{}-{}", process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let partial = |name: &PathBuf| {
+            let file = name.file_name().map_or_else(String::new, |file| file.to_string_lossy().into_owned());
+            name.with_file_name(format!("{PARTIAL}{file}-{own}"))
         };
         let names: Vec<PathBuf> = names.iter().map(|name| name.to_path_buf()).collect();
-        let files = Self { paths: names.iter().map(|name| partial(name)).collect(), names };
-        files.remove(); // What a process that was killed left.
+        let files = Self { paths: names.iter().map(partial).collect(), names };
+        files.remove(); // What a process of the same number left that was killed.
         folders_of(&files.names).for_each(WholeFile::remove_abandoned);
         Ok(files)
     }
@@ -45,17 +50,17 @@ impl PartialFiles {
         &self.paths[index]
     }
 
-    /// Gives the files their names, the first one last: nobody looks for the others without it.
+    /// Gives the files their names, the first one last: nobody looks for the others without it. Of two processes that make the same
+    /// files the first one does it.
     ///
     /// # Errors
-    /// [`FileError::Io`] when a file of that name has come up meanwhile.
+    /// [`FileError::OutputTaken`] when a file of that name has come up meanwhile; [`FileError::Io`].
     pub fn complete(self) -> Result<(), FileError> {
         for (path, name) in self.paths.iter().zip(&self.names).rev() {
             // A link, unlike a renaming, never replaces a file.
-            std::fs::hard_link(path, name).map_err(|source| FileError::Io {
-                path: name.clone(),
-                doing: "create",
-                source,
+            std::fs::hard_link(path, name).map_err(|source| match source.kind() {
+                ErrorKind::AlreadyExists => taken(name),
+                _ => FileError::io(name, "create", source),
             })?;
         }
         Ok(())

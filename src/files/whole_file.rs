@@ -10,7 +10,7 @@ use tempfile::NamedTempFile;
 use super::FileError;
 
 /// How the names of files begin that are being written, or were left by a process that was killed.
-const PARTIAL: &str = ".partial-";
+pub(super) const PARTIAL: &str = ".partial-";
 
 /// A file that is being written grows. One that has not for so long was left by a process that was killed.
 const ABANDONED: Duration = Duration::from_secs(3600);
@@ -131,7 +131,8 @@ impl WholeFile {
     }
 }
 
-fn taken(path: &Path) -> FileError {
+/// That a file stands where another one should be.
+pub(super) fn taken(path: &Path) -> FileError {
     FileError::OutputTaken { path: path.to_owned(), reason: "exists; nothing is overwritten" }
 }
 

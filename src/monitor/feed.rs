@@ -16,7 +16,7 @@ use super::session::Session;
 use crate::docking_run::{DockingFlight, PreparedDocking};
 use crate::failure::Failure;
 use crate::files::docking::{FeatureRow, read_field_measurements, read_motion};
-use crate::files::{FrameCluster, Row, TableReader, read_field_telemetry, read_measurements};
+use crate::files::{Checksums, FrameCluster, Row, TableReader, read_field_telemetry, read_measurements};
 use crate::run::Prepared;
 
 /// What is monitored.
@@ -91,7 +91,11 @@ fn frames<F>(
 ) -> Result<Range<u64>, Failure> {
     let frames = match measurements {
         Measurements::Live { frames, .. } => frames.clone(),
-        Measurements::Replay(directory) => numbers(&directory.join(table))?,
+        Measurements::Replay(directory) => {
+            let frames = numbers(&directory.join(table))?;
+            Checksums::check(directory, |_| true)?;
+            frames
+        }
     };
     let count = frames.end - frames.start;
     if count > super::MOST_FRAMES {
@@ -113,7 +117,14 @@ fn numbers<R: Row>(path: &Path) -> Result<Range<u64>, Failure> {
             let message = format!("{}: frame {number} follows, expected {next}", path.display());
             return Err(Failure::Usage(message));
         }
-        frames = Some(frames.map_or(number, |frames| frames.start)..number + 1);
+        let after = number.checked_add(1).ok_or_else(|| {
+            let message = format!(
+                "{}: frame {number} is the last number there is, expected a smaller one",
+                path.display()
+            );
+            Failure::Usage(message)
+        })?;
+        frames = Some(frames.map_or(number, |frames| frames.start)..after);
     }
     frames.ok_or_else(|| Failure::Usage(format!("{}: no frame, expected one or more", path.display())))
 }

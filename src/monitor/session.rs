@@ -95,7 +95,7 @@ impl Session {
             pictures: VecDeque::new(),
             picture_bytes: 0,
             orders: VecDeque::new(),
-            goal: frames.start + AHEAD,
+            goal: frames.start.saturating_add(AHEAD),
             failure: None,
             is_closed: false,
         };

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use super::report::{PointingStars, VisibilityReport};
 use crate::failure::Failure;
-use crate::files::{FileError, WholeFile};
+use crate::files::{FileError, WholeFile, open_regular};
 
 /// Files that a report has, in the order in which they are written.
 const NAMES: [&str; 7] = [
@@ -132,7 +132,7 @@ fn sky(report: &VisibilityReport) -> String {
 /// [`FileError`] for a file that cannot be read, or a row that is none of its.
 pub fn read_sky(path: &Path) -> Result<Vec<PointingStars>, FileError> {
     let format = |error: csv::Error| FileError::format(path, "sky.csv", error);
-    let file = std::fs::File::open(path).map_err(io(path, "open"))?;
+    let file = open_regular(path)?;
     csv::Reader::from_reader(file).deserialize().map(|row| row.map_err(format)).collect()
 }
 

@@ -49,6 +49,15 @@ fn a_fits_header_that_lies_about_the_size_is_refused() {
 }
 
 #[test]
+fn a_fits_header_that_contradicts_itself_is_refused() {
+    check(
+        "fits",
+        with_card("EXPTIME", "NAXIS1  =                  751"),
+        &["NAXIS1", "there 2 times", "once"],
+    );
+}
+
+#[test]
 fn what_is_not_of_its_format_is_refused() {
     for format in ["fits", "png", "exr"] {
         check(format, |_| b"GIF89a".repeat(1000), &["not a readable"]);

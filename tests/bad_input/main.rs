@@ -4,6 +4,8 @@
 
 mod cameras;
 mod catalogues;
+#[cfg(unix)]
+mod devices;
 mod docking;
 mod images;
 mod measurements;

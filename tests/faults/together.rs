@@ -100,3 +100,24 @@ fn of_two_runs_into_one_directory_one_is_refused() {
     }
     assert_eq!(std::fs::read_dir(bench.path("runs")).unwrap().count(), 3);
 }
+
+#[test]
+fn of_two_that_measure_one_dataset_one_is_refused() {
+    let bench = Bench::new();
+    small(&bench);
+    bench.boresight("render small.toml --frames 20..30 --out set").done();
+    bench.boresight("process set --out whole.csv").done();
+    for _ in 0..4 {
+        let outputs = together(&bench, &["process set"; 2]);
+        let winner = outputs.iter().position(|output| output.status.success());
+        let winner = winner.unwrap_or_else(|| panic!("both were refused: {}", stderr(&outputs[0])));
+        let loser = &outputs[1 - winner];
+        assert_eq!(loser.status.code(), Some(2), "{}", stderr(loser));
+        assert!(stderr(loser).contains("nothing is overwritten"), "{}", stderr(loser));
+        assert_eq!(bench.read("set/measurements.csv"), bench.read("whole.csv"));
+        assert!(!bench.tree("set").into_keys().any(|path| path.to_string_lossy().contains("partial")));
+        for name in ["measurements.csv", "clusters.parquet"] {
+            std::fs::remove_file(bench.path("set").join(name)).unwrap();
+        }
+    }
+}

@@ -235,7 +235,21 @@ pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 200;
     let text = text.trim_end();
     let beginning = text.char_indices().nth(MOST).and_then(|(end, _)| text.get(..end));
-    beginning.map_or_else(|| text.to_owned(), |beginning| format!("{beginning}…"))
+    harmless(&beginning.map_or_else(|| text.to_owned(), |beginning| format!("{beginning}…")))
+}
+
+/// A text that orders nothing of a terminal: what a message quotes of a file or a program may hold escape sequences, which are shown as
+/// numbers. Lines and tabs stay.
+pub fn harmless(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for character in text.chars() {
+        if character.is_control() && !matches!(character, '\n' | '\t') {
+            shown.extend(character.escape_unicode());
+        } else {
+            shown.push(character);
+        }
+    }
+    shown
 }
 
 #[cfg(test)]
@@ -262,6 +276,13 @@ mod tests {
         assert_eq!(measurement.position, PixelPoint::new(1.5, 79.5));
         assert_eq!(measurement.line_of_sight, Some(Direction::from_unit(Vector3::z())));
         assert_eq!((got.n_stars, got.camera_from_icrs), (Some(3), None));
+    }
+
+    #[test]
+    fn a_reason_is_short_and_orders_nothing_of_a_terminal() {
+        assert_eq!(shortened("out of\tfilm \u{1b}[2J\r\n"), "out of\tfilm \\u{1b}[2J");
+        assert_eq!(shortened(&"ä".repeat(200)), "ä".repeat(200));
+        assert_eq!(shortened(&"ä".repeat(201)), "ä".repeat(200) + "…");
     }
 
     #[test]

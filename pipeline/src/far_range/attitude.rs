@@ -185,6 +185,36 @@ mod tests {
             .collect()
     }
 
+    #[test]
+    fn numbers_out_of_range_are_refused_by_name() {
+        let good = AttitudeConfig::default();
+        assert!(good.check().is_ok());
+        for (field, bad) in [
+            ("min_stars", AttitudeConfig { min_stars: 1, ..good.clone() }),
+            ("filter_lambda", AttitudeConfig { filter_lambda: 1.0, ..good.clone() }),
+            ("filter_lambda", AttitudeConfig { filter_lambda: -0.1, ..good.clone() }),
+            ("weight_floor_px", AttitudeConfig { weight_floor_px: f64::NAN, ..good.clone() }),
+        ] {
+            assert!(bad.check().unwrap_err().to_string().contains(field), "{field}");
+        }
+    }
+
+    /// ω = 1/(σ² + floor²): 1/(0.09 + 0.16), with 0.29 px for a brightness centre and 1e-4 px for the best one.
+    #[test]
+    fn a_star_weighs_as_its_centre_is_known() {
+        let config = |weights, weight_floor_px| AttitudeConfig {
+            weights,
+            weight_floor_px,
+            ..AttitudeConfig::default()
+        };
+        let weighing = config(StarWeights::InverseVariance, 0.4);
+        assert!((weighing.weight(Some(0.3)) - 4.0).abs() < 1e-12);
+        assert!((weighing.weight(None) - 1.0 / (0.0841 + 0.16)).abs() < 1e-12);
+        let without_floor = config(StarWeights::InverseVariance, 0.0);
+        assert!((without_floor.weight(Some(1e-9)) - 1e8).abs() < 1e-3);
+        assert_eq!(config(StarWeights::Equal, 0.4).weight(Some(0.3)), 1.0);
+    }
+
     fn unit_quaternion() -> impl Strategy<Value = [f64; 4]> {
         proptest::array::uniform4(-1.0..1.0f64)
             .prop_filter("not near zero", |q| q.iter().map(|v| v * v).sum::<f64>() > 0.01)

@@ -354,10 +354,9 @@ mod tests {
 
     #[test]
     fn the_distortion_is_that_of_its_formula() {
-        for (u, v, x, y) in [
-            (300.0, -200.0, 299.901_895_5, -199.934_597),
-            (-1200.0, 700.0, -1_241.006_742, 724.403_099_5),
-        ] {
+        for (u, v, x, y) in
+            [(300.0, -200.0, 299.901_895_5, -199.934_597), (-1200.0, 700.0, -1_241.006_742, 724.403_099_5)]
+        {
             let bent = BENT.apply(Offset { u, v });
             assert!((bent.u - x).abs() < 1e-9 && (bent.v - y).abs() < 1e-9, "{bent:?}");
             let back = BENT.remove(Offset { u: x, v: y }).unwrap();

@@ -1,10 +1,10 @@
 //! Bytes that come in order, from a file or a pipe, and how far they have been read.
 
-use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use super::super::FileError;
+use super::super::error::open_regular;
 
 /// A source of bytes that is read once, from front to back.
 pub(super) struct Input {
@@ -15,7 +15,7 @@ pub(super) struct Input {
 
 impl Input {
     pub(super) fn file(path: &Path) -> Result<Self, FileError> {
-        let file = File::open(path).map_err(|source| FileError::io(path, "open", source))?;
+        let file = open_regular(path)?;
         Ok(Self::new(path, BufReader::with_capacity(1 << 16, file)))
     }
 
