@@ -16,9 +16,12 @@ export interface Session {
   /** Frames a second at speed 1. */
   rate_hz: number;
   cameras: Camera[];
-  plan: { range_unit: string; points: [number, number][]; corridor: [number, number, number][] };
-  /** The chaser's way in the axes of the target's orbit, and the target's distance from the centre of the Earth at the beginning. */
-  orbit_rtn_km?: [number, number, number][];
+  /** Points: frame, range and range rate; corridor: range, least and greatest rate. */
+  plan: { range_unit: string; points: [number, number, number][]; corridor: [number, number, number][] };
+  /** First frames of the days of a schedule; empty in a world without. */
+  begins: number[];
+  /** The chaser's way, by frame, in the axes of the target's orbit, and the target's distance from the centre of the Earth at the beginning. */
+  orbit_rtn_km?: [number, Vector][];
   orbit_radius_km?: number;
   /** Centre of the docking unit from the target's, m. */
   docking_unit_m?: [number, number];

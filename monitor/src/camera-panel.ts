@@ -27,8 +27,10 @@ const LEGENDS: Record<Session["world"], [string, string, boolean][]> = {
   docking: [
     ["cross", "cross", false],
     ["circle", "marks", true],
+    ["mark rejected", "rejected", false],
     ["docking_unit", "docking unit", true],
     ["station", "outline", true],
+    ["truth", "truth", true],
   ],
   far_range: [
     ["target", "target", false],
@@ -36,8 +38,14 @@ const LEGENDS: Record<Session["world"], [string, string, boolean][]> = {
     ["hotspot", "hotspot", false],
     ["candidate", "candidate", false],
     ["unlinked", "unlinked", false],
+    ["truth", "truth", true],
   ],
 };
+
+/** Figures that are drawn thicker. */
+const BOLD = new Set(["target", "cross", "truth target"]);
+
+const colourOf = (shape: Shape, all: string | null): string => all ?? COLOURS[shape.kind] ?? "#ffffff";
 
 export class CameraPanel {
   private readonly canvas = element<HTMLCanvasElement>("#camera > canvas");
@@ -55,6 +63,8 @@ export class CameraPanel {
       const mark = document.createElement("i");
       mark.style.color = COLOURS[kind] ?? TRUTH;
       mark.className = round ? "round" : "";
+      // Like the column of the truth, it is there when the truth is shown.
+      item.className = kind === "truth" ? "truth" : "";
       item.append(mark, text);
       legend.append(item);
     }
@@ -103,12 +113,11 @@ export class CameraPanel {
     context.imageSmoothingQuality = "low";
     // Each row of a field stands about its own row of the camera.
     context.drawImage(this.picture, -0.5, first_row - row_step / 2, columns, rows * row_step);
-    if (this.overlay) {
-      this.shapes(report.overlay, scale, null);
-    }
-    if (this.truth) {
-      this.shapes(report.truth_overlay, scale, TRUTH);
-    }
+    const [found, places] = [this.overlay ? report.overlay : [], this.truth ? report.truth_overlay : []];
+    this.shapes(found, scale, null);
+    this.shapes(places, scale, TRUTH);
+    const labelled = [...places.map((shape) => [shape, TRUTH] as const), ...found.map((shape) => [shape, null] as const)];
+    this.labels(labelled, scale, columns);
     context.restore();
     if (this.session.world === "far_range") {
       this.magnify(scale);
@@ -159,9 +168,8 @@ export class CameraPanel {
     const { context } = this;
     for (const shape of shapes) {
       const { x_px: x, y_px: y, size_px: size } = shape;
-      context.strokeStyle = all ?? COLOURS[shape.kind] ?? "#ffffff";
-      context.fillStyle = context.strokeStyle;
-      context.lineWidth = ((shape.kind === "target" || shape.kind === "cross" ? 2 : 1.2) * density) / scale;
+      context.strokeStyle = colourOf(shape, all);
+      context.lineWidth = ((BOLD.has(shape.kind) ? 2 : 1.2) * density) / scale;
       context.setLineDash(all ? [(4 * density) / scale, (3 * density) / scale] : []);
       context.beginPath();
       if (shape.figure === "circle") {
@@ -179,11 +187,33 @@ export class CameraPanel {
         }
       }
       context.stroke();
-      if (shape.label) {
-        context.font = `${(9 * density) / scale}px system-ui, sans-serif`;
-        context.fillText(shape.label, x + size + 2, y + size / 2);
-      }
     }
     context.setLineDash([]);
+  }
+
+  /** Words beside figures, the first ones first: one that would lie on another is left out. */
+  private labels(shapes: (readonly [Shape, string | null])[], scale: number, columns: number): void {
+    const { context } = this;
+    const height = (9 * Math.min(devicePixelRatio, 2)) / scale;
+    context.font = `${height}px system-ui, sans-serif`;
+    const drawn: { x: number; y: number; width: number }[] = [];
+    for (const [shape, all] of shapes) {
+      if (!shape.label) {
+        continue;
+      }
+      const { width } = context.measureText(shape.label);
+      const beside = shape.size_px + 2;
+      // To the left where the picture ends.
+      const x = shape.x_px + beside + width < columns ? shape.x_px + beside : shape.x_px - beside - width;
+      const place = { x, y: shape.y_px + shape.size_px / 2, width };
+      const liesOn = (other: typeof place) =>
+        place.x < other.x + other.width && other.x < place.x + place.width && Math.abs(place.y - other.y) < height;
+      if (drawn.some(liesOn)) {
+        continue;
+      }
+      context.fillStyle = colourOf(shape, all);
+      context.fillText(shape.label, place.x, place.y);
+      drawn.push(place);
+    }
   }
 }

@@ -14,6 +14,7 @@ import {
   Vector3,
 } from "three";
 import type { Model, Session } from "./api.js";
+import { pieces } from "./pieces.js";
 import { fieldOfView, label, line, placed, Stage, vector } from "./stage.js";
 
 const EARTH_RADIUS_KM = 6371;
@@ -46,8 +47,9 @@ export class FarRangeModel {
     );
     earth.position.set(-(session.orbit_radius_km ?? 2 * EARTH_RADIUS_KM), 0, 0);
     world.add(earth);
-    const orbit = (session.orbit_rtn_km ?? []).map(vector);
-    world.add(line(orbit, 0x57c7ff, 0.55));
+    for (const piece of pieces(session.orbit_rtn_km ?? [], ([frame]) => frame, session.begins)) {
+      world.add(line(piece.map(([, place]) => vector(place)), 0x57c7ff, 0.55));
+    }
     for (const radius of [1, 5, 10, 20, 30]) {
       const mark = label(`${radius} km`, "#8496a8");
       mark.position.set(radius, 0, 0);

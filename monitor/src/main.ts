@@ -21,6 +21,8 @@ async function start(): Promise<void> {
   element("#title").textContent = session.title;
   element("#mode").textContent = session.mode;
   element("#notes").textContent = session.notes.join(" ");
+  // A measurement of the far range has no σ, of no pipeline.
+  document.body.classList.toggle("without-sigma", session.world === "far_range");
   document.title = `${session.title} – Boresight monitor`;
 
   const camera = new CameraPanel(session);

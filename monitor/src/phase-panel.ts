@@ -3,9 +3,22 @@
 import uPlot from "uplot";
 import type { History, Report, Session } from "./api.js";
 import { element } from "./canvas.js";
+import { pieces } from "./pieces.js";
 import { colour } from "./theme.js";
 
 type Point = readonly [number, number];
+/** Ticks of a logarithmic axis: without the ends of the scale, which are no round numbers and stand on the edge of the chart. */
+const decades = (_chart: uPlot, _axis: number, least: number, greatest: number): number[] => {
+  const ticks: number[] = [];
+  for (let power = Math.floor(Math.log10(least)); power <= Math.log10(greatest); power++) {
+    // Of a text, so that 0.3 is 0.3 and not 3 × 0.1.
+    ticks.push(...[1, 2, 3, 4, 5, 6, 7, 8, 9].map((digit) => Number(`${digit}e${power}`)));
+  }
+  return ticks.filter((tick) => tick >= least && tick <= greatest);
+};
+
+/** Frame, range and range rate. */
+type Moment = readonly [number, number, number];
 
 export class PhasePanel {
   private readonly place = element("#phase > .chart");
@@ -59,14 +72,14 @@ export class PhasePanel {
     const options: uPlot.Options = {
       width,
       height,
-      padding: [6, 10, 0, 0],
+      padding: [6, 16, 0, 0],
       legend: { show: false },
       cursor: { show: false },
       scales: {
         // The approach goes to the right.
         x: { time: false, dir: -1, ...(isWide ? { distr: 3 as const } : {}), range: [least * 0.95, greatest * 1.05] },
       },
-      axes: [axis(`range, ${range_unit}`, 22), axis("rate, m/s", 44)],
+      axes: [{ ...axis(`range, ${range_unit}`, 22), ...(isWide ? { splits: decades } : {}) }, axis("rate, m/s", 44)],
       series: [{}, edge, edge],
       bands: [{ series: [2, 1], fill: colour("corridor") }],
       hooks: { draw: [(chart) => this.drawFlight(chart)] },
@@ -82,8 +95,7 @@ export class PhasePanel {
     ctx.rect(chart.bbox.left, chart.bbox.top, chart.bbox.width, chart.bbox.height);
     ctx.clip();
     const now = this.last?.frame ?? -1;
-    const upTo = (points: [number, number, number][]): Point[] =>
-      points.filter(([frame]) => frame <= now).map(([, range, rate]) => [range, rate]);
+    const upTo = (points: Moment[]): Moment[] => points.filter(([frame]) => frame <= now);
     this.line(chart, this.session.plan.points, colour("dim"), 1, [3, 3]);
     const measured = upTo(this.history.measured);
     // A camera in the far range measures directions: the range there is the orbit's.
@@ -92,8 +104,8 @@ export class PhasePanel {
       this.line(chart, upTo(this.history.truth), isOrbit ? colour("accent") : colour("truth"), 1.5, []);
     }
     ctx.fillStyle = colour("accent");
-    for (const point of measured) {
-      this.dot(chart, point, 1.6);
+    for (const [, range, rate] of measured) {
+      this.dot(chart, [range, rate], 1.6);
     }
     const current = this.last?.phase;
     if (current?.measured) {
@@ -107,13 +119,15 @@ export class PhasePanel {
     ctx.restore();
   }
 
-  private line(chart: uPlot, points: readonly Point[], style: string, width: number, dash: number[]): void {
+  private line(chart: uPlot, points: readonly Moment[], style: string, width: number, dash: number[]): void {
     const { ctx } = chart;
     ctx.beginPath();
-    points.forEach(([range, rate], i) => {
-      const [x, y] = [chart.valToPos(range, "x", true), chart.valToPos(rate, "y", true)];
-      i === 0 ? ctx.moveTo(x, y) : ctx.lineTo(x, y);
-    });
+    for (const piece of pieces(points, ([frame]) => frame, this.session.begins)) {
+      piece.forEach(([, range, rate], i) => {
+        const [x, y] = [chart.valToPos(range, "x", true), chart.valToPos(rate, "y", true)];
+        i === 0 ? ctx.moveTo(x, y) : ctx.lineTo(x, y);
+      });
+    }
     ctx.strokeStyle = style;
     ctx.lineWidth = width * devicePixelRatio;
     ctx.setLineDash(dash);

@@ -14,7 +14,7 @@ use crate::docking_run::PreparedDocking;
 use crate::failure::Failure;
 use crate::monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
 use crate::run::Prepared;
-use crate::scenario::{Scenario, ScenarioSource};
+use crate::scenario::{BUILT_IN, Scenario, ScenarioSource};
 
 /// The address without `--bind`: this machine alone.
 const DEFAULT: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 7321);
@@ -36,7 +36,9 @@ pub(super) struct MonitorArguments {
 pub(super) fn monitor(arguments: &MonitorArguments, output: &Output) -> Result<Answer, Failure> {
     let directory = Path::new(&arguments.selection.scenario);
     let scratch = super::scratch_directory()?;
-    let (name, feed) = if directory.is_dir() {
+    // As in `run`, a built-in scenario is itself beside a folder of its name: that is `./NAME`.
+    let is_built_in = BUILT_IN.iter().any(|built_in| built_in.name == arguments.selection.scenario);
+    let (name, feed) = if directory.is_dir() && !is_built_in {
         arguments.check_replay()?;
         replay(directory)?
     } else {
@@ -70,7 +72,8 @@ impl MonitorArguments {
         ];
         match given.iter().find(|(_, is_given)| *is_given) {
             Some((option, _)) => Err(Failure::Usage(format!(
-                "{option} is given, expected with a scenario alone: a run directory is shown as it was flown"
+                "{option} is given with the directory {}, expected with a scenario alone: a run directory is shown as it was flown",
+                self.selection.scenario
             ))),
             None => Ok(()),
         }
@@ -120,6 +123,20 @@ fn replay(directory: &Path) -> Result<(String, Feed), Failure> {
         )));
     }
     let source = ScenarioSource::read(&run.to_string_lossy())?;
+    let truth = match &source.scenario {
+        Scenario::FarRange(_) => "truth/frames.parquet",
+        Scenario::Docking(_) => "truth/fields.parquet",
+    };
+    // A table has its name when it is complete.
+    if let Some(missing) =
+        [truth, "telemetry.csv", "measurements.csv"].iter().find(|name| !directory.join(name).is_file())
+    {
+        return Err(Failure::Usage(format!(
+            "{}: run.toml is there and {missing} is not, expected the directory of a run that is finished: this one still goes on, was \
+             killed, or no pipeline has processed its frames. `boresight monitor SCENARIO` flies a run and shows it as it goes on",
+            directory.display()
+        )));
+    }
     let measurements = || directory.to_path_buf();
     let feed = match &source.scenario {
         Scenario::FarRange(_) => {

@@ -184,7 +184,11 @@ fn true_places(objects: &[ObjectTruth]) -> Vec<Shape> {
         .map(|object| {
             let kind = format!("truth {}", object.kind.code());
             let place = [object.position.x, object.position.y];
-            Shape::new("circle", &kind, place, object.radius_px.max(TRUTH_PX))
+            let label = if object.kind == ObjectKind::Target { "target" } else { "" };
+            Shape {
+                label: label.to_owned(),
+                ..Shape::new("circle", &kind, place, object.radius_px.max(TRUTH_PX))
+            }
         })
         .collect()
 }

@@ -42,12 +42,15 @@ impl Overview {
                 let radius_km =
                     at(frames.start).map(|((_, time), track)| track.at(time).target.position_km.norm());
                 let step = ((frames.end - frames.start) / ORBIT_POINTS).max(1);
-                let orbit: Vec<[f64; 3]> = frames
+                let orbit: Vec<(u64, [f64; 3])> = frames
                     .clone()
                     .step_by(usize::try_from(step).unwrap_or(usize::MAX))
-                    .filter_map(at)
-                    .map(|((_, time), trajectory)| trajectory.at(time).chaser_rtn_km().into())
+                    .filter_map(|frame| {
+                        at(frame).map(|((_, time), track)| (frame, track.at(time).chaser_rtn_km().into()))
+                    })
                     .collect();
+                // Nobody looked between one day and the next: no line crosses that time.
+                let begins: Vec<u64> = schedule.sequences().map(|day| day.frames.start).collect();
                 let session = json!({
                     "world": "far_range",
                     "title": scenario.title,
@@ -56,6 +59,7 @@ impl Overview {
                     "rate_hz": FAR_RANGE_RATE_HZ,
                     "cameras": [camera("", &scenario.camera)],
                     "plan": plan,
+                    "begins": begins,
                     "orbit_rtn_km": orbit,
                     "orbit_radius_km": radius_km,
                     "notes": [],
@@ -90,6 +94,7 @@ impl Overview {
                     "rate_hz": simulator.field_rate_hz(),
                     "cameras": cameras,
                     "plan": plan,
+                    "begins": [],
                     "docking_unit_m": prepared.setup().target.docking_unit.centre_m,
                     "notes": notes,
                 });

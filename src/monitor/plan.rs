@@ -15,8 +15,8 @@ const MARGIN: f64 = 0.2;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Plan {
     range_unit: &'static str,
-    /// One point a moment, in order of time: range and range rate, m/s.
-    points: Vec<[f64; 2]>,
+    /// One point a moment, in order of time: frame, range and range rate, m/s.
+    points: Vec<(u64, f64, f64)>,
     /// In order of range: range, least and greatest rate.
     corridor: Vec<[f64; 3]>,
 }
@@ -32,19 +32,19 @@ impl Plan {
     ) -> Self {
         let step = ((frames.end - frames.start) / POINTS).max(1);
         let last = frames.end.saturating_sub(1);
-        let points: Vec<[f64; 2]> = frames
+        let points: Vec<(u64, f64, f64)> = frames
             .clone()
             .step_by(usize::try_from(step).unwrap_or(usize::MAX))
             .chain([last])
-            .filter_map(at)
-            .filter(|[range, _]| *range > 0.0)
+            .filter_map(|frame| at(frame).map(|[range, rate]| (frame, range, rate)))
+            .filter(|(_, range, _)| *range > 0.0)
             .collect();
         Self { range_unit, corridor: corridor(&points, least_margin_m_s), points }
     }
 }
 
-fn corridor(points: &[[f64; 2]], least_margin_m_s: f64) -> Vec<[f64; 3]> {
-    let ranges = points.iter().map(|[range, _]| *range);
+fn corridor(points: &[(u64, f64, f64)], least_margin_m_s: f64) -> Vec<[f64; 3]> {
+    let ranges = points.iter().map(|(_, range, _)| *range);
     let (least, greatest) =
         ranges.fold((f64::INFINITY, 0.0_f64), |(low, high), range| (low.min(range), high.max(range)));
     if points.is_empty() {
@@ -56,8 +56,8 @@ fn corridor(points: &[[f64; 2]], least_margin_m_s: f64) -> Vec<[f64; 3]> {
     (0..=PIECES)
         .filter_map(|i| {
             let range = piece(i);
-            let near = points.iter().filter(|[r, _]| (r - range).abs() <= NEAR * range);
-            let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), [_, rate]| {
+            let near = points.iter().filter(|(_, r, _)| (r - range).abs() <= NEAR * range);
+            let (low, high) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, _, rate)| {
                 (low.min(*rate), high.max(*rate))
             });
             let margin = |rate: f64| MARGIN * rate.abs() + least_margin_m_s;
