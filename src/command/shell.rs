@@ -60,7 +60,8 @@ fn write_pages(
     let path = folder.join(format!("{name}.1"));
     let io = |source| FileError::io(&path, "write", source);
     let mut page = Vec::new();
-    clap_mangen::Man::new(command.clone()).title(name).render(&mut page).map_err(io)?;
+    let command_with_usage = command.clone().override_usage(usage(command));
+    clap_mangen::Man::new(command_with_usage).title(name).render(&mut page).map_err(io)?;
     let file = WholeFile::create(&path)?;
     file.file().write_all(&page).map_err(io)?;
     file.replace()?;
@@ -69,4 +70,20 @@ fn write_pages(
         write_pages(below, &format!("{name}-{}", below.get_name()), folder, pages)?;
     }
     Ok(())
+}
+
+/// The synopsis of a page. That of clap_mangen has options without their values.
+fn usage(command: &Command) -> String {
+    let name = command.get_bin_name().unwrap_or_else(|| command.get_name()).to_owned();
+    let shown = || command.get_arguments().filter(|argument| !argument.is_hide_set());
+    let options = shown()
+        .filter(|argument| !argument.is_positional())
+        .map(|option| if option.is_required_set() { option.to_string() } else { format!("[{option}]") });
+    let places = command.get_positionals().filter(|place| !place.is_hide_set()).map(ToString::to_string);
+    let below = match (command.has_subcommands(), command.is_subcommand_required_set()) {
+        (false, _) => None,
+        (true, true) => Some("<COMMAND>".to_owned()),
+        (true, false) => Some("[COMMAND]".to_owned()),
+    };
+    std::iter::once(name).chain(options).chain(places).chain(below).collect::<Vec<_>>().join(" ")
 }
