@@ -4,13 +4,14 @@
     python3 golden/verify.py [--fast] [--only NAME ...] [--list] [--work FOLDER] [--python PYTHON]
 
 Three kinds of witnesses:
-- references made anew: the scripts that made golden/ run again on a copy of it, and give what is committed (the same bytes, or the same numbers to 1e-9: the last digits are the C library's);
+- references made anew: the scripts that made golden/ run again on a copy of it, and give what is committed (the same bytes, or the same numbers to 1e-9: the last digits are the C library's; of Mitsuba's
+  images the same rays but for a few, witnesses/docking_images.py);
 - tests that hold the simulator against those references;
 - tools that look at what is simulated now: plate solvers, an extractor, a catalogue, OpenCV, Mitsuba.
 
-Needs cargo, and Debian's `astrometry.net` and `astrometry-data-tycho2-10-19` for two of them. What comes from PyPI is installed, in the versions that are pinned beside each script, into environments below
-FOLDER (target/verify). PYTHON, when given, is one that has the package `boresight` already. With --fast the tools look at fewer frames. Exit status 0 when all agree, 1 when one does
-not, 2 when one could not be asked.
+Needs cargo, and Debian's `astrometry.net` and `astrometry-data-tycho2-10-19` for two of them; their versions are printed. What comes from PyPI is installed, in the versions that are pinned beside each
+script (requirements.txt, and constraints.txt for all that these need), into environments below FOLDER (target/verify). PYTHON, when given, is one that has the package `boresight` already. With --fast the tools
+look at fewer frames. Exit status 0 when all agree, 1 when one does not, whatever else, and 2 when one could not be asked and all others agree.
 """
 
 import argparse
@@ -18,15 +19,19 @@ import dataclasses
 import math
 import os
 import pathlib
+import shlex
 import shutil
 import subprocess
 import sys
 import time
+import traceback
 import venv
 
 GOLDEN = pathlib.Path(__file__).resolve().parent
 ROOT = GOLDEN.parent
 SAME_NUMBERS = 1e-9
+# Those that the figures of README.md were made with; an index is data, and another version may hold other stars.
+DEBIAN = {"astrometry.net": "0.93+dfsg-1+b1", "astrometry-data-tycho2-10-19": "2-4"}
 
 
 class CannotAsk(Exception):
@@ -45,22 +50,35 @@ class Court:
     def run(self, *words, **options):
         """A command whose output goes to the log; its output as text. CalledProcessError when it fails."""
         self.log.write(f"$ {' '.join(map(str, words))}\n")
-        done = subprocess.run([str(word) for word in words], cwd=options.pop("cwd", ROOT), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
+        try:
+            done = subprocess.run([str(word) for word in words], cwd=options.pop("cwd", ROOT), text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
+        except FileNotFoundError as missing:
+            raise CannotAsk(f"{words[0]} is not there") from missing
         self.log.write(done.stdout)
         self.log.flush()
         done.check_returncode()
         return done.stdout
 
-    def environment(self, name, requirements, *packages):
-        """The Python of an environment with pinned packages, made when it is not there."""
+    def environment(self, name, requirements):
+        """The Python of an environment with pinned packages, made when it is not there or was made of other pins."""
         folder = self.work / f"venv-{name}"
         python = folder / "bin" / "python"
         whole = folder / "installed"
-        if not whole.exists():
+        pins = "".join(path.read_text() for path in pinned(requirements))
+        if not whole.exists() or whole.read_text() != pins:
             venv.create(folder, with_pip=True, clear=True)
-            self.run(python, "-m", "pip", "install", "--quiet", "-r", requirements, *packages)
-            whole.touch()
+            self.install(python, requirements)
+            whole.write_text(pins)
         return python
+
+    def install(self, python, requirements):
+        """Packages as they are pinned. Without them there is no witness, and none that disagrees."""
+        frozen = [word for path in pinned(requirements)[1:] for word in ("-c", path)]
+        try:
+            self.run(python, "-m", "pip", "install", "--quiet", "-r", requirements, *frozen)
+        except subprocess.CalledProcessError as failed:
+            raise CannotAsk(f"pip does not install {requirements}: {last_lines(failed.stdout)}") from failed
+        self.run(python, "-m", "pip", "freeze")
 
     def witness_python(self):
         """A Python with the package of this tree and the tools that look at its frames."""
@@ -69,8 +87,20 @@ class Court:
             python = self.environment("witnesses", requirements)
             self.run(python, "-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps", ROOT / "python")
             return python
-        self.run(self.python, "-m", "pip", "install", "--quiet", "-r", requirements)
+        self.install(self.python, requirements)
         return self.python
+
+
+def pinned(requirements):
+    """The files that say which packages: what is wanted, and all that it needs where that is more."""
+    constraints = requirements.with_name("constraints.txt")
+    return [requirements, constraints] if constraints.exists() else [requirements]
+
+
+def last_lines(text):
+    """What a command that failed said in the end, or which of its claims do not hold."""
+    lines = [line for line in (text or "").splitlines() if line.strip()]
+    return " | ".join([line for line in lines if line.startswith("FAIL ")] or lines[-3:])
 
 
 def remade(folder, script="make.py", requirements=None, arguments=lambda python: []):
@@ -81,15 +111,30 @@ def remade(folder, script="make.py", requirements=None, arguments=lambda python:
         copy = court.work / "golden"
         shutil.rmtree(copy, ignore_errors=True)
         shutil.copytree(GOLDEN, copy, ignore=shutil.ignore_patterns("baselines", "docking", "witnesses", "__pycache__"))
+        for name in references(folder):
+            (copy / folder / name).unlink()  # A script that leaves one out makes none.
         environment = {name: value for name, value in os.environ.items() if name != "CI"}  # It is a copy that is made there.
         court.run(python, copy / folder / script, *arguments(python), "--reason", "made again to be compared", env=environment)
-        names = sorted(path.name for path in (GOLDEN / folder).iterdir() if path.suffix in {".csv", ".bin", ".avi", ".y4m"})
-        worst = max(difference(GOLDEN / folder / name, copy / folder / name) for name in names)
+        names = references(folder)
+        worst = compared(GOLDEN / folder, copy / folder, names)
         if worst > SAME_NUMBERS:
             raise AssertionError(f"differs by {worst:.1e}")
         return f"{len(names)} files, {'the same bytes' if worst == 0 else f'the same numbers to {worst:.0e}'}"
 
     return hear
+
+
+def references(folder):
+    """Names of the committed files that a script makes."""
+    return sorted(path.name for path in (GOLDEN / folder).iterdir() if path.suffix in {".csv", ".bin", ".avi", ".y4m"})
+
+
+def compared(committed, made, names):
+    """The largest difference of the files of two folders."""
+    missing = [name for name in names if not (made / name).exists()]
+    if missing or not names:
+        raise AssertionError(f"not made: {', '.join(missing) or 'anything'}")
+    return max(difference(committed / name, made / name) for name in names)
 
 
 def difference(committed, made):
@@ -141,10 +186,14 @@ def looks(script, fast, *, needs=None):
         if needs is not None and not any(pathlib.Path(place).exists() for place in needs):
             raise CannotAsk(f"{needs[0]} is not there: apt-get install astrometry.net astrometry-data-tycho2-10-19")
         said = court.run(court.witness_python(), GOLDEN / "witnesses" / script, *(fast if court.fast else []))
-        claims = [line.removeprefix("ok   ") for line in said.splitlines() if line.startswith("ok   ")]
-        return "; ".join(claims)
+        return claims_of(said)
 
     return hear
+
+
+def claims_of(said):
+    """What a script found to hold."""
+    return "; ".join(line.removeprefix("ok   ") for line in said.splitlines() if line.startswith("ok   "))
 
 
 def opencv(court):
@@ -154,6 +203,21 @@ def opencv(court):
     table = court.run("cargo", "run", "--quiet", "--locked", "--example", "docking_accuracy", "--", court.work / "accuracy", *rows, "--python", python)
     court.run(sys.executable, ROOT / "tests" / "python" / "check_docking_accuracy.py", input=table)
     return "poses nearer to the truth than OpenCV's in every row"
+
+
+def docking(court):
+    """Mitsuba's images of the docking target, made again; the smallest one alone when it must be fast."""
+    python = court.environment("mitsuba", GOLDEN / "docking" / "requirements.txt")
+    made, cache = court.work / "docking", court.work / "docking-cache"
+    for folder in (made, cache):
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+    # Not from the user's cache: an image that is there was not made again.
+    environment = {**os.environ, "BORESIGHT_MITSUBA": shlex.quote(str(python.parent / "mitsuba")), "XDG_CACHE_HOME": str(cache)}
+    case = ["wide-10-tilt"] if court.fast else []
+    court.run("cargo", "run", "--quiet", "--locked", "--example", "golden_docking", "--", made, *case, env=environment)
+    names = [f"{name}.exr" for name in case] or sorted(path.name for path in (GOLDEN / "docking").glob("*.exr"))
+    return claims_of(court.run(python, GOLDEN / "witnesses" / "docking_images.py", GOLDEN / "docking", made, *names))
 
 
 def mitsuba(court):
@@ -173,6 +237,7 @@ WITNESSES = {
     "psf": ("GalSim: images of stars", remade("psf", script="make_stamps.py")),
     "radiometry": ("spectra of CALSPEC and of Gunn and Stryker: electrons", remade("radiometry", arguments=photometry)),
     "video": ("FFmpeg: video files", remade("video")),
+    "docking": ("Mitsuba: images of the docking target", docking),
     "references": ("our simulator against all of these", tests("-p", "boresight-sim", "--test", "golden_*", "--test", "planets")),
     "drawn": ("our facets against Mitsuba's images", tests("-p", "boresight", "--test", "golden_docking")),
     "sky": ("Tycho-2, Liebe, Bright Star Catalogue: stars in circular fields", looks("sky.py", [], needs=TYCHO2)),
@@ -183,6 +248,37 @@ WITNESSES = {
     "opencv": ("OpenCV: poses of the docking target", opencv),
     "mitsuba": ("Mitsuba: closed forms", mitsuba),
 }
+
+
+def heard(court, hear, log):
+    """What a witness says: its verdict, and why. None of them, whatever happens to it, silences those after it."""
+    try:
+        return "ok", hear(court)
+    except CannotAsk as why:
+        return "not asked", why
+    except AssertionError as why:
+        return "NO", why
+    except subprocess.CalledProcessError as failed:
+        return "NO", f"{last_lines(failed.stdout)} (all of it: {log})"
+    except Exception as why:
+        traceback.print_exc(file=court.log)
+        return "NO", f"{type(why).__name__}: {why} (all of it: {log})"
+
+
+def status_of(verdicts):
+    """The exit status: a witness who disagrees is heard over one who could not be asked."""
+    return 1 if "NO" in verdicts else 2 if "not asked" in verdicts else 0
+
+
+def debian_versions():
+    """A line a package of Debian's: what is installed, and what the figures were made with."""
+    for name, expected in DEBIAN.items():
+        try:
+            asked = subprocess.run(["dpkg-query", "--show", "--showformat=${Version}", name], text=True, capture_output=True)
+            installed = asked.stdout if asked.returncode == 0 else "not installed"
+        except FileNotFoundError:
+            installed = "unknown: there is no dpkg-query"
+        yield f"Debian    {name} {installed}" + ("" if installed == expected else f" (README.md's figures: {expected})")
 
 
 def main():
@@ -201,24 +297,19 @@ def main():
     work = arguments.work.resolve()
     work.mkdir(parents=True, exist_ok=True)
     court = Court(work, arguments.python and arguments.python.absolute(), arguments.fast)
-    status = 0
+    for line in debian_versions():
+        print(line, flush=True)
+    verdicts = []
     for name, (what, hear) in WITNESSES.items():
         if arguments.only and name not in arguments.only:
             continue
         started = time.monotonic()
         log = work / f"{name}.log"
         with log.open("w") as court.log:
-            try:
-                verdict, said = "ok", hear(court)
-            except CannotAsk as why:
-                verdict, said, status = "not asked", why, max(status, 2)
-            except AssertionError as why:
-                verdict, said, status = "NO", why, max(status, 1)
-            except subprocess.CalledProcessError as failed:
-                last = [line for line in (failed.stdout or "").splitlines() if line.strip()][-3:]
-                verdict, said, status = "NO", " | ".join(last) + f" (all of it: {log})", max(status, 1)
+            verdict, said = heard(court, hear, log)
+        verdicts.append(verdict)
         print(f"{verdict:9} {name:15} {time.monotonic() - started:5.0f} s  {what}: {said}", flush=True)
-    return status
+    return status_of(verdicts)
 
 
 if __name__ == "__main__":
