@@ -43,7 +43,7 @@ mod tests {
     /// Of numbers from 1 to 2 the last digit kept is 2⁻¹¹.
     #[test]
     fn rounding_goes_to_the_nearest_number_that_is_kept() {
-        let digit = 2f32.powi(-11);
+        let digit = 1.0 / 2048.0_f32;
         for (digits, kept) in
             [(0.0, 0.0), (0.25, 0.0), (0.75, 1.0), (1.25, 1.0), (1.75, 2.0), (2047.75, 2048.0)]
         {
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn amounts_are_rounded_and_counts_are_not() {
-        let values = [Some(1.0 + 2f64.powi(-13)), Some(4097.0), None];
+        let values = [Some(1.0 + 1.0 / 8192.0), Some(4097.0), None];
         let rate = figure("dec_within_1px", Reduction::Rate, &values);
         let amount = figure("ra_rms_deg", Reduction::Rms, &values);
         let table = UnitTable { units: Vec::new(), figures: vec![rate.clone(), amount] };
