@@ -262,3 +262,144 @@ fn file_sha256(path: &Path) -> Result<String, FileError> {
         sim::regular_file::read(path, MOST_BYTES).map_err(|source| FileError::io(path, "read", source))?;
     Ok(sha256_hex(&bytes))
 }
+
+#[cfg(test)]
+mod tests {
+    use tempfile::TempDir;
+
+    use super::super::hand_made::{figure, sample};
+    use super::*;
+
+    /// Units of which the last is missed and the others have a hit with an error.
+    fn run(units: usize) -> Sample {
+        let hits: Vec<_> = (1..=units).map(|unit| Some(f64::from(u8::from(unit < units)))).collect();
+        let errors: Vec<_> =
+            (1..=units).map(|unit| Some(0.5 * unit as f64).filter(|_| unit < units)).collect();
+        let median = figure("ra_median_deg", Reduction::Median, &errors);
+        sample(vec![figure("hit_rate", Reduction::Rate, &hits), median])
+    }
+
+    /// A baseline of so many blocks of one unit, and the folder that it is in.
+    fn written(units: usize) -> (Baseline, TempDir) {
+        let mut baseline = Baseline::new(run(units), "a test", Some(1)).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        (baseline, folder)
+    }
+
+    #[test]
+    fn a_baseline_is_read_as_it_was_written() {
+        for units in [5, 6, 40] {
+            let (baseline, folder) = written(units);
+            assert_eq!(Baseline::read(folder.path()).unwrap(), baseline);
+            let rows = std::fs::read(folder.path().join("rows.parquet")).unwrap();
+            assert_eq!(baseline.header.rows_sha256, sha256_hex(rows));
+            Checksums::check(folder.path(), |_| true).unwrap();
+            let sums = std::fs::read_to_string(folder.path().join("SHA256SUMS")).unwrap();
+            assert!(NAMES.iter().all(|name| sums.contains(name)), "{sums}");
+        }
+    }
+
+    #[test]
+    fn a_baseline_is_replaced_when_that_is_allowed_and_not_otherwise() {
+        let (_, folder) = written(6);
+        let mut other = Baseline::new(run(7), "another", Some(1)).unwrap();
+        let message = other.write(folder.path(), Replace::Refuse).unwrap_err().to_string();
+        assert!(
+            message.contains("baseline.toml: exists; a baseline is replaced with --replace"),
+            "{message}"
+        );
+        assert_eq!(Baseline::read(folder.path()).unwrap().header.units, 6);
+        other.write(folder.path(), Replace::Allow).unwrap();
+        assert_eq!(Baseline::read(folder.path()).unwrap(), other);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+        // A folder that is not there yet, and one with the rows alone.
+        let inner = folder.path().join("a/b");
+        other.write(&inner, Replace::Allow).unwrap();
+        std::fs::remove_file(inner.join("baseline.toml")).unwrap();
+        let message = other.write(&inner, Replace::Refuse).unwrap_err().to_string();
+        assert!(message.contains("rows.parquet: exists"), "{message}");
+    }
+
+    #[test]
+    fn the_header_tells_how_the_run_is_cut_and_what_came_of_it() {
+        let (baseline, _) = written(8);
+        let header = &baseline.header;
+        assert_eq!((header.format, header.units, header.reason.as_str()), (1, 8, "a test"));
+        assert_eq!((header.blocks.count, header.blocks.length), (8, 1));
+        let told = |by: &str, value, of| BaselineFigure { by: by.to_owned(), value, of };
+        assert_eq!(header.figures["hit_rate"], told("rate", Some(0.875), 8));
+        // 0.5, 1, … 3.5.
+        assert_eq!(header.figures["ra_median_deg"], told("median", Some(2.0), 7));
+        assert_eq!(header.run, baseline.sample.identity);
+        // Nothing said of the length: thirty units, of 200 seven blocks.
+        let of_days = Baseline::new(run(200), " why ", None).unwrap();
+        assert_eq!((of_days.blocks.count(), of_days.header.blocks.length), (7, 30));
+        assert_eq!(of_days.header.reason, "why");
+        // Errors that grow all the time are remembered all the time.
+        assert_eq!(of_days.header.blocks.memory_of, "ra_median_deg");
+        let memory = of_days.header.blocks.memory;
+        assert!(memory > 10.0 && memory * 10.0 == (memory * 10.0).round(), "{memory}");
+    }
+
+    #[test]
+    fn a_baseline_needs_a_reason_and_five_blocks() {
+        let message =
+            |units, reason, length| Baseline::new(run(units), reason, length).unwrap_err().to_string();
+        assert!(message(8, " \n", None).contains("--reason is empty"));
+        let few = message(4, "a test", Some(1));
+        assert!(few.contains("the result has 4 frames in 4 blocks, expected at least 5"), "{few}");
+        assert_eq!(Baseline::new(run(5), "a test", Some(1)).unwrap().blocks.count(), 5);
+    }
+
+    /// Fewer blocks than can be found different, however they came into the file.
+    #[test]
+    fn a_baseline_of_four_blocks_is_refused_when_it_is_read() {
+        let mut baseline = Baseline::new(run(8), "a test", Some(1)).unwrap();
+        baseline.blocks = Blocks::every(8, 2);
+        baseline.header.blocks.count = 4;
+        let folder = tempfile::tempdir().unwrap();
+        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        let message = Baseline::read(folder.path()).unwrap_err().to_string();
+        let parts = ["blocks.count", "is 4, expected the blocks of", "(4), at least 5"];
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+
+    #[test]
+    fn a_header_that_is_not_that_of_its_rows_is_told_by_its_place() {
+        let (baseline, folder) = written(6);
+        let path = folder.path().join("baseline.toml");
+        let header = std::fs::read_to_string(&path).unwrap();
+        let refused = |old: &str, new: &str, parts: &[&str]| {
+            let text = header.replacen(old, new, 1);
+            assert_ne!(text, header, "{old}");
+            std::fs::write(&path, text).unwrap();
+            let message = Baseline::read(folder.path()).unwrap_err().to_string();
+            assert!(parts.iter().all(|part| message.contains(part)), "{old}: {message}");
+        };
+        refused("format = 1", "format = 2", &["baseline.toml:1:10: format", "is 2, expected 1"]);
+        refused("units = 6", "units = 7", &["units", "is 7, expected 6, the rows of"]);
+        refused("count = 6", "count = 7", &["blocks.count", "is 7, expected the blocks of", "(6)"]);
+        refused(
+            "by = \"median\"",
+            "by = \"middle\"",
+            &["figures.ra_median_deg.by", "rate, mean, rms, median"],
+        );
+        // 0.5, 1 … 2.5.
+        refused("value = 1.5", "value = 1.25", &["figures.ra_median_deg", "expected 1.5 of 5"]);
+        refused("of = 5", "of = 4", &["figures.ra_median_deg", "expected 1.5 of 5"]);
+        refused(&baseline.header.rows_sha256, "00", &["rows_sha256", "one of the two files was changed"]);
+        // What nothing in the rows can contradict, the checksums do.
+        refused("reason = \"a test\"", "reason = \"a text\"", &["SHA-256", "damaged"]);
+    }
+
+    #[test]
+    fn rows_that_changed_are_told_before_they_are_read() {
+        let (_, folder) = written(6);
+        std::fs::write(folder.path().join("rows.parquet"), "no table").unwrap();
+        let message = Baseline::read(folder.path()).unwrap_err().to_string();
+        assert!(message.contains("rows_sha256") && message.contains("was changed"), "{message}");
+        let message = Baseline::read(&folder.path().join("nowhere")).unwrap_err().to_string();
+        assert!(message.contains("nowhere: there is no `baseline.toml`"), "{message}");
+    }
+}

@@ -99,8 +99,8 @@ pub(super) fn memory(kind: SourceKind, world: &str, table: &UnitTable) -> Memory
     let sequences = sequences(kind, world, table);
     let memory_of = |series: &[f64]| {
         let cut: Vec<Vec<f64>> = sequences.windows(2).map(|ends| series[ends[0]..ends[1]].to_vec()).collect();
-        let effective = effective_size(&cut);
-        if effective > 0.0 { series.len() as f64 / effective } else { 1.0 }
+        // Without any unit 0/0, which is longer than nothing.
+        series.len() as f64 / effective_size(&cut)
     };
     let of_figures = table.figures.iter().map(|figure| (memory_of(&influence(figure)), &figure.name));
     of_figures.fold(Memory { units: 1.0, figure: String::new() }, |longest, (units, figure)| {
@@ -165,5 +165,54 @@ mod tests {
         assert!(memory.figure == "slow" && (15.0..24.0).contains(&memory.units), "{memory:?}");
         assert!((150..240).contains(&length_for(&memory, 20_000)));
         assert_eq!((length_for(&memory, 1000), length_for(&memory, 100)), (50, 30));
+    }
+
+    #[test]
+    fn a_gap_and_in_far_range_a_day_part_sequences() {
+        let mut table = table(&[("day 1", 3), ("day 2", 2), ("day 3", 2)]);
+        // A frame is missing between days 2 and 3.
+        table.units[5..].iter_mut().for_each(|unit| unit.number += 1);
+        assert_eq!(sequences(SourceKind::Run, "far_range", &table), [0, 3, 5, 7]);
+        assert_eq!(sequences(SourceKind::Run, "docking", &table), [0, 5, 7]);
+        assert_eq!(sequences(SourceKind::Study, "docking", &table), [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(sequences(SourceKind::Run, "far_range", &UnitTable::default()), [0]);
+    }
+
+    /// 7 units in two pieces are 4 and 3, 5 in two 3 and 2, and none is without a unit.
+    #[test]
+    fn a_sequence_is_cut_into_pieces_that_differ_by_a_unit_at_most() {
+        let table = table(&[("day 1", 7), ("day 2", 5), ("day 3", 1)]);
+        let blocks = Blocks::cut(SourceKind::Run, "far_range", &table, 3);
+        let of: Vec<usize> = (0..13).map(|unit| blocks.of(unit)).collect();
+        assert_eq!(of, [0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 4]);
+        assert_eq!((blocks.count(), blocks.mean_length()), (5, 2.6));
+        let single = Blocks::cut(SourceKind::Run, "docking", &table, 1);
+        assert_eq!((single.count(), single.of(12), single.mean_length()), (13, 12, 1.0));
+        let none = Blocks::cut(SourceKind::Run, "docking", &UnitTable::default(), 30);
+        assert_eq!((none.count(), none.mean_length()), (0, 0.0));
+        assert_eq!(Blocks::from_numbers(vec![]), none);
+    }
+
+    /// Values that alternate are worth as much as independent ones, and so are those that never vary.
+    #[test]
+    fn of_figures_that_remember_nothing_none_has_the_memory() {
+        let mut table = table(&[("day 1", 100)]);
+        let figure = |name: &str, value: fn(u8) -> f64| {
+            let terms = (0..100).map(|i| Term { sum: value(i), of: 1 }).collect();
+            FigureTerms { name: name.to_owned(), reduction: Reduction::Mean, terms }
+        };
+        table.figures = vec![figure("constant", |_| 0.3), figure("alternating", |i| f64::from(i % 2))];
+        let memory = memory(SourceKind::Run, "far_range", &table);
+        assert_eq!(memory, Memory { units: 1.0, figure: String::new() });
+        assert_eq!(super::memory(SourceKind::Run, "far_range", &UnitTable::default()), memory);
+    }
+
+    #[test]
+    fn blocks_are_ten_memories_long_but_leave_twenty_and_are_not_shorter_than_thirty() {
+        let length = |memory: f64, units| length_for(&Memory { units: memory, figure: String::new() }, units);
+        assert_eq!(length(4.01, 100_000), 41);
+        assert_eq!(length(4.01, 790), 39);
+        assert_eq!(length(1.0, 100_000), 30);
+        assert_eq!(length(40.0, 100), 30);
     }
 }

@@ -42,7 +42,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn new(terms: &[Term], reduction: Reduction, centre: f64) -> Self {
+    fn of_terms(terms: &[Term], reduction: Reduction, centre: f64) -> Self {
         let linear = |term: &Term| match reduction {
             Reduction::Rate | Reduction::Mean => term.sum,
             Reduction::Rms => term.sum * term.sum,
@@ -69,7 +69,7 @@ pub(super) fn value(reduction: Reduction, terms: &[Term]) -> Option<f64> {
     match reduction {
         Reduction::Median => median(&[values(terms)]),
         _ => {
-            let ratio = Sums::new(terms, reduction, 0.0).ratio();
+            let ratio = Sums::of_terms(terms, reduction, 0.0).ratio();
             if reduction == Reduction::Rms { ratio.map(f64::sqrt) } else { ratio }
         }
     }
@@ -77,7 +77,7 @@ pub(super) fn value(reduction: Reduction, terms: &[Term]) -> Option<f64> {
 
 impl FigureEffect {
     /// Of a figure of two runs whose units go together one by one; `tolerance` replaces the default one.
-    pub(super) fn new(
+    pub(super) fn of_runs(
         sense: Sense,
         baseline: &FigureTerms,
         result: &FigureTerms,
@@ -87,10 +87,10 @@ impl FigureEffect {
         let reduction = baseline.reduction;
         let pooled = [values(&baseline.terms), values(&result.terms)];
         let centre = if reduction == Reduction::Median { median(&pooled).unwrap_or(0.0) } else { 0.0 };
-        let [a, b] = [baseline, result].map(|run| Sums::new(&run.terms, reduction, centre));
+        let [a, b] = [baseline, result].map(|run| Sums::of_terms(&run.terms, reduction, centre));
         let [of_baseline, of_result] = [baseline, result].map(|run| value(reduction, &run.terms));
 
-        let together = if a.of + b.of > 0.0 { (a.sum + b.sum) / (a.of + b.of) } else { 0.0 };
+        let together = Sums { units: Vec::new(), sum: a.sum + b.sum, of: a.of + b.of }.ratio().unwrap_or(0.0);
         let count = if a.of > 0.0 && b.of > 0.0 { 2.0 * a.of * b.of / (a.of + b.of) } else { f64::INFINITY };
         let scale = match reduction {
             Reduction::Rate | Reduction::Mean => 1.0,
@@ -115,12 +115,14 @@ impl FigureEffect {
             Reduction::Rms => together.sqrt(),
             _ => together,
         };
-        let (sign, most) = match sense.better {
-            Better::More => (-1.0, f64::INFINITY),
-            Better::Less => (1.0, f64::INFINITY),
-            Better::Near(best) => (if middle < best { -1.0 } else { 1.0 }, 2.0 * (middle - best).abs()),
+        let (is_turned, most) = match sense.better {
+            Better::More => (true, f64::INFINITY),
+            Better::Less => (false, f64::INFINITY),
+            Better::Near(best) => (middle < best, 2.0 * (middle - best).abs()),
         };
-        effects.iter_mut().for_each(|effect| *effect *= sign);
+        if is_turned {
+            effects.iter_mut().for_each(|effect| *effect = -*effect);
+        }
         let by_default = match sense.kind {
             Kind::Rate => 0.0,
             Kind::Amount => {
@@ -176,7 +178,8 @@ fn standard_error(terms: &[f64]) -> f64 {
         return 0.0;
     }
     let mean = terms.iter().sum::<f64>() / n;
-    (terms.iter().map(|term| (term - mean) * (term - mean)).sum::<f64>() * n / (n - 1.0)).sqrt()
+    let off = terms.iter().map(|term| term - mean);
+    (off.map(|off| off * off).sum::<f64>() * n / (n - 1.0)).sqrt()
 }
 
 /// An interval of 95 % for the difference, result minus baseline.
@@ -187,7 +190,7 @@ pub(super) fn interval(
     exchanges: &crate::statistics::Exchanges,
 ) -> Option<Interval> {
     let reduction = baseline.reduction;
-    let sides = [baseline, result].map(|run| Side::new(reduction, &run.terms, blocks));
+    let sides = [baseline, result].map(|run| Side::of_run(reduction, &run.terms, blocks));
     crate::statistics::interval_by_sets(exchanges, |taken| {
         let [baseline, result] = [&sides[0], &sides[1]].map(|side| side.value(taken));
         Some(result? - baseline?)
@@ -203,7 +206,7 @@ enum Side {
 }
 
 impl Side {
-    fn new(reduction: Reduction, terms: &[Term], blocks: &Blocks) -> Self {
+    fn of_run(reduction: Reduction, terms: &[Term], blocks: &Blocks) -> Self {
         if reduction == Reduction::Median {
             let with_value = terms.iter().enumerate().filter(|(_, term)| term.of > 0);
             let mut sorted: Vec<(f64, usize)> =
@@ -214,7 +217,7 @@ impl Side {
             return Self::Sorted { values: sorted, counts };
         }
         let mut sums = vec![(0.0, 0.0); blocks.count()];
-        for (unit, (sum, of)) in Sums::new(terms, reduction, 0.0).units.into_iter().enumerate() {
+        for (unit, (sum, of)) in Sums::of_terms(terms, reduction, 0.0).units.into_iter().enumerate() {
             let block = &mut sums[blocks.of(unit)];
             *block = (block.0 + sum, block.1 + of);
         }
@@ -258,24 +261,27 @@ pub(super) fn neighbour_correlation(effects: &[f64]) -> f64 {
 pub(super) fn influence(figure: &FigureTerms) -> Vec<f64> {
     let own = values(&figure.terms);
     let centre = if figure.reduction == Reduction::Median { median(&[own]).unwrap_or(0.0) } else { 0.0 };
-    let sums = Sums::new(&figure.terms, figure.reduction, centre);
+    let sums = Sums::of_terms(&figure.terms, figure.reduction, centre);
     let ratio = sums.ratio().unwrap_or(0.0);
     sums.units.iter().map(|(sum, of)| sum - ratio * of).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::hand_made::figure as terms;
     use super::*;
     use crate::score::sense;
-
-    fn terms(name: &str, reduction: Reduction, values: &[Option<f64>]) -> FigureTerms {
-        let term = |value: &Option<f64>| value.map_or(Term::default(), |sum| Term { sum, of: 1 });
-        FigureTerms { name: name.to_owned(), reduction, terms: values.iter().map(term).collect() }
-    }
+    use crate::statistics::Exchanges;
 
     fn effect(name: &str, reduction: Reduction, a: &[Option<f64>], b: &[Option<f64>]) -> FigureEffect {
         let blocks = Blocks::every(a.len(), 2);
-        FigureEffect::new(sense(name), &terms(name, reduction, a), &terms(name, reduction, b), &blocks, None)
+        FigureEffect::of_runs(
+            sense(name),
+            &terms(name, reduction, a),
+            &terms(name, reduction, b),
+            &blocks,
+            None,
+        )
     }
 
     const A: [Option<f64>; 8] =
@@ -341,16 +347,213 @@ mod tests {
         for (name, reduction) in [("ra_mean_deg", Reduction::Mean), ("ra_median_deg", Reduction::Median)] {
             let [a, b] = [&A, &shifted].map(|values| terms(name, reduction, values));
             let blocks = Blocks::every(8, 2);
-            let interval =
-                interval(&a, &b, &blocks, &crate::statistics::Exchanges::new(blocks.count())).unwrap();
+            let interval = interval(&a, &b, &blocks, &Exchanges::new(blocks.count())).unwrap();
             assert!((interval.low - 0.25).abs() < 1e-12 && (interval.high - 0.25).abs() < 1e-12, "{name}");
         }
     }
 
     #[test]
     fn a_figure_that_is_counted_over_nothing_has_no_effect() {
-        let none = effect("ra_rms_deg", Reduction::Rms, &A, &[None; 8]);
-        assert_eq!((none.result, none.worsening()), (None, None));
-        assert!(none.worse.effects.iter().all(|effect| *effect == 0.0));
+        for (a, b, blocks) in [(&A, &[None; 8], 4), (&[None; 8], &A, 4), (&[None; 8], &[None; 8], 0)] {
+            for (name, reduction) in [
+                ("ra_rms_deg", Reduction::Rms),
+                ("ra_mean_deg", Reduction::Mean),
+                ("ra_median_deg", Reduction::Median),
+            ] {
+                let none = effect(name, reduction, a, b);
+                assert_eq!((none.baseline.and(none.result), none.worsening()), (None, None), "{name}");
+                assert!(none.worse.effects.iter().all(|effect| *effect == 0.0), "{none:?}");
+                assert_eq!(none.blocks, blocks);
+            }
+        }
+    }
+
+    /// Of one unit a block: both have a value, the one, the other, none.
+    #[test]
+    fn a_block_counts_when_either_run_has_a_value_in_it() {
+        let [a, b] = [[Some(1.0), Some(2.0), None, None], [Some(1.0), None, Some(3.0), None]]
+            .map(|values| terms("ra_rms_deg", Reduction::Rms, &values));
+        let effect = FigureEffect::of_runs(sense("ra_rms_deg"), &a, &b, &Blocks::every(4, 1), None);
+        assert_eq!((effect.blocks, effect.baseline_of, effect.result_of), (3, 2, 2));
+    }
+
+    #[test]
+    fn errors_of_nought_may_grow_and_errors_that_stay_nought_do_not() {
+        let [nought, half] = [0.0, 0.5].map(|error| [Some(error); 8]);
+        let grown = effect("ra_rms_deg", Reduction::Rms, &nought, &half);
+        assert!((grown.worse.effects.iter().sum::<f64>() - 0.5).abs() < 1e-12, "{grown:?}");
+        let same = effect("ra_rms_deg", Reduction::Rms, &nought, &nought);
+        assert!(same.worse.effects.iter().all(|effect| *effect == 0.0), "{same:?}");
+    }
+
+    /// Two runs on both sides of the best value differ in their distances from it by twice that of their middle at most.
+    #[test]
+    fn what_is_best_near_a_value_is_worse_away_from_it() {
+        let near = |reduction, best: f64, a: f64, b: f64| {
+            let [a, b] = [a, b].map(|value| terms("any", reduction, &[Some(value); 4]));
+            let sense = Sense { kind: Kind::Amount, better: Better::Near(best) };
+            let worse = FigureEffect::of_runs(sense, &a, &b, &Blocks::every(4, 1), None).worse;
+            (worse.effects.iter().sum::<f64>(), worse.most)
+        };
+        // Above 1, below 1; a root mean square of 2 and 4 together is √10.
+        for (reduction, a, b, effect, most) in [
+            (Reduction::Mean, 1.5, 2.0, 0.5, 1.5),
+            (Reduction::Mean, 0.25, 0.5, -0.25, 1.25),
+            (Reduction::Rms, 2.0, 4.0, 2.0, 2.0 * (10f64.sqrt() - 1.0)),
+        ] {
+            let got = near(reduction, 1.0, a, b);
+            assert!((got.0 - effect).abs() < 1e-12 && (got.1 - most).abs() < 1e-12, "{got:?}");
+        }
+    }
+
+    #[test]
+    fn a_side_is_summed_up_over_the_blocks_that_are_taken_alone() {
+        let values = [Some(4.0), None, Some(1.0), Some(8.0), Some(-2.0), Some(5.0), None, None];
+        let blocks = Blocks::every(8, 2);
+        let of = |reduction, taken: [bool; 4]| {
+            Side::of_run(reduction, &terms("any", reduction, &values).terms, &blocks).value(&taken)
+        };
+        let (all, some) = ([true; 4], [true, true, false, true]);
+        // 4 + 1 + 8 − 2 + 5 = 16 of 5; without the third block 13 of 3.
+        assert_eq!(of(Reduction::Mean, all), Some(16.0 / 5.0));
+        assert_eq!(of(Reduction::Mean, some), Some(13.0 / 3.0));
+        // 16 + 1 + 64 + 4 + 25 = 110 of 5; of the second block 65 of 2.
+        assert_eq!(of(Reduction::Rms, all), Some(22f64.sqrt()));
+        assert_eq!(of(Reduction::Rms, [false, true, false, false]), Some(32.5f64.sqrt()));
+        // −2 1 4 5 8; 1 4 8; 1 8; −2 1 5 8; 4.
+        assert_eq!(of(Reduction::Median, all), Some(4.0));
+        assert_eq!(of(Reduction::Median, some), Some(4.0));
+        assert_eq!(of(Reduction::Median, [false, true, false, false]), Some(4.5));
+        assert_eq!(of(Reduction::Median, [false, true, true, false]), Some(3.0));
+        assert_eq!(of(Reduction::Median, [true, false, false, false]), Some(4.0));
+        for reduction in [Reduction::Mean, Reduction::Rms, Reduction::Median] {
+            assert_eq!(of(reduction, [false, false, false, true]), None, "{reduction:?} of no value");
+        }
+    }
+
+    /// A fortieth of the 127 sets of seven blocks is left at either end: the third from there is the limit.
+    #[test]
+    fn the_interval_is_that_of_the_differences_over_sets_of_blocks() {
+        let nought = terms("ra_mean_deg", Reduction::Mean, &[Some(1.0); 7]);
+        let powers = [0, 1, 2, 3, 4, 5, 6].map(|block| Some(1.0 + f64::from(1 << block)));
+        let powers = terms("ra_mean_deg", Reduction::Mean, &powers);
+        let interval = interval(&nought, &powers, &Blocks::every(7, 1), &Exchanges::new(7)).unwrap();
+        // Means of sets from below: 1, (1 + 2)/2, 2; from above: 64, (64 + 32)/2, (64 + 16)/2.
+        assert!((interval.low - 2.0).abs() < 1e-12, "{interval:?}");
+        assert!((interval.high - 40.0).abs() < 1e-12, "{interval:?}");
+    }
+
+    #[test]
+    fn a_figure_sums_up_what_units_have_as_its_reduction_says() {
+        let values = [Some(1.0), None, Some(2.0), Some(-6.0)];
+        let of = |reduction| value(reduction, &terms("any", reduction, &values).terms);
+        assert_eq!(of(Reduction::Mean), Some(-1.0));
+        // (1 + 4 + 36)/3.
+        assert_eq!(of(Reduction::Rms), Some((41.0f64 / 3.0).sqrt()));
+        assert_eq!(of(Reduction::Median), Some(1.0));
+        let pooled = [Term { sum: 2.0, of: 3 }, Term::default(), Term { sum: 1.0, of: 1 }];
+        assert_eq!(value(Reduction::Rate, &pooled), Some(0.75));
+        for reduction in Reduction::ALL {
+            assert_eq!(value(reduction, &[Term::default(); 2]), None, "{reduction:?} of nothing");
+        }
+    }
+
+    #[test]
+    fn what_is_worse_depends_on_which_way_is_better() {
+        let worsening = |name: &str, reduction, a: f64, b: f64| {
+            effect(name, reduction, &[Some(a)], &[Some(b)]).worsening().unwrap()
+        };
+        let is = |got: f64, expected: f64| assert!((got - expected).abs() < 1e-12, "{got}, not {expected}");
+        is(worsening("stars_mean", Reduction::Mean, 20.0, 17.0), 3.0);
+        is(worsening("ra_rms_deg", Reduction::Rms, 0.5, 0.75), 0.25);
+        is(worsening("ra_rms_deg", Reduction::Rms, 0.75, 0.5), -0.25);
+        // A NEES is best at 1: from 0.7 to 1.5 it goes from 0.3 beside it to 0.5.
+        is(worsening("nees_mean", Reduction::Mean, 0.7, 1.5), 0.2);
+        is(worsening("nees_mean", Reduction::Mean, 1.5, 0.7), -0.2);
+    }
+
+    /// Ten values of which each is one more than it was. The middle fifth lies within 2, so the density at the median is 1/10.
+    #[test]
+    fn the_blocks_of_a_median_are_the_values_that_change_sides() {
+        let count = |from: usize| (from..from + 10).map(|x| Some(x as f64)).collect::<Vec<_>>();
+        let effect = effect("ra_median_deg", Reduction::Median, &count(1), &count(2));
+        // The median of both is 6. One value comes up to it and one leaves it, both in the third block: together one of ten changes
+        // sides, and the median moves by 1/10 over the density.
+        for (got, expected) in effect.worse.effects.iter().zip([0.0, 0.0, 1.0, 0.0, 0.0]) {
+            assert!((got - expected).abs() < 1e-12, "{effect:?}");
+        }
+        assert_eq!(effect.worse.effects.len(), 5);
+        assert!((effect.worse.most - 12.0).abs() < 1e-12);
+    }
+
+    /// Of 0, 1, 4 … 81 the middle fifth is from 16 to 36, with a density of 1/100.
+    #[test]
+    fn the_density_at_the_median_is_that_of_the_middle_fifth() {
+        let squares: Vec<f64> = (0..10).map(|x| f64::from(x * x)).collect();
+        let [low, high] = [squares[..3].to_vec(), squares[3..].to_vec()];
+        assert!((half_width_of_a_side(&[high, low]) - 50.0).abs() < 1e-12);
+        assert_eq!(half_width_of_a_side(&[vec![], vec![]]), 0.0);
+    }
+
+    #[test]
+    fn a_figure_may_be_worse_by_a_hundredth_of_its_size_unless_told_otherwise() {
+        let tolerance = |name: &str, reduction, a: f64, b: f64, told| {
+            let [a, b] = [a, b].map(|value| terms(name, reduction, &[Some(value), None]));
+            FigureEffect::of_runs(sense(name), &a, &b, &Blocks::every(2, 1), told).tolerance
+        };
+        let is = |got: f64, expected: f64| assert!((got - expected).abs() < 1e-12, "{got}, not {expected}");
+        // Of 3 and 4 the root mean square is √12.5.
+        is(tolerance("ra_rms_deg", Reduction::Rms, 3.0, -4.0, None), 0.01 * 12.5f64.sqrt());
+        // The size of a NEES is its distance from 1.
+        is(tolerance("nees_mean", Reduction::Mean, 4.0, -3.0, None), 0.01 * 12.5f64.sqrt());
+        is(tolerance("ra_rms_deg", Reduction::Rms, 3.0, -4.0, Some(0.5)), 0.5);
+        is(tolerance("hit_rate", Reduction::Rate, 1.0, 0.0, None), 0.0);
+        is(tolerance("hit_rate", Reduction::Rate, 1.0, 0.0, Some(0.125)), 0.125);
+    }
+
+    /// Of 1, 2, 4, 5 the sample variance is 10/3, that of the sum of four 40/3.
+    #[test]
+    fn the_standard_error_of_a_sum_is_that_of_its_terms_scatter() {
+        assert!((standard_error(&[1.0, 2.0, 4.0, 5.0]) - (40.0f64 / 3.0).sqrt()).abs() < 1e-12);
+        // (1 + 1)/1 times two.
+        assert!((standard_error(&[1.0, 3.0]) - 2.0).abs() < 1e-12);
+        assert_eq!(standard_error(&[7.0]), 0.0);
+        assert_eq!(standard_error(&[]), 0.0);
+    }
+
+    #[test]
+    fn neighbouring_blocks_are_correlated_about_their_mean() {
+        // About 3: −2 −1 1 2. (2 − 1 + 2)/(4 + 1 + 1 + 4).
+        assert!((neighbour_correlation(&[1.0, 2.0, 4.0, 5.0]) - 0.3).abs() < 1e-12);
+        // About 3: −1 1 −1 1.
+        assert!((neighbour_correlation(&[2.0, 4.0, 2.0, 4.0]) + 0.75).abs() < 1e-12);
+        assert_eq!(neighbour_correlation(&[2.0; 4]), 0.0);
+        assert_eq!(neighbour_correlation(&[]), 0.0);
+    }
+
+    #[test]
+    fn the_influence_of_a_unit_is_what_it_adds_about_the_value() {
+        let of = |reduction, values: &[Option<f64>]| influence(&terms("any", reduction, values));
+        // About the mean of 4; about the mean square of 9.
+        let values = [Some(1.0), None, Some(4.0), Some(7.0)];
+        assert_eq!(of(Reduction::Mean, &values), [-3.0, 0.0, 0.0, 3.0]);
+        assert_eq!(of(Reduction::Rms, &[Some(1.0), Some(-1.0), Some(5.0)]), [-8.0, -8.0, 16.0]);
+        // Below, above and at the median of 2.
+        assert_eq!(of(Reduction::Median, &[Some(1.0), Some(5.0), Some(2.0), None]), [-1.0, 1.0, 0.0, 0.0]);
+        assert_eq!(of(Reduction::Mean, &[None; 2]), [0.0, 0.0]);
+        // Three of four are held: 2 − 3 · 3/4, 1 − 1 · 3/4.
+        let pooled = vec![Term { sum: 2.0, of: 3 }, Term { sum: 1.0, of: 1 }];
+        let pooled = FigureTerms { name: "held".to_owned(), reduction: Reduction::Rate, terms: pooled };
+        assert_eq!(influence(&pooled), [-0.25, 0.25]);
+    }
+
+    /// The other way round it is the same effect with the other sign, and no larger.
+    #[test]
+    fn an_improvement_is_a_worsening_with_the_other_sign() {
+        let effect = effect("ra_mean_deg", Reduction::Mean, &A, &B);
+        let better = effect.better();
+        assert!(effect.worse.effects.iter().zip(&better.effects).all(|(worse, better)| *worse == -better));
+        assert!(better.effects.iter().any(|effect| *effect != 0.0));
+        assert_eq!(better.most, effect.worse.most);
     }
 }

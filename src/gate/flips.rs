@@ -90,16 +90,11 @@ fn goodness(verdict: &str) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::hand_made::unit;
     use super::*;
 
     #[test]
     fn flips_are_counted_by_what_became_of_the_unit() {
-        let unit = |number: u64, verdict: &str, cause: Option<&str>| UnitVerdict {
-            number,
-            group: "day 1".to_owned(),
-            verdict: verdict.to_owned(),
-            cause: cause.map(str::to_owned),
-        };
         let baseline = [
             unit(0, "correct", None),
             unit(1, "correct", None),
@@ -118,5 +113,40 @@ mod tests {
         assert_eq!((flips.lost, flips.won, flips.other), (2, 1, 1));
         assert_eq!(flips.units.iter().map(|flip| flip.number).collect::<Vec<_>>(), [1, 2, 3, 4]);
         assert_eq!(flips.units[0].result_cause.as_deref(), Some("taken_for_star"));
+    }
+
+    #[test]
+    fn right_is_what_the_words_of_either_world_and_of_a_study_say() {
+        for (verdict, expected) in [
+            ("correct", 1),
+            ("success", 1),
+            ("wrong", 0),
+            ("missed", 0),
+            ("no solution", 0),
+            ("37 of 40", 37),
+            ("0 of 40", 0),
+        ] {
+            assert_eq!(goodness(verdict), expected, "{verdict}");
+        }
+    }
+
+    #[test]
+    fn a_flip_tells_both_verdicts_and_both_causes() {
+        let before = [unit(7, "wrong", Some("taken_for_star"))];
+        let flips = Flips::of(&before, &[unit(7, "missed", Some("not_linked"))]);
+        assert_eq!((flips.lost, flips.won, flips.other), (0, 0, 1));
+        assert_eq!(
+            flips.units,
+            [Flip {
+                number: 7,
+                group: "day 1".to_owned(),
+                kind: FlipKind::Other,
+                baseline: "wrong".to_owned(),
+                baseline_cause: Some("taken_for_star".to_owned()),
+                result: "missed".to_owned(),
+                result_cause: Some("not_linked".to_owned()),
+            }]
+        );
+        assert!(Flips::of(&before, &before).units.is_empty());
     }
 }

@@ -218,4 +218,88 @@ mod tests {
         let message = identity(SCENARIO).pairing(&study).unwrap_err().to_string();
         assert!(message.contains("`run` in the baseline and `study` in the result"), "{message}");
     }
+
+    #[test]
+    fn what_differs_first_is_named_down_to_its_place() {
+        let value = |text: &str| Value::Table(text.parse().unwrap());
+        for (a, b, at, of_a, of_b) in [
+            // Neither has what the other has; by name, not by place.
+            ("b = 1\na = 1", "b = 2\na = 2", ".a", "1", "2"),
+            ("a = 1", "a = 1\nb = 2", ".b", "none", "2"),
+            ("a = 1\nb = 2", "a = 1", ".b", "2", "none"),
+            ("a = [1, 2]", "a = [1, 2, 3]", ".a[2]", "none", "3"),
+            ("a = [1, 2, 3]", "a = [1, 2]", ".a[2]", "3", "none"),
+            ("a = [{ b = 1 }, { b = 2 }]", "a = [{ b = 1 }, { b = 3 }]", ".a[1].b", "2", "3"),
+            ("a = 1", "a = \"1\"", ".a", "1", "\"1\""),
+            ("a.b = 1", "a = 1", ".a", "{ b = 1 }", "1"),
+        ] {
+            let expected = (at.to_owned(), of_a.to_owned(), of_b.to_owned());
+            assert_eq!(first_difference(&value(a), &value(b)), Some(expected), "{a} and {b}");
+        }
+        let table = value("a = [1, { b = 2.5 }]\nc = true");
+        assert_eq!(first_difference(&table, &table), None);
+    }
+
+    #[test]
+    fn what_was_run_must_be_the_same_in_all_but_pipeline_and_noise() {
+        let text = |text: &str| Some(text.to_owned());
+        let base = identity(SCENARIO);
+        for (other, parts) in [
+            (
+                Identity { world: "docking".to_owned(), ..base.clone() },
+                ["`world`", "`far_range` in the baseline", "`docking` in the result"],
+            ),
+            (
+                Identity { inject: text("detection"), ..base.clone() },
+                ["`inject`", "`none` in the baseline", "`detection` in the result"],
+            ),
+            (
+                Identity { renderer: text("mitsuba"), ..base.clone() },
+                ["`renderer`", "`none` in the baseline", "`mitsuba` in the result"],
+            ),
+            (
+                Identity { catalog_sha256: text("ab"), ..base.clone() },
+                ["`catalog_sha256`", "`none` in the baseline", "`ab` in the result"],
+            ),
+            // A digest that nothing in the scenario explains.
+            (
+                Identity { scenario_sha256: "cd".to_owned(), ..base.clone() },
+                [
+                    "scenario_sha256",
+                    &format!("`{}` in the baseline", base.scenario_sha256),
+                    "`cd` in the result",
+                ],
+            ),
+        ] {
+            let message = base.pairing(&other).unwrap_err().to_string();
+            assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+        }
+        let study = Identity { kind: SourceKind::Study, ..base.clone() };
+        let message = study.pairing(&base).unwrap_err().to_string();
+        assert!(message.contains("`study` in the baseline and `run` in the result"), "{message}");
+        let named = Identity { name: "another".to_owned(), version: "0.2.0".to_owned(), ..base.clone() };
+        assert_eq!(base.pairing(&named).unwrap(), Pairing::Frames);
+        // The same frames of another seed are no pairs: what the pipeline draws is not the same.
+        assert_eq!(base.pairing(&Identity { seed: 2, ..base.clone() }).unwrap(), Pairing::Blocks);
+    }
+
+    #[test]
+    fn the_scenario_is_parted_from_its_title_its_seed_and_its_pipeline() {
+        let table: Table = SCENARIO.parse().unwrap();
+        let split = split("far_range", table.clone()).unwrap();
+        assert_eq!(split.pipeline, "threshold = 4".parse().unwrap());
+        let scenario: Table = "[psf]\nsigma_px = 0.8\n[[schedule]]\ncount = 3\n".parse().unwrap();
+        assert_eq!(split.scenario, scenario);
+        assert_eq!(split.scenario_sha256, sha256_hex(toml::to_string(&scenario).unwrap()));
+        // Of the other world's pipeline it is no part.
+        let other = super::split("docking", table).unwrap();
+        assert!(other.pipeline.is_empty() && other.scenario.contains_key("far_range"));
+    }
+
+    #[test]
+    fn units_are_called_by_what_they_are() {
+        assert_eq!(SourceKind::Run.units("far_range"), "frames");
+        assert_eq!(SourceKind::Run.units("docking"), "fields");
+        assert_eq!(["far_range", "docking"].map(|world| SourceKind::Study.units(world)), ["cases"; 2]);
+    }
 }

@@ -68,3 +68,70 @@ fn message(name: &str, figure: &FigureReport) -> String {
         shown(figure.smallest_visible),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::hand_made::report;
+    use super::*;
+
+    fn suite(text: &str) -> TestSuite {
+        let report = Report::deserialize_from_str(text).unwrap();
+        assert_eq!(report.name.as_ref().map(|name| name.as_str()), Some("boresight gate"));
+        assert_eq!(report.test_suites.len(), 1, "{text}");
+        report.test_suites[0].clone()
+    }
+
+    #[test]
+    fn a_figure_that_shuts_the_gate_is_a_failure_and_one_without_data_is_skipped() {
+        let report = report(&[
+            ("worse", FigureVerdict::Worse),
+            ("gone", FigureVerdict::Gone),
+            ("same", FigureVerdict::NoWorse),
+            ("better", FigureVerdict::Better),
+            ("few", FigureVerdict::TooLittleData),
+        ]);
+        let suite = suite(&junit(&report).unwrap());
+        assert_eq!(suite.name.as_str(), "gate made by hand");
+        assert_eq!((suite.tests, suite.failures, suite.errors, suite.skipped), (5, 2, 0, 1));
+        for (case, name) in suite.test_cases.iter().zip(["worse", "gone", "same", "better", "few"]) {
+            assert_eq!(case.name.as_str(), name);
+            assert_eq!(
+                case.classname.as_ref().map(|name| name.as_str()),
+                Some("boresight.gate.made by hand")
+            );
+            let is_as_told = match &case.status {
+                TestCaseStatus::Success { .. } => ["same", "better"].contains(&name),
+                TestCaseStatus::NonSuccess { kind, ty, .. } => {
+                    *kind == NonSuccessKind::Failure && ty.as_ref().map(|ty| ty.as_str()) == Some(name)
+                }
+                TestCaseStatus::Skipped { .. } => name == "few",
+            };
+            assert!(is_as_told, "{case:?}");
+        }
+    }
+
+    #[test]
+    fn a_failure_says_in_a_sentence_what_became_of_the_figure() {
+        let report = report(&[("hit_rate", FigureVerdict::Worse)]);
+        let expected = "hit_rate: worse; 0.75 in the baseline, 0.5 in the result, difference -0.25 (95 %: -0.375 to -0.125), \
+                        adjusted p 0.03125, smallest visible nothing";
+        let suite = suite(&junit(&report).unwrap());
+        let case = &suite.test_cases[0];
+        let TestCaseStatus::NonSuccess { message, .. } = &case.status else { panic!("{case:?}") };
+        assert_eq!(message.as_ref().map(|message| message.as_str()), Some(expected));
+        assert_eq!(case.system_out.as_ref().map(|text| text.as_str()), Some(expected));
+    }
+
+    #[test]
+    fn a_comparison_that_could_not_be_made_is_an_error() {
+        let text = junit_of_failure(&Failure::Usage("the seeds <are> odd".to_owned())).unwrap();
+        let suite = suite(&text);
+        assert_eq!((suite.tests, suite.failures, suite.errors), (1, 0, 1));
+        let TestCaseStatus::NonSuccess { kind, message, ty, .. } = &suite.test_cases[0].status else {
+            panic!("{text}")
+        };
+        assert_eq!(*kind, NonSuccessKind::Error);
+        assert_eq!(message.as_ref().map(|message| message.as_str()), Some("the seeds <are> odd"));
+        assert_eq!(ty.as_ref().map(|ty| ty.as_str()), Some("cannot compare"));
+    }
+}

@@ -14,6 +14,8 @@ mod blocks;
 mod compare;
 mod effects;
 mod flips;
+#[cfg(test)]
+mod hand_made;
 mod identity;
 mod junit;
 mod read;

@@ -124,3 +124,25 @@ impl GateReport {
         self.figures.iter().filter(|(_, figure)| figure.verdict.is_worse()).map(|(name, _)| name.as_str())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::hand_made::report;
+    use super::*;
+
+    #[test]
+    fn the_gate_is_shut_by_what_is_worse_or_gone() {
+        let all = [
+            (FigureVerdict::Worse, "worse", true),
+            (FigureVerdict::Gone, "gone", true),
+            (FigureVerdict::NoWorse, "no worse", false),
+            (FigureVerdict::Better, "better", false),
+            (FigureVerdict::TooLittleData, "too little data", false),
+        ];
+        for (verdict, words, is_worse) in all {
+            assert_eq!((verdict.words(), verdict.is_worse()), (words, is_worse));
+        }
+        let report = report(&all.map(|(verdict, name, _)| (name, verdict)));
+        assert_eq!(report.worse().collect::<Vec<_>>(), ["worse", "gone"]);
+    }
+}

@@ -177,3 +177,122 @@ fn add(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+
+    use super::super::hand_made::{figure, sample, unit};
+    use super::*;
+
+    /// A rate of several values a unit, a rate of one, and an amount; each with a unit that has no value.
+    fn table() -> UnitTable {
+        let term = |sum, of| Term { sum, of };
+        let pooled = vec![term(2.0, 3), Term::default(), term(0.0, 1), term(0.0, 2)];
+        let pooled = FigureTerms { name: "held_rate".to_owned(), reduction: Reduction::Rate, terms: pooled };
+        let rate = figure("hit_rate", Reduction::Rate, &[None, Some(1.0), Some(0.0), Some(1.0)]);
+        let amount = figure("ra_rms_deg", Reduction::Rms, &[Some(0.5), Some(-0.25), None, Some(0.0)]);
+        let mut table = sample(vec![pooled, rate, amount]).table;
+        table.units[1] = unit(3, "missed", Some("not_linked"));
+        table.units[2] = unit(4, "wrong", Some(""));
+        table.units[3] = unit(9, "correct", None);
+        table
+    }
+
+    /// What is read of a table that was written with the numbers of its blocks.
+    fn there_and_back(table: &UnitTable, blocks: &[usize]) -> Result<(UnitTable, Vec<usize>), FileError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        write(&File::create_new(&path).unwrap(), &path, table, |unit| blocks[unit]).unwrap();
+        let figures: Vec<_> =
+            table.figures.iter().map(|figure| (figure.name.clone(), figure.reduction)).collect();
+        read(&path, &figures)
+    }
+
+    fn refusal(table: &UnitTable, blocks: &[usize]) -> String {
+        there_and_back(table, blocks).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_is_read_is_what_was_written() {
+        let table = table();
+        assert_eq!(there_and_back(&table, &[0, 0, 1, 2]).unwrap(), (table, vec![0, 0, 1, 2]));
+        // Of two values or none, none alone.
+        let terms = vec![Term { sum: 1.0, of: 2 }, Term::default()];
+        let pairs = FigureTerms { name: "held_rate".to_owned(), reduction: Reduction::Rate, terms };
+        let table = sample(vec![pairs]).table;
+        assert_eq!(there_and_back(&table, &[0, 1]).unwrap().0, table);
+    }
+
+    /// Of a gate's repository, a baseline is the largest part: nothing is in a file that need not be.
+    #[test]
+    fn counts_are_told_where_they_are_more_than_one_and_amounts_byte_by_byte() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        write(&File::create_new(&path).unwrap(), &path, &table(), |_| 0).unwrap();
+        let file = SerializedFileReader::new(File::open(&path).unwrap()).unwrap();
+        let columns: Vec<(String, bool)> = file.metadata().row_groups()[0]
+            .columns()
+            .iter()
+            .map(|column| {
+                let is_split = column.encodings().any(|encoding| encoding == Encoding::BYTE_STREAM_SPLIT);
+                (column.column_path().string(), is_split)
+            })
+            .collect();
+        let split = [
+            ("number", false),
+            ("block", false),
+            ("group", false),
+            ("verdict", false),
+            ("cause", false),
+            ("held_rate", false),
+            ("held_rate.of", false),
+            ("hit_rate", false),
+            ("ra_rms_deg", true),
+        ];
+        assert_eq!(columns, split.map(|(name, is_split)| (name.to_owned(), is_split)));
+    }
+
+    #[test]
+    fn units_ascend_and_blocks_ascend_by_one_from_nought() {
+        let mut table = table();
+        for (blocks, parts) in [
+            ([0, 1, 3, 3], ["row 2", "`block` is `3`", "1 or 2"]),
+            ([0, 1, 0, 1], ["row 2", "`block` is `0`", "1 or 2"]),
+            ([1, 1, 2, 3], ["row 0", "`block` is `1`", "0 in the first row"]),
+        ] {
+            let message = refusal(&table, &blocks);
+            assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+        }
+        for number in [3, 2] {
+            table.units[2].number = number;
+            let message = refusal(&table, &[0; 4]);
+            let parts = ["row 2", &format!("`number` is `{number}`"), "more than 3, that of the row before"];
+            assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+        }
+        let message = refusal(&UnitTable::default(), &[]);
+        assert!(message.contains("`number of rows` is `0`, expected at least 1"), "{message}");
+    }
+
+    /// Rows are counted over the whole file, and not over what is read at a time.
+    #[test]
+    fn a_value_that_is_no_number_is_told_with_its_row() {
+        let row = BATCH_ROWS + 3;
+        let mut values = vec![Some(0.5); row + 2];
+        values[row] = Some(f64::NAN);
+        let table = sample(vec![figure("ra_rms_deg", Reduction::Rms, &values)]).table;
+        let message = refusal(&table, &vec![0; row + 2]);
+        assert!(message.contains("row 8195: `ra_rms_deg` is `NaN`, expected a finite number"), "{message}");
+    }
+
+    #[test]
+    fn a_column_that_is_missing_or_of_another_type_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        write(&File::create_new(&path).unwrap(), &path, &table(), |_| 0).unwrap();
+        for name in ["dec_rms_deg", "number"] {
+            let message = read(&path, &[(name.to_owned(), Reduction::Rms)]).unwrap_err().to_string();
+            assert!(message.contains(&format!("no column `{name}` of its type")), "{message}");
+        }
+    }
+}

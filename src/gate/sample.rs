@@ -37,7 +37,35 @@ fn rounded(value: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::hand_made::{figure, identity};
     use super::*;
+
+    /// Of numbers from 1 to 2 the last digit kept is 2⁻¹¹.
+    #[test]
+    fn rounding_goes_to_the_nearest_number_that_is_kept() {
+        let digit = 1.0 / 2048.0_f32;
+        for (digits, kept) in
+            [(0.0, 0.0), (0.25, 0.0), (0.75, 1.0), (1.25, 1.0), (1.75, 2.0), (2047.75, 2048.0)]
+        {
+            assert_eq!(rounded(1.0 + digits * digit), 1.0 + kept * digit, "{digits} digits");
+            assert_eq!(rounded(-1.0 - digits * digit), -1.0 - kept * digit, "{digits} digits");
+        }
+        // The next power of two would be infinite.
+        assert_eq!(rounded(f32::MAX), f32::MAX);
+    }
+
+    #[test]
+    fn amounts_are_rounded_and_counts_are_not() {
+        let values = [Some(1.0 + 1.0 / 8192.0), Some(4097.0), None];
+        let rate = figure("dec_within_1px", Reduction::Rate, &values);
+        let amount = figure("ra_rms_deg", Reduction::Rms, &values);
+        let table = UnitTable { units: Vec::new(), figures: vec![rate.clone(), amount] };
+        let sample = Sample::new(identity(), table);
+        assert_eq!(sample.table.figures[0], rate);
+        // 4097 lies half way between two numbers that are kept, and goes away from nought.
+        let kept = figure("ra_rms_deg", Reduction::Rms, &[Some(1.0), Some(4098.0), None]);
+        assert_eq!(sample.table.figures[1], kept);
+    }
 
     #[test]
     fn rounding_keeps_twelve_binary_digits_and_whole_numbers_below_that() {

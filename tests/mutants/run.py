@@ -61,7 +61,7 @@ PRUNED = {
 PRUNED_FOR = {
     "gate": {
         "src/lib.rs": "pub mod failure;\npub mod files;\npub mod gate;\npub mod mitsuba;\npub mod score;\npub mod sha256;\npub mod statistics;\npub mod toml_file;",
-        "src/gate/mod.rs": "mod baseline;\nmod blocks;\nmod compare;\nmod effects;\nmod flips;\nmod identity;\nmod junit;\nmod report;\nmod rows;\nmod sample;\n"
+        "src/gate/mod.rs": "mod baseline;\nmod blocks;\nmod compare;\nmod effects;\nmod flips;\n#[cfg(test)]\nmod hand_made;\nmod identity;\nmod junit;\nmod report;\nmod rows;\nmod sample;\n"
         "pub use baseline::*;\npub use blocks::*;\npub use compare::*;\npub use flips::*;\npub use identity::*;\npub use junit::*;\npub use report::*;\npub use sample::*;",
         "src/files/mod.rs": "mod checksums;\nmod error;\nmod parquet_claims;\nmod parquet_file;\nmod parquet_table;\nmod thrift;\nmod whole_file;\n"
         "pub use checksums::Checksums;\npub use error::{FileError, Place};\npub(crate) use parquet_file::ParquetFile;\npub(crate) use parquet_table::unwritten;\npub use whole_file::WholeFile;",
