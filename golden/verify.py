@@ -240,7 +240,7 @@ WITNESSES = {
     "docking": ("Mitsuba: images of the docking target", docking),
     "references": ("our simulator against all of these", tests("-p", "boresight-sim", "--test", "golden_*", "--test", "planets")),
     "drawn": ("our facets against Mitsuba's images", tests("-p", "boresight", "--test", "golden_docking")),
-    "sky": ("Tycho-2, Liebe, Bright Star Catalogue: stars in circular fields", looks("sky.py", [], needs=TYCHO2)),
+    "sky": ("Tycho-2, Liebe, published counts: stars in circular fields", looks("sky.py", [], needs=TYCHO2)),
     "projection": ("OpenCV: places of stars, with distortion", looks("projection.py", ["--pointings", "6"])),
     "extractor": ("SEP: recall and places of stars", looks("extractor.py", ["--pointings", "20"])),
     "tetra3rs": ("tetra3rs: boresights, lost in space", looks("plate_solve.py", ["--pointings", "60"])),
