@@ -1,14 +1,20 @@
 //! `boresight report`: one HTML file of what a directory of results holds.
 
+mod budget;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::json;
 
+use self::budget::fly_budget;
 use super::Answer;
 use super::output::Output;
 use crate::failure::Failure;
 use crate::report::{Page, report_of, report_with_budget, write_page};
+
+/// The word for the runs of every stage.
+const ALL: &str = "all";
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {
@@ -18,8 +24,9 @@ pub(super) struct ReportArguments {
     /// The file to write, replaced if it is there; default: `report.html` in the directory
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Far range: the directory of a run of the same frames with --inject STAGE, for the error budget; may be given for every stage
-    #[arg(long, value_name = "DIR")]
+    /// Far range, for the error budget: `all` flies the same frames again, once a stage, and keeps what they gave in DIR/budget; or the
+    /// directory of a run of the same frames with --inject STAGE, may be given for every stage
+    #[arg(long, value_name = "all|DIR")]
     budget: Vec<PathBuf>,
 }
 
@@ -28,7 +35,18 @@ pub(super) fn report(arguments: &ReportArguments, output: &Output) -> Result<Ans
     let page = if arguments.budget.is_empty() {
         report_of(&arguments.directory)?
     } else {
-        report_with_budget(&arguments.directory, &arguments.budget)?
+        match arguments.budget.as_slice() {
+            [only] if only == Path::new(ALL) => {
+                report_with_budget(&arguments.directory, &fly_budget(&arguments.directory, output)?)?
+            }
+            several if several.iter().any(|path| path == Path::new(ALL)) => {
+                return Err(Failure::Usage(
+                    "--budget is `all` and a directory, expected `all` alone: it flies every stage"
+                        .to_owned(),
+                ));
+            }
+            directories => report_with_budget(&arguments.directory, directories)?,
+        }
     };
     let bytes = write_page(&page, &path)?;
     output.answer(

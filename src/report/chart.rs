@@ -6,6 +6,7 @@ use plotly::{Bar, Layout, Scatter, Trace, Traces};
 use serde::Serialize;
 
 use super::page::{DataTable, script_safe};
+use super::thin::{extremes, sampled};
 
 /// What is true.
 pub(super) const TRUTH: &str = "#2f9e69";
@@ -17,6 +18,9 @@ pub(super) const WRONG: &str = "#c9415a";
 pub(super) const BESIDE: &str = "#e0752d";
 /// What is only there to be compared with.
 pub(super) const REFERENCE: &str = "#7c8792";
+
+/// Points that are few.
+const FEW: usize = 300;
 
 /// A chart, the words below it and the table behind it.
 #[derive(Clone)]
@@ -99,6 +103,31 @@ pub(super) fn points<X: Serialize + Clone + 'static>(
     Scatter::new(x, y).name(plain(name)).mode(Mode::Markers).marker(marker)
 }
 
+/// A cloud of the points of some rows, and, where they are too many to be drawn, a sample of them with their extremes as rings. `make` draws
+/// rows; `value` is what the extremes are of, and where there is none no extremes are drawn.
+pub(super) fn cloud<X: Serialize + Clone + 'static>(
+    name: &str,
+    rows: &[usize],
+    value: Option<&dyn Fn(usize) -> f64>,
+    colour: &'static str,
+    make: impl Fn(&[usize]) -> Curve<X>,
+) -> Vec<Curve<X>> {
+    let of = |places: Vec<usize>| -> Curve<X> {
+        let rows: Vec<usize> = places.into_iter().map(|place| rows[place]).collect();
+        make(&rows).mode(Mode::Markers)
+    };
+    // Few points are looked at one by one, of many their density.
+    let (size, opacity) = if rows.len() < FEW { (5, 0.85) } else { (4, 0.6) };
+    let marker = Marker::new().size(size).color(colour).opacity(opacity);
+    let mut traces = vec![of(sampled(rows.len())).name(plain(name)).marker(marker)];
+    let rings = value.map_or_else(Vec::new, |value| extremes(rows.len(), &|place| value(rows[place])));
+    if !rings.is_empty() {
+        let marker = Marker::new().size(6).color(REFERENCE).symbol(MarkerSymbol::CircleOpen);
+        traces.push(of(rings).name("smallest and largest of each fiftieth").marker(marker));
+    }
+    traces
+}
+
 /// Points that stand out.
 pub(super) fn crosses<X: Serialize + Clone + 'static>(
     name: &str,
@@ -173,8 +202,8 @@ pub(super) fn dashed<X: Serialize + Clone + 'static>(
 }
 
 /// Bars, one a name.
-pub(super) fn bars(name: &str, x: Vec<String>, y: Vec<f64>) -> Box<Bar<String, f64>> {
-    Bar::new(x.iter().map(|x| plain(x)).collect(), y).name(plain(name))
+pub(super) fn bars(name: &str, x: Vec<String>, y: Vec<f64>, colour: &'static str) -> Box<Bar<String, f64>> {
+    Bar::new(x.iter().map(|x| plain(x)).collect(), y).name(plain(name)).marker(Marker::new().color(colour))
 }
 
 /// The layout of stacked bars.
@@ -193,6 +222,20 @@ pub(super) fn log_axis(title: &str) -> Axis {
     Axis::new().title(title).type_(AxisType::Log).tick_format("~g").n_ticks(4)
 }
 
+/// Ticks of a low panel with an axis in powers of ten: powers, or 1 and 3, or 1, 2 and 5 of each, the fewest that are two, so that no label
+/// covers another.
+fn log_ticks(low: f64, high: f64) -> Vec<f64> {
+    let (first, last) = (libm::floor(libm::log10(low)) as i32, libm::ceil(libm::log10(high)) as i32);
+    let every = ((last - first) / 4).max(1) as usize;
+    let ticks = |digits: &[f64]| -> Vec<f64> {
+        let powers = (first..=last).step_by(every).map(|power| libm::pow(10.0, f64::from(power)));
+        let all = powers.flat_map(|power| digits.iter().map(move |digit| digit * power));
+        all.filter(|tick| (low..=high).contains(tick)).collect()
+    };
+    let sets: [&[f64]; 3] = [&[1.0], &[1.0, 3.0], &[1.0, 2.0, 5.0]];
+    sets.into_iter().map(ticks).find(|ticks| ticks.len() > 1).unwrap_or_else(|| vec![low, high])
+}
+
 /// Some traces with an axis of their own, in a stack of them over one common axis.
 pub(super) struct Panel<X: Serialize + Clone + 'static> {
     /// Title of its axis.
@@ -201,31 +244,35 @@ pub(super) struct Panel<X: Serialize + Clone + 'static> {
     pub(super) traces: Vec<Curve<X>>,
     /// Limits of its axis; `None`: those of what is drawn.
     pub(super) range: Option<[f64; 2]>,
-    /// Whether its axis is in powers of ten.
-    pub(super) is_log: bool,
+    /// Limits of an axis in powers of ten; `None` for a common one.
+    pub(super) log: Option<[f64; 2]>,
 }
 
 impl<X: Serialize + Clone + 'static> Panel<X> {
     pub(super) fn new(title: impl Into<String>, traces: Vec<Curve<X>>) -> Self {
-        Self { title: title.into(), traces, range: None, is_log: false }
+        Self { title: title.into(), traces, range: None, log: None }
     }
 }
 
 /// Panels above each other, at most eight, over one common axis. The legend is that of the first.
 pub(super) fn stacked<X: Serialize + Clone + 'static>(
-    x_title: &str,
+    x: Axis,
     panels: Vec<Panel<X>>,
 ) -> (Vec<Box<dyn Trace>>, Layout) {
     let count = panels.len().max(1);
     let (height, gap) = (1.0 / count as f64, 0.035);
     let anchor = if count == 1 { "y".to_owned() } else { format!("y{count}") };
-    let mut layout = Layout::new().x_axis(Axis::new().title(x_title).anchor(&anchor));
+    let mut layout = Layout::new().x_axis(x.anchor(&anchor));
     let mut traces: Vec<Box<dyn Trace>> = Vec::new();
     for (index, panel) in panels.into_iter().enumerate() {
         let top = 1.0 - index as f64 * height;
         let bottom = if index + 1 == count { 0.0 } else { top - height + gap };
-        let axis =
-            if panel.is_log { log_axis(&panel.title) } else { Axis::new().title(panel.title.as_str()) };
+        let axis = match panel.log {
+            Some([low, high]) => log_axis(&panel.title)
+                .tick_values(log_ticks(low, high))
+                .range(vec![libm::log10(low) - 0.1, libm::log10(high) + 0.1]),
+            None => Axis::new().title(panel.title.as_str()),
+        };
         let mut axis = axis.domain(&[bottom, top]);
         if let Some([low, high]) = panel.range {
             axis = axis.range(vec![low, high]);
@@ -247,4 +294,18 @@ pub(super) fn stacked<X: Serialize + Clone + 'static>(
         }
     }
     (traces, layout)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_in_powers_of_ten_has_two_ticks_and_few_more() {
+        assert_eq!(log_ticks(1e-6, 0.5).len(), 5);
+        for (low, high) in [(0.004, 0.05), (0.004, 0.06), (0.011, 0.019), (2e-5, 0.3), (1e-9, 10.0)] {
+            let ticks = log_ticks(low, high);
+            assert!((2..=6).contains(&ticks.len()), "{low} to {high}: {ticks:?}");
+        }
+    }
 }

@@ -10,7 +10,7 @@ use super::far_range::{FarRangeRun, FrameSheet};
 use super::figures::{cell, significant};
 use super::page::{DataTable, Page, Section};
 use super::picture::Picture;
-use super::words::{capital, spoken};
+use super::words::{capital, figure_label, spoken};
 use crate::failure::Failure;
 use crate::gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
 use crate::score::{Kind, sense};
@@ -160,20 +160,27 @@ fn effects(report: &GateReport) -> Section {
         "blocks",
     ])
     .caption(
-        "Result minus baseline, with 95 % intervals; p of a worsening, adjusted for all figures together.",
-    );
+        "Result minus baseline, with 95 % intervals; rates in percent, their differences in points; p of a worsening, adjusted for all figures \
+         together.",
+    )
+    .narrow();
     for (name, figure) in &report.figures {
+        let is_rate = sense(name).kind == Kind::Rate;
+        let number = |value: Option<f64>| match value {
+            Some(value) if is_rate => format!("{:.2}", 100.0 * value),
+            value => cell(value),
+        };
         table.push([
             name.clone(),
             figure.verdict.words().to_owned(),
-            cell(figure.baseline),
-            cell(figure.result),
-            cell(figure.difference),
-            cell(figure.low),
-            cell(figure.high),
-            significant(figure.tolerance),
+            number(figure.baseline),
+            number(figure.result),
+            number(figure.difference),
+            number(figure.low),
+            number(figure.high),
+            number(Some(figure.tolerance)),
             significant(figure.adjusted_p),
-            cell(figure.smallest_visible),
+            number(figure.smallest_visible),
             figure.blocks.to_string(),
         ]);
     }
@@ -199,6 +206,12 @@ fn effects(report: &GateReport) -> Section {
     section.table(table)
 }
 
+/// A figure's name without its unit, which the axis of differences has not.
+fn plain_label(name: &str) -> String {
+    let label = figure_label(name);
+    label.split_once(", ").map_or(label.clone(), |(words, _)| words.to_owned())
+}
+
 /// A figure of the gate by its name.
 type Compared<'a> = (&'a String, &'a FigureReport);
 
@@ -215,9 +228,9 @@ fn differences(
             chosen.iter().map(|(_, figure)| rounded(of(figure), 4)).collect()
         };
         let (y, low, high) = (scaled(|f| f.difference), scaled(|f| f.low), scaled(|f| f.high));
-        intervals(name, chosen.iter().map(|(name, _)| (*name).clone()).collect(), y, &low, &high, colour)
+        intervals(name, chosen.iter().map(|(name, _)| plain_label(name)).collect(), y, &low, &high, colour)
     };
-    let names: Vec<String> = shown.iter().map(|(name, _)| (*name).clone()).collect();
+    let names: Vec<String> = shown.iter().map(|(name, _)| plain_label(name)).collect();
     let limit = |side: f64, name: &str| {
         let at = shown.iter().map(|(_, figure)| side * figure.tolerance / unit(figure)).collect();
         let trace = line(name, names.clone(), at, REFERENCE).opacity(0.6);

@@ -9,6 +9,7 @@
 //! - [`report_of`]: whatever a directory holds; [`write_page`] puts it into a file.
 
 mod chart;
+mod colours;
 mod docking;
 mod far_range;
 mod figures;
@@ -16,6 +17,7 @@ mod gate;
 mod page;
 mod picture;
 mod read;
+mod sky_map;
 mod study;
 mod thin;
 mod visibility;
@@ -25,7 +27,7 @@ use std::path::{Path, PathBuf};
 
 pub use chart::Chart;
 pub use docking::{DockingRun, FieldSheet, PortionReport, docking_page};
-pub use far_range::{FarRangeRun, FrameSheet, InjectedRun, far_range_page};
+pub use far_range::{FarRangeRun, FrameSheet, InjectedRun, far_range_page, kept_budget};
 pub use gate::{FlippedFrames, gate_page};
 pub use page::{Block, DataTable, Page, Section};
 pub use picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
@@ -39,14 +41,18 @@ use crate::files::{Checksums, WholeFile};
 use crate::scenario::World;
 use crate::score::FrameVerdict;
 
-/// The report of a directory of results.
+/// The report of a directory of results, with the error budget that is kept there.
 ///
 /// # Errors
 /// A [`Failure`] that names the file which is missing or cannot be read.
 pub fn report_of(directory: &Path) -> Result<Page, Failure> {
     let page = match ResultKind::of(directory)? {
         ResultKind::Run => match world_of(directory)? {
-            World::FarRange => far_range_page(&FarRangeRun::read(directory)?, &FrameSheet::open(directory)?)?,
+            World::FarRange => {
+                let mut run = FarRangeRun::read(directory)?;
+                run.budget = InjectedRun::read_all(&kept_budget(directory), &run)?;
+                far_range_page(&run, &FrameSheet::open(directory)?)?
+            }
             World::Docking => docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?)?,
         },
         ResultKind::Study => study_page(&StudyResult::read(directory)?),
@@ -56,18 +62,27 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
     Ok(page)
 }
 
-/// The report of a far-range run with its error budget: `budget` are directories of runs of the same frames, each with the truth in the
-/// place of one stage's result.
+/// Refuses an error budget of what has none.
 ///
 /// # Errors
-/// As [`report_of`]; a [`Failure`] for a directory that is not of the same frames, or is an honest run.
-pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
+/// A [`Failure`] for a directory that is not of a far-range run.
+pub fn check_budget(directory: &Path) -> Result<(), Failure> {
     if ResultKind::of(directory)? != ResultKind::Run || world_of(directory)? != World::FarRange {
         return Err(Failure::Usage(format!(
             "--budget is given, expected with a run of the far range alone: {} is none",
             directory.display()
         )));
     }
+    Ok(())
+}
+
+/// The report of a far-range run with its error budget: `budget` are directories of runs of the same frames, each with the truth in the
+/// place of one stage's result.
+///
+/// # Errors
+/// As [`report_of`]; a [`Failure`] for a directory that is not of the same frames, or is an honest run.
+pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
+    check_budget(directory)?;
     let mut run = FarRangeRun::read(directory)?;
     run.budget = InjectedRun::read_all(budget, &run)?;
     far_range_page(&run, &FrameSheet::open(directory)?)

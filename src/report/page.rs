@@ -119,6 +119,8 @@ pub struct DataTable {
     pub rows: Vec<Vec<String>>,
     /// Whether its cells are sentences rather than numbers.
     pub is_wordy: bool,
+    /// Whether cells may be broken, as of many columns which a page has no room for otherwise.
+    pub is_narrow: bool,
 }
 
 impl DataTable {
@@ -136,6 +138,12 @@ impl DataTable {
     /// Of sentences rather than numbers.
     pub fn wordy(mut self) -> Self {
         self.is_wordy = true;
+        self
+    }
+
+    /// Of many columns.
+    pub fn narrow(mut self) -> Self {
+        self.is_narrow = true;
         self
     }
 

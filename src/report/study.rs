@@ -6,11 +6,14 @@ use plotly::common::{ColorScale, ColorScalePalette};
 use plotly::layout::Axis;
 use plotly::{HeatMap, Layout, Trace};
 
-use super::chart::{BESIDE, Chart, MEASURED, axes, intervals, intervals_across, plain, points, rounded};
-use super::figures::{cell, significant};
+use super::chart::{
+    BESIDE, Chart, MEASURED, axes, cloud, intervals, intervals_across, plain, points, rounded,
+};
+use super::figures::significant;
 use super::page::{DataTable, Page, Section};
 use super::read::read_json;
-use super::thin::{bins, summary as summed, thinned};
+use super::thin::{bins, drawn, summary as summed};
+use super::words::{capital, figure_label, spoken};
 use crate::failure::Failure;
 use crate::files::FileError;
 use crate::score::{Better, Kind, sense};
@@ -60,7 +63,7 @@ pub fn study_page(study: &StudyResult) -> Page {
         Some(all) => format!(
             "{} cases; {worst_by}, by which the worst are the worst, is {}.",
             summary.cases,
-            shown(&all)
+            shown(worst_by, &all)
         ),
         None => format!("{} cases.", summary.cases),
     };
@@ -75,12 +78,17 @@ pub fn study_page(study: &StudyResult) -> Page {
     sections.push(scatter(study));
     sections.push(worst(study));
     Page {
-        title: format!("Study {}", summary.study),
+        title: if summary.title.is_empty() {
+            format!("Study {}", summary.study)
+        } else {
+            summary.title.clone()
+        },
         kind: "Study",
         version: summary.version.clone(),
         lead: vec![lead],
         warnings: Vec::new(),
         facts: vec![
+            ("Study", summary.study.clone()),
             ("Cases", format!("{} of {} at most", summary.cases, summary.of)),
             ("Stopped by a figure", if summary.is_narrow_enough { "yes" } else { "no" }.to_owned()),
             ("Drawn values", study.table.drawn.len().to_string()),
@@ -93,11 +101,22 @@ pub fn study_page(study: &StudyResult) -> Page {
     }
 }
 
-/// A value with its interval.
-fn shown(estimate: &Estimate) -> String {
+/// What a figure is drawn and written in: rates in percent, others as they are.
+fn scale(name: &str) -> f64 {
+    if sense(name).kind == Kind::Rate { 100.0 } else { 1.0 }
+}
+
+/// A number of a figure.
+fn number(name: &str, value: f64) -> String {
+    if sense(name).kind == Kind::Rate { format!("{:.2}\u{a0}%", 100.0 * value) } else { significant(value) }
+}
+
+/// A value with its interval, which a narrow column may have on a line of its own.
+fn shown(name: &str, estimate: &Estimate) -> String {
+    let bound = |value: f64| number(name, value).replace("\u{a0}%", "");
     let interval = estimate.low.zip(estimate.high);
-    let interval = interval.map(|(low, high)| format!(" ({} to {})", significant(low), significant(high)));
-    format!("{}{}", significant(estimate.value), interval.unwrap_or_default())
+    let interval = interval.map(|(low, high)| format!(" ({}\u{a0}to\u{a0}{})", bound(low), bound(high)));
+    format!("{}{}", number(name, estimate.value), interval.unwrap_or_default())
 }
 
 /// Every figure: over all cases, and its quantiles over them.
@@ -105,9 +124,11 @@ fn figures(study: &StudyResult) -> Section {
     let summary = &study.summary;
     let mut table = DataTable::new(["figure", "cases", "all", "5 % of cases below", "median", "95 % of cases below"]).caption(
         "With 95 % intervals. All: of a rate all frames of all cases together, of another figure the mean of the cases.",
-    );
-    let estimate = |estimate: &Option<Estimate>| estimate.as_ref().map_or_else(|| "–".to_owned(), shown);
+    ).narrow();
     for (name, figure) in &summary.figures {
+        let estimate = |estimate: &Option<Estimate>| {
+            estimate.as_ref().map_or_else(|| "–".to_owned(), |e| shown(name, e))
+        };
         table.push([
             name.clone(),
             figure.cases.to_string(),
@@ -126,10 +147,11 @@ fn figures(study: &StudyResult) -> Section {
         return section.table(table);
     }
     // Upwards as the axis goes, so that the first is on top.
-    let column = |number: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
-        rates.iter().rev().map(|(_, all, figure)| rounded(number(all, figure), 6)).collect()
+    let column = |pick: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
+        rates.iter().rev().map(|(_, all, figure)| rounded(100.0 * pick(all, figure), 4)).collect()
     };
-    let names: Vec<String> = rates.iter().rev().map(|(name, _, _)| (*name).clone()).collect();
+    let names: Vec<String> =
+        rates.iter().rev().map(|(name, _, _)| figure_label(name).replace(", %", "")).collect();
     let quantile = |estimate: Option<Estimate>| estimate.map_or(f64::NAN, |estimate| estimate.value);
     let traces: Vec<Box<dyn Trace>> = vec![
         intervals_across(
@@ -149,10 +171,11 @@ fn figures(study: &StudyResult) -> Section {
             MEASURED,
         ),
     ];
-    let layout = Layout::new().x_axis(Axis::new().title("rate")).y_axis(Axis::new());
+    let layout = Layout::new().x_axis(Axis::new().title("%")).y_axis(Axis::new());
     let mut data = DataTable::new(["rate", "all", "low", "high"]);
     for (name, all, _) in &rates {
-        data.push([(*name).clone(), significant(all.value), cell(all.low), cell(all.high)]);
+        let bound = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
+        data.push([(*name).clone(), number(name, all.value), bound(all.low), bound(all.high)]);
     }
     let height = 110 + 30 * rates.len() as u32;
     let caption = "Rates over all frames, and how far the cases spread about them.";
@@ -170,13 +193,13 @@ fn sweep(study: &StudyResult) -> Section {
     let (mut x, mut y, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for point in &summary.sweep {
         let estimate = point.figures.get(name).and_then(|figure| figure.all);
-        let text = estimate.as_ref().map_or_else(|| "–".to_owned(), shown);
+        let text = estimate.as_ref().map_or_else(|| "–".to_owned(), |estimate| shown(name, estimate));
         data.push([label(&point.at), point.cases.to_string(), text]);
         if let Some(estimate) = estimate {
             x.push(plain(&label(&point.at)));
-            y.push(rounded(estimate.value, 9));
-            low.push(estimate.low.unwrap_or(estimate.value));
-            high.push(estimate.high.unwrap_or(estimate.value));
+            y.push(rounded(scale(name) * estimate.value, 9));
+            low.push(scale(name) * estimate.low.unwrap_or(estimate.value));
+            high.push(scale(name) * estimate.high.unwrap_or(estimate.value));
         }
     }
     let traces: Vec<Box<dyn Trace>> = vec![intervals(name, x, y, &low, &high, MEASURED)];
@@ -185,7 +208,7 @@ fn sweep(study: &StudyResult) -> Section {
         420,
         data,
         traces,
-        axes("", &plain(name)),
+        axes("", &plain(&figure_label(name))),
     ))
 }
 
@@ -218,7 +241,8 @@ fn sensitivities(study: &StudyResult) -> Section {
         .map(|figure| parameters.iter().map(|parameter| of(figure, parameter)).collect())
         .collect();
     let names = |names: Vec<&&String>| names.into_iter().map(|name| plain(name)).collect::<Vec<_>>();
-    let map = HeatMap::new(names(parameters.iter().collect()), names(figures.iter().rev().collect()), z)
+    let labels: Vec<String> = figures.iter().rev().map(|name| plain(&figure_label(name))).collect();
+    let map = HeatMap::new(names(parameters.iter().collect()), labels, z)
         .zmin(-1.0)
         .zmax(1.0)
         .color_scale(ColorScale::Palette(ColorScalePalette::RdBu))
@@ -296,21 +320,22 @@ fn indices(study: &StudyResult) -> Section {
 fn scatter(study: &StudyResult) -> Section {
     let (summary, table) = (&study.summary, &study.table);
     let name = &summary.worst_by;
-    let section = Section::new("scatter", format!("{name} against what was drawn"));
+    let section = Section::new("scatter", format!("{} against what was drawn", capital(&spoken(name))));
     let Some(values) = table.figure(name) else { return section.text("No case has the figure.") };
     let mut charts = Vec::new();
     for parameter in table.drawn.keys() {
         let Some(numbers) = table.numbers(parameter) else { continue };
         let rows: Vec<usize> = (0..numbers.len()).filter(|&row| values[row].value.is_some()).collect();
-        let value = |row: usize| values[row].value.unwrap_or(f64::NAN);
-        let kept = thinned(rows.len(), &[&|i| value(rows[i]), &|i| numbers[rows[i]]]);
-        let kept: Vec<usize> = kept.into_iter().map(|i| rows[i]).collect();
-        let x = kept.iter().map(|&row| numbers[row]).collect();
-        let y = kept.iter().map(|&row| rounded(value(row), 9)).collect();
-        let cases: Vec<u64> = kept.iter().map(|&row| table.rows[row].case).collect();
-        let cloud = points(name, x, y, MEASURED)
-            .custom_data(cases)
-            .hover_template("case %{customdata}<br>%{x}<br>%{y}<extra></extra>");
+        let value = |row: usize| scale(name) * values[row].value.unwrap_or(f64::NAN);
+        let traces = cloud(name, &rows, Some(&value), MEASURED, |rows| {
+            let x = rows.iter().map(|&row| numbers[row]).collect();
+            let y = rows.iter().map(|&row| rounded(value(row), 9)).collect();
+            let cases: Vec<u64> = rows.iter().map(|&row| table.rows[row].case).collect();
+            let hover = "case %{customdata}<br>%{x}<br>%{y}<extra></extra>";
+            points("", x, y, MEASURED).custom_data(cases).hover_template(hover)
+        });
+        let is_drawn_whole = traces.len() == 1;
+        let traces: Vec<Box<dyn Trace>> = traces.into_iter().map(|trace| trace as Box<dyn Trace>).collect();
         let mut sorted = rows.clone();
         sorted.sort_by(|&a, &b| numbers[a].total_cmp(&numbers[b]).then(a.cmp(&b)));
         let mut data = DataTable::new(["from", "to", "cases", "smallest", "mean", "largest"])
@@ -322,11 +347,15 @@ fn scatter(study: &StudyResult) -> Section {
             data.push(cells);
         }
         charts.push(Chart::new(
-            format!("{name} against {parameter}, a point a case."),
+            format!(
+                "{} against {parameter}, a point a case. {}",
+                figure_label(name),
+                drawn(&[(rows.len(), "cases")], true)
+            ),
             260,
             data,
-            vec![cloud as Box<dyn Trace>],
-            axes(&plain(parameter), &plain(name)),
+            traces,
+            axes(&plain(parameter), &plain(&figure_label(name))).show_legend(!is_drawn_whole),
         ));
     }
     let left_out = charts.len().saturating_sub(MOST_SCATTERS);
@@ -363,7 +392,7 @@ fn worst(study: &StudyResult) -> Section {
     head.push("runs it again".to_owned());
     let mut table = DataTable::new(head).wordy();
     for case in &summary.worst {
-        let mut cells = vec![case.case.to_string(), significant(case.value)];
+        let mut cells = vec![case.case.to_string(), number(&summary.worst_by, case.value)];
         cells.extend(drawn.iter().map(|name| match case.drawn.get(*name) {
             Some(text) => text.parse::<f64>().map_or_else(|_| text.clone(), significant),
             None => String::new(),

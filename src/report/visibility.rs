@@ -2,17 +2,18 @@
 
 use std::path::Path;
 
-use plotly::common::{ColorScale, ColorScalePalette, Marker, Mode};
-use plotly::layout::{Axis, LayoutGeo, Projection, ProjectionType};
-use plotly::{Layout, ScatterGeo, Trace};
+use plotly::common::{Marker, MarkerSymbol, Mode};
+use plotly::layout::Axis;
+use plotly::{Layout, Trace};
 
 use super::chart::{
-    BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, axes, intervals, line, log_axis, plain, points,
-    rounded, stacked,
+    BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, axes, dashed, intervals, line, log_axis, rounded,
+    stacked,
 };
-use super::figures::{cell, significant};
+use super::figures::{cell, probability, significant};
 use super::page::{DataTable, Page, Section};
 use super::read::read_json;
+use super::sky_map::sky_map;
 use super::thin::{bins, summary};
 use crate::failure::Failure;
 use crate::visibility::{Simulated, Status, VisibilityReport, read_sky};
@@ -51,7 +52,7 @@ pub fn visibility_page(report: &VisibilityReport) -> Page {
             ("Field", field),
             ("Nominal exposure", format!("{} s", significant(camera.nominal_s))),
             ("Stars needed", camera.n_min.to_string()),
-            ("With probability", significant(camera.probability)),
+            ("With probability", probability(camera.probability)),
             ("Star of V = 0", format!("{} e/s", significant(camera.zero_point_e_per_s))),
             ("Saturation", format!("{} e", significant(camera.saturation_e))),
             ("Background", format!("{} e/s and pixel", significant(camera.background_e_per_s))),
@@ -65,7 +66,7 @@ pub fn visibility_page(report: &VisibilityReport) -> Page {
 fn shown(simulated: Option<&Simulated>) -> String {
     simulated.map_or_else(
         || "–".to_owned(),
-        |s| format!("{} of {} ({}–{})", s.count, s.of, significant(s.low), significant(s.high)),
+        |s| format!("{} of {} ({:.1}–{:.1}\u{a0}%)", s.count, s.of, 100.0 * s.low, 100.0 * s.high),
     )
 }
 
@@ -92,7 +93,10 @@ fn requirements(report: &VisibilityReport) -> Section {
     ])
     .caption("What was looked for.");
     for verdict in &report.requirements {
-        let margin = verdict.margin.map(|margin| format!("{} {}", significant(margin), verdict.margin_unit));
+        let margin = verdict.margin.map(|margin| match verdict.margin_unit.as_ref() {
+            "points" => format!("{margin:.1} points"),
+            unit => format!("{} {unit}", significant(margin)),
+        });
         let evidence = match &verdict.binds {
             Some(binds) => format!("{}. What binds: {binds}.", verdict.evidence),
             None => verdict.evidence.clone(),
@@ -101,8 +105,8 @@ fn requirements(report: &VisibilityReport) -> Section {
             verdict.id.clone(),
             verdict.text.clone(),
             verdict.status.words().to_owned(),
-            significant(verdict.asked),
-            significant(verdict.reached),
+            probability(verdict.asked),
+            probability(verdict.reached),
             margin.unwrap_or_else(|| "–".to_owned()),
             shown(verdict.simulated.as_ref()),
             evidence,
@@ -113,10 +117,10 @@ fn requirements(report: &VisibilityReport) -> Section {
                 verdict.id.clone(),
                 f.parameter.to_string(),
                 unit(f.value),
-                significant(f.probability),
+                probability(f.probability),
                 shown(f.simulated.as_ref()),
                 f.failing_value.map_or_else(|| "–".to_owned(), unit),
-                cell(f.failing_probability),
+                f.failing_probability.map_or_else(|| "–".to_owned(), probability),
             ]);
         }
     }
@@ -132,20 +136,23 @@ fn detection(report: &VisibilityReport) -> Section {
     }
     let law = &report.detection;
     let seen = &report.detection_simulated;
-    let mut traces: Vec<Box<dyn Trace>> = vec![line(
-        "analytic law, a star of mean colour",
+    let mut traces: Vec<Box<dyn Trace>> = vec![dashed(
+        "law, a star of mean colour",
         law.iter().map(|p| p.magnitude).collect(),
         law.iter().map(|p| rounded(p.probability, 6)).collect(),
-        MEASURED,
+        REFERENCE,
     )];
     if !seen.is_empty() {
         let x: Vec<f64> = seen.iter().map(|p| p.magnitude).collect();
+        let expected = seen.iter().map(|p| rounded(p.analytic, 6)).collect();
+        let law = line("law, mean over the simulated stars", x.clone(), expected, MEASURED);
+        traces.push(
+            law.mode(Mode::LinesMarkers).marker(Marker::new().size(13).symbol(MarkerSymbol::SquareOpen)),
+        );
         let low: Vec<f64> = seen.iter().map(|p| p.low).collect();
         let high: Vec<f64> = seen.iter().map(|p| p.high).collect();
         let rate = seen.iter().map(|p| rounded(p.count as f64 / p.of.max(1) as f64, 6)).collect();
-        traces.push(intervals("simulated, 95 %", x.clone(), rate, &low, &high, BESIDE));
-        let expected = seen.iter().map(|p| rounded(p.analytic, 6)).collect();
-        traces.push(points("the law over the same stars", x, expected, REFERENCE));
+        traces.push(intervals("simulated, the same stars, 95 %", x, rate, &low, &high, BESIDE));
     }
     let mut data =
         DataTable::new(["V", "electrons", "probability", "detected", "of", "low", "high", "law over them"]);
@@ -167,7 +174,9 @@ fn detection(report: &VisibilityReport) -> Section {
         ]);
     }
     section.chart(Chart::new(
-        "Probability that a star is detected at the nominal exposure, by the law and as simulated.",
+        "Probability that a star is detected at the nominal exposure. What is simulated (orange) is to be held against the law over the very stars of \
+         the simulation (blue squares). Both are flatter than the law of one star (grey): stars of one V magnitude have colours of their own, by \
+         which they are brighter or fainter in the camera's band than a star of mean colour.",
         400,
         data,
         traces,
@@ -186,20 +195,19 @@ fn limiting_magnitude(report: &VisibilityReport) -> Section {
     let y = |pick: &dyn Fn(&crate::visibility::LimitPoint) -> Option<f64>| {
         curve.iter().map(|p| pick(p).map_or(f64::NAN, |value| rounded(value, 5))).collect::<Vec<_>>()
     };
-    let asked = format!("detected with {}", significant(report.camera.probability));
+    let asked = format!("detected with {}", probability(report.camera.probability));
     let panels = vec![
         Panel::new(
             "V, mag",
             vec![
-                line("detected with 0.5", x.clone(), y(&|p| p.half), BESIDE),
+                line("detected with 50.0 %", x.clone(), y(&|p| p.half), BESIDE),
                 line(&asked, x.clone(), y(&|p| p.asked), MEASURED),
             ],
         ),
         Panel::new("stars", vec![line("stars", x.clone(), y(&|p| Some(p.stars)), MEASURED)]),
         Panel::new("probability", vec![line("enough", x, y(&|p| Some(p.probability)), MEASURED)]),
     ];
-    let (traces, layout) = stacked("", panels);
-    let layout = layout.x_axis(log_axis("exposure, s").anchor("y3"));
+    let (traces, layout) = stacked(log_axis("exposure, s"), panels);
     let mut data =
         DataTable::new(["exposure, s", "V at 0.5", "V at what is asked", "stars", "probability of enough"]);
     for p in curve {
@@ -227,41 +235,8 @@ fn sky(report: &VisibilityReport) -> Section {
     if sky.map.is_empty() {
         return section.text("No pointing was looked at.");
     }
-    // As the sky is seen from within: right ascension grows to the left.
-    let longitude = |ra_deg: f64| -(if ra_deg > 180.0 { ra_deg - 360.0 } else { ra_deg });
     let counted: Vec<_> = sky.map.iter().filter(|p| p.excluded.is_none()).collect();
-    let excluded: Vec<_> = sky.map.iter().filter(|p| p.excluded.is_some()).collect();
-    let text = |p: &crate::visibility::PointingStars| {
-        let why =
-            p.excluded.as_ref().map_or_else(String::new, |why| format!("<br>excluded by the {}", plain(why)));
-        format!(
-            "RA {:.1}°, Dec {:.1}°<br>{:.2} stars, P {:.4}{why}",
-            p.ra_deg, p.dec_deg, p.stars, p.probability
-        )
-    };
-    let map = |name: &str, of: &[&crate::visibility::PointingStars], marker: Marker| {
-        let latitude = of.iter().map(|p| rounded(p.dec_deg, 2)).collect();
-        let longitude = of.iter().map(|p| rounded(longitude(p.ra_deg), 2)).collect();
-        ScatterGeo::new(latitude, longitude)
-            .name(name)
-            .mode(Mode::Markers)
-            .marker(marker)
-            .text_array(of.iter().map(|p| text(p)).collect::<Vec<_>>())
-            .hover_template("%{text}<extra></extra>")
-    };
-    let stars = counted.iter().map(|p| rounded(p.stars, 3)).collect();
-    let size = if sky.map.len() > 1500 { 6 } else { 7 };
-    let coloured = Marker::new()
-        .size(size)
-        .color_array(stars)
-        .color_scale(ColorScale::Palette(ColorScalePalette::Viridis))
-        .show_scale(true);
-    let traces: Vec<Box<dyn Trace>> = vec![
-        map("stars detected", &counted, coloured),
-        map("excluded", &excluded, Marker::new().size(3).color(REFERENCE).opacity(0.5)),
-    ];
-    let projection = Projection::new().projection_type(ProjectionType::Mollweide);
-    let layout = Layout::new().geo(LayoutGeo::new().projection(projection));
+    let (traces, layout) = sky_map(&counted, sky.map.len());
     let mut data = DataTable::new(["Dec from, °", "Dec to, °", "pointings", "fewest stars", "mean", "most"])
         .caption("By declination, of the pointings that count; sky.csv has every pointing.");
     let mut by_declination = counted.clone();
@@ -277,19 +252,23 @@ fn sky(report: &VisibilityReport) -> Section {
         "RA, °",
         "Dec, °",
         "time (UTC)",
-        "in the field",
-        "stars detected",
+        "stars above the limit",
+        "stars detected, expected",
         "probability of enough",
     ])
-    .caption("The pointings with the fewest stars.");
+    .caption(format!(
+        "The pointings with the fewest stars. The limit is the magnitude at which a star of mean colour is detected with {}; the expected number \
+         counts every star of the field by its own chance, fainter ones too, and so may be larger.",
+        probability(report.camera.probability)
+    ));
     for p in &sky.worst {
         worst.push([
             format!("{:.2}", p.ra_deg),
             format!("{:.2}", p.dec_deg),
-            p.time_utc.clone(),
+            p.time_utc.get(..19).unwrap_or(&p.time_utc).replace('T', " "),
             p.in_field.to_string(),
             significant(p.stars),
-            significant(p.probability),
+            probability(p.probability),
         ]);
     }
     section
@@ -304,8 +283,9 @@ fn sky(report: &VisibilityReport) -> Section {
             significant(sky.quantiles[2])
         ))
         .chart(Chart::new(
-            "Stars detected at the nominal exposure, expected number by boresight; Mollweide's equal-area projection, right ascension \
-             growing to the left, 0 in the middle; a line every 30°.",
+            "Stars detected at the nominal exposure, expected number: each place has that of the nearest boresight that counts, and none where the \
+             next one is farther than one and a half of their distances. Mollweide's equal-area projection, as seen from within: right ascension \
+             grows to the left, 0 in the middle; a line every 30°.",
             480,
             data,
             traces,

@@ -79,6 +79,9 @@ pub struct WorstCase {
 pub struct Summary {
     /// Name of the study.
     pub study: String,
+    /// What it is, in one line; empty in a summary of an earlier version.
+    #[serde(default)]
+    pub title: String,
     /// Hash of the study, its scenario and its pipeline.
     pub hash: String,
     /// Version of Boresight.
@@ -112,6 +115,7 @@ impl Summary {
         let worst_by = study.worst_by();
         Self {
             study: study.name.clone(),
+            title: study.file.title.clone(),
             hash: study.hash_with(pipeline),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             cases: table.rows.len() as u64,

@@ -2,11 +2,13 @@
 
 use contract::docking::DockingOutcome;
 
-use super::limits;
+use plotly::layout::Axis;
+
 use super::run::DockingRun;
-use crate::report::chart::{Chart, MEASURED, Panel, WRONG, crosses, points, rounded, stacked};
+use super::{limits, outside, told_outside};
+use crate::report::chart::{Chart, MEASURED, Panel, WRONG, cloud, crosses, points, rounded, stacked};
 use crate::report::page::{DataTable, Section};
-use crate::report::thin::{bins, summary, thinned};
+use crate::report::thin::{bins, drawn, sampled, summary};
 
 /// Rows of the table behind the chart.
 const TABLE_BINS: usize = 60;
@@ -32,20 +34,25 @@ pub(super) fn field_errors(run: &DockingRun) -> Section {
     };
     let is_wrong = |row: usize| run.verdicts[row].verdict == "wrong";
     let names = ["d1, m", "d2, m", "d3, m", "φ1, °", "φ2, °", "φ3, °"];
-    let panels = names.iter().enumerate().map(|(i, title)| {
-        let of = |wrong: bool| {
-            let rows: Vec<usize> = rows.iter().copied().filter(|&row| is_wrong(row) == wrong).collect();
-            let kept = thinned(rows.len(), &[&|k| error(rows[k], i)]);
-            let x: Vec<f64> = kept.iter().map(|&k| rounded(run.truths[rows[k]].time_s, 3)).collect();
-            let y: Vec<f64> = kept.iter().map(|&k| rounded(error(rows[k], i), 5)).collect();
-            (x, y)
+    let (wrong, right): (Vec<usize>, Vec<usize>) = rows.iter().partition(|&&row| is_wrong(row));
+    let mut beyond = 0;
+    let mut panels = Vec::new();
+    for (i, title) in names.iter().enumerate() {
+        let of = |rows: &[usize]| -> (Vec<f64>, Vec<f64>) {
+            rows.iter().map(|&row| (rounded(run.truths[row].time_s, 3), rounded(error(row, i), 5))).unzip()
         };
-        let ((x, y), (wx, wy)) = (of(false), of(true));
-        let range = limits(rows.iter().filter(|&&row| !is_wrong(row)).map(|&row| error(row, i)));
-        let traces = vec![points("right", x, y, MEASURED), crosses("grossly wrong", wx, wy, WRONG)];
-        Panel { range: Some(range), ..Panel::new(*title, traces) }
-    });
-    let (traces, layout) = stacked("time, s", panels.collect());
+        let range = limits(right.iter().map(|&row| error(row, i)));
+        beyond += outside(range, rows.iter().map(|&row| error(row, i)));
+        let mut traces = cloud("right", &right, Some(&|row| error(row, i)), MEASURED, |rows| {
+            let (x, y) = of(rows);
+            points("", x, y, MEASURED)
+        });
+        let kept: Vec<usize> = sampled(wrong.len()).into_iter().map(|k| wrong[k]).collect();
+        let (x, y) = of(&kept);
+        traces.push(crosses("grossly wrong", x, y, WRONG));
+        panels.push(Panel { range: Some(range), ..Panel::new(*title, traces) });
+    }
+    let (traces, layout) = stacked(Axis::new().title("time, s"), panels);
     let mut head = vec!["from, s".to_owned()];
     for name in names {
         head.extend(["number", "smallest", "mean", "largest"].map(|what| format!("{name}: {what}")));
@@ -60,8 +67,11 @@ pub(super) fn field_errors(run: &DockingRun) -> Section {
         data.push(cells);
     }
     section.chart(Chart::new(
-        "Measured minus true. The axes leave out the wildest hundredth; zoom out (double click) for it. Of many fields so many are \
-         drawn as a screen can show, extremes always among them.",
+        format!(
+            "Measured minus true. {} {}",
+            told_outside(beyond, 6 * rows.len()),
+            drawn(&[(right.len(), "right fields"), (wrong.len(), "wrong ones")], true)
+        ),
         900,
         data,
         traces,

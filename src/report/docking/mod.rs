@@ -12,8 +12,9 @@ use plotly::Trace;
 pub use field_sheet::FieldSheet;
 pub use run::{DockingRun, PortionReport};
 
-use super::chart::{Chart, bars, rounded, stacked_bars};
-use super::figures::{figure_table, percent_cell, shown_percent};
+use super::chart::{BESIDE, Chart, MEASURED, bars, rounded, stacked_bars};
+use super::colours::colour_of;
+use super::figures::{figure_table, least_to_most, percent_cell, shown_percent};
 use super::page::{DataTable, Page, Section};
 use super::words::spoken;
 use crate::failure::Failure;
@@ -49,7 +50,7 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldSheet) -> Result<Page, Failur
             ("Seed", scenario.seed.to_string()),
             ("Fields", format!("{} to {}", first.field, last.field)),
             ("Time", format!("{:.2} to {:.2} s", first.time_s, last.time_s)),
-            ("Range", format!("{:.2} to {:.2} m", first.range_m, last.range_m)),
+            ("Range", least_to_most(run.truths.iter().map(|truth| truth.range_m), "m")),
             ("Reports of motion", run.score.portions.to_string()),
             ("Renderer", run.score.renderer.clone()),
             ("Boresight", run.run_file.version.clone()),
@@ -111,7 +112,13 @@ fn verdicts(run: &DockingRun) -> Section {
         let frames = score.groups.values().map(|group| group.frames.max(1) as f64);
         let percent = counts.iter().zip(frames).map(|(count, of)| rounded(100.0 * *count as f64 / of, 3));
         let name = if cause.is_empty() { what.to_owned() } else { format!("{what}: {}", spoken(cause)) };
-        traces.push(bars(&name, groups.clone(), percent.collect()).hover_template("%{x}: %{y} %"));
+        let colour = match what {
+            "success" => MEASURED,
+            "range alone" => BESIDE,
+            _ => colour_of(cause),
+        };
+        let bars = bars(&name, groups.clone(), percent.collect(), colour);
+        traces.push(bars.hover_template("%{x}: %{y} %"));
     };
     let counted = |of: &dyn Fn(&DockingGroup) -> u64| score.groups.values().map(of).collect::<Vec<u64>>();
     for name in ["success_rate", "range_only_rate"] {
@@ -179,6 +186,19 @@ fn answer_words(outcome: Option<&DockingOutcome>) -> String {
         }
         Some(DockingSolution::RangeOnly { range_m, .. }) => format!("range alone {range_m:.2} m"),
         Some(DockingSolution::NoSolution(reason)) => format!("the pipeline says: {reason}"),
+    }
+}
+
+/// How many of some values an axis leaves out.
+fn outside(range: [f64; 2], values: impl Iterator<Item = f64>) -> usize {
+    values.filter(|value| *value < range[0] || *value > range[1]).count()
+}
+
+/// What a caption says of errors that the axes leave out.
+fn told_outside(count: usize, of: usize) -> String {
+    match count {
+        0 => format!("All {of} errors lie inside of the axes."),
+        _ => format!("{count} of {of} errors lie outside of the axes; zoom out (double click) for them."),
     }
 }
 

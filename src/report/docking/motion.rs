@@ -2,14 +2,15 @@
 
 use contract::docking::{Motion, Pose};
 use nalgebra::Vector3;
+use plotly::layout::Axis;
 
-use super::limits;
 use super::run::{DockingRun, PortionReport};
+use super::{limits, outside, told_outside};
 use crate::report::chart::{
-    BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, band, line, points, rounded, stacked,
+    BESIDE, Chart, Curve, MEASURED, Panel, REFERENCE, TRUTH, band, cloud, line, points, rounded, stacked,
 };
 use crate::report::page::{DataTable, Section};
-use crate::report::thin::{bins, summary, thinned};
+use crate::report::thin::{bins, drawn, summary, thinned};
 use crate::score::docking::Shown;
 
 /// Rows of the tables behind the charts.
@@ -78,7 +79,28 @@ pub(super) fn sections(run: &DockingRun) -> [Section; 2] {
         return [five.text(none), six.text(none)];
     }
     let paper = Said::all(run, |report| &report.paper);
-    [five.chart(parameters(run, &best)), six.chart(sigmas(&best)).chart(errors(&best, &paper))]
+    let about = "Errors of the best estimate";
+    let six = six.chart(sigmas(&best)).chart(errors(&best, about, "best estimate", MEASURED));
+    // On axes of their own: they scatter ten times as far, and not about nothing.
+    let about = "Errors of the paper's formulas";
+    let is_told = !paper.is_empty();
+    let six = if is_told { six.chart(errors(&paper, about, "paper's formulas", BESIDE)) } else { six };
+    [five.chart(parameters(run, &best)), six]
+}
+
+/// A number of everything that was said, as points over time.
+fn said_points(
+    name: &str,
+    said: &[Said],
+    decimals: i32,
+    number: &dyn Fn(&Said) -> f64,
+    colour: &'static str,
+) -> Vec<Curve<f64>> {
+    let all: Vec<usize> = (0..said.len()).collect();
+    cloud(name, &all, Some(&|k| number(&said[k])), colour, |kept| {
+        let (x, y) = series(said, kept, decimals, number);
+        points("", x, y, colour)
+    })
 }
 
 /// Times of some of what was said, and a number of each with so many decimals.
@@ -103,16 +125,15 @@ fn parameters(run: &DockingRun, best: &[Said]) -> Chart {
         let of =
             |sigmas: f64| series(best, &kept, *decimals, |said| said.values[i] + sigmas * said.sigmas[i]);
         let (x, low) = of(-3.0);
-        let mut traces = Vec::from(band("3 σ", x.clone(), low, of(3.0).1, BAND));
-        let y = series(best, &kept, *decimals, |said| said.values[i]).1;
-        traces.push(points("best estimate", x, y, MEASURED));
+        let mut traces = Vec::from(band("3 σ", x, low, of(3.0).1, BAND));
+        traces.extend(said_points("best estimate", best, *decimals, &|said| said.values[i], MEASURED));
         let (x, y) = truth.iter().map(|(time_s, values)| (*time_s, rounded(values[i], *decimals))).unzip();
         traces.push(line("true", x, y, TRUTH));
         let of_band = |said: &Said| [-3.0, 3.0].map(|sigmas| said.values[i] + sigmas * said.sigmas[i]);
         let range = limits(best.iter().flat_map(of_band).chain(truth.iter().map(|row| row.1[i])));
         Panel { range: Some(range), ..Panel::new(format!("{name}, {unit}"), traces) }
     });
-    let (traces, layout) = stacked("time, s", panels.collect());
+    let (traces, layout) = stacked(Axis::new().title("time, s"), panels.collect());
     let mut head = vec!["time, s".to_owned(), "field".to_owned()];
     head.extend(PARAMETERS.map(|(name, unit, _)| format!("{name}, {unit}")));
     head.extend(PARAMETERS.map(|(name, unit, _)| format!("σ of {name}, {unit}")));
@@ -124,8 +145,11 @@ fn parameters(run: &DockingRun, best: &[Said]) -> Chart {
         cells.extend(said.sigmas.iter().map(|sigma| format!("{sigma:.7}")));
         data.push(cells);
     }
-    let caption = "Range, range rate, passive pitch and yaw, and the three active angles at the last moment of every portion, with three \
-                   standard deviations as the pipeline tells them, and the truth.";
+    let caption = format!(
+        "Range, range rate, passive pitch and yaw, and the three active angles at the last moment of every portion, with three \
+         standard deviations as the pipeline tells them, and the truth. {}",
+        drawn(&[(best.len(), "reports")], true)
+    );
     Chart::new(caption, 1080, data, traces, layout)
 }
 
@@ -137,14 +161,20 @@ fn sigmas(best: &[Said]) -> Chart {
         line(name, x, y, colour)
     };
     // From decimetres far away to micrometres at the end.
-    let log = |title: &str, traces| Panel { is_log: true, ..Panel::new(title, traces) };
+    let log = |title: &str, shown: std::ops::Range<usize>, traces| {
+        let numbers =
+            || best.iter().flat_map(|said| &said.sigmas[shown.clone()]).copied().filter(|s| *s > 0.0);
+        let limits = [numbers().fold(f64::INFINITY, f64::min), numbers().fold(0.0, f64::max)];
+        let log = Some(limits).filter(|[low, high]| low.is_finite() && high.is_finite());
+        Panel { log, ..Panel::new(title, traces) }
+    };
     let panels = vec![
-        log("σ of ρ, m", vec![of("ρ, u, α, φ1", 0, MEASURED)]),
-        log("σ of u, m/s", vec![of("u", 1, MEASURED)]),
-        log("σ of α, β, °", vec![of("α", 2, MEASURED), of("β", 3, BESIDE)]),
-        log("σ of φ, °", vec![of("φ1", 4, MEASURED), of("φ2", 5, BESIDE), of("φ3", 6, REFERENCE)]),
+        log("σ of ρ, m", 0..1, vec![of("ρ, u, α, φ1", 0, MEASURED)]),
+        log("σ of u, m/s", 1..2, vec![of("u", 1, MEASURED)]),
+        log("σ of α, β, °", 2..4, vec![of("α", 2, MEASURED), of("β", 3, BESIDE)]),
+        log("σ of φ, °", 4..7, vec![of("φ1", 4, MEASURED), of("φ2", 5, BESIDE), of("φ3", 6, REFERENCE)]),
     ];
-    let (mut traces, layout) = stacked("time, s", panels);
+    let (mut traces, layout) = stacked(Axis::new().title("time, s"), panels);
     // The colours of the last two panels, which the first, whose legend it is, has not.
     for (name, colour) in [("β, φ2", BESIDE), ("φ3", REFERENCE)] {
         traces.push(line(name, vec![f64::NAN], vec![f64::NAN], colour));
@@ -161,40 +191,38 @@ fn sigmas(best: &[Said]) -> Chart {
     Chart::new(caption, 640, data, traces, layout)
 }
 
-/// Errors against the truth, with bands of three standard deviations.
-fn errors(best: &[Said], paper: &[Said]) -> Chart {
-    let panels = PARAMETERS.iter().enumerate().map(|(i, (name, unit, decimals))| {
-        let kept = thinned(best.len(), &[&|k| best[k].errors[i], &|k| best[k].sigmas[i]]);
-        let of = |sigmas: f64| series(best, &kept, *decimals, |said| sigmas * said.sigmas[i]);
+/// Errors of an estimator against the truth, with bands of three standard deviations.
+fn errors(all: &[Said], about: &str, name: &str, colour: &'static str) -> Chart {
+    let mut beyond = 0;
+    let mut panels = Vec::new();
+    for (i, (title, unit, decimals)) in PARAMETERS.iter().enumerate() {
+        let kept = thinned(all.len(), &[&|k| all[k].sigmas[i]]);
+        let of = |sigmas: f64| series(all, &kept, *decimals, |said| sigmas * said.sigmas[i]);
         let (x, low) = of(-3.0);
-        let mut traces = Vec::from(band("3 σ", x.clone(), low, of(3.0).1, BAND));
-        let y = series(best, &kept, *decimals, |said| said.errors[i]).1;
-        traces.push(points("best estimate", x, y, MEASURED));
-        if !paper.is_empty() {
-            let kept = thinned(paper.len(), &[&|k| paper[k].errors[i]]);
-            let (x, y) = series(paper, &kept, *decimals, |said| said.errors[i]);
-            traces.push(points("paper's formulas", x, y, BESIDE));
-        }
-        // The paper's formulas scatter far more: the axis is that of the best estimate.
+        let mut traces = Vec::from(band("3 σ", x, low, of(3.0).1, BAND));
+        traces.extend(said_points(name, all, *decimals, &|said| said.errors[i], colour));
         let shown = |said: &Said| [said.errors[i], 3.0 * said.sigmas[i], -3.0 * said.sigmas[i]];
-        let range = limits(best.iter().flat_map(shown));
-        Panel { range: Some(range), ..Panel::new(format!("{name}, {unit}"), traces) }
-    });
-    let (traces, layout) = stacked("time, s", panels.collect());
+        let range = limits(all.iter().flat_map(shown));
+        beyond += outside(range, all.iter().map(|said| said.errors[i]));
+        panels.push(Panel { range: Some(range), ..Panel::new(format!("{title}, {unit}"), traces) });
+    }
+    let (traces, layout) = stacked(Axis::new().title("time, s"), panels);
     let mut head = vec!["from, s".to_owned()];
     for (name, unit, _) in PARAMETERS {
         head.extend(["number", "smallest", "mean", "largest"].map(|what| format!("{name}, {unit}: {what}")));
     }
-    let mut data = DataTable::new(head).caption(
-        "Errors of the best estimate, measured minus true, by stretches of time; motion.csv has all reports.",
-    );
-    for bin in bins(best.len(), TABLE_BINS) {
-        let said = &best[bin];
+    let text = format!("{about}, measured minus true, by stretches of time; motion.csv has all reports.");
+    let mut data = DataTable::new(head).caption(text);
+    for bin in bins(all.len(), TABLE_BINS) {
+        let said = &all[bin];
         let mut cells = vec![format!("{:.2}", said[0].time_s)];
         (0..7).for_each(|i| cells.extend(summary(said.iter().map(|said| said.errors[i]), 6)));
         data.push(cells);
     }
-    let caption = "Errors against the truth, measured minus true, with bands of three standard deviations as the pipeline tells them. \
-                   The axes leave out the wildest hundredth.";
+    let caption = format!(
+        "{about} against the truth, measured minus true, with bands of three standard deviations as the pipeline tells them. {} {}",
+        told_outside(beyond, 7 * all.len()),
+        drawn(&[(all.len(), "reports")], true)
+    );
     Chart::new(caption, 1080, data, traces, layout)
 }

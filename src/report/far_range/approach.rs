@@ -1,13 +1,14 @@
 //! Where the chaser was: the relative orbit.
 
 use plotly::Trace;
+use plotly::layout::Axis;
 use sim::truth::Trajectory;
 
-use super::run::{FarRangeRun, shown_time, thinning};
+use super::run::{FarRangeRun, shown_time};
 use crate::failure::Failure;
 use crate::report::chart::{Chart, MEASURED, Panel, line, rounded, stacked};
 use crate::report::page::{DataTable, Section};
-use crate::report::thin::{bins, thinned};
+use crate::report::thin::{bins, evenly};
 
 /// Rows of the table behind the chart.
 const TABLE_BINS: usize = 60;
@@ -17,7 +18,7 @@ pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
     let trajectory = Trajectory::new(&run.run_file.scenario.orbit)?;
     let rtn_km: Vec<[f64; 3]> =
         run.truths.iter().map(|truth| trajectory.at(truth.time).chaser_rtn_km().into()).collect();
-    let rows = thinned(rtn_km.len(), &[&|row| rtn_km[row][0], &|row| rtn_km[row][1], &|row| rtn_km[row][2]]);
+    let rows = evenly(rtn_km.len());
     let panel = |title: &str, component: usize| {
         let (mut along, mut values, mut frames) = (Vec::new(), Vec::new(), Vec::new());
         let mut last: Option<usize> = None;
@@ -40,7 +41,7 @@ pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
         )
     };
     let panels = vec![panel("radial, km", 0), panel("cross-track, km", 2)];
-    let (traces, layout): (Vec<Box<dyn Trace>>, _) = stacked("along-track, km", panels);
+    let (traces, layout): (Vec<Box<dyn Trace>>, _) = stacked(Axis::new().title("along-track, km"), panels);
     let mut data = DataTable::new([
         "time (UTC)",
         "frame",
@@ -58,10 +59,7 @@ pub(super) fn relative_position(run: &FarRangeRun) -> Result<Section, Failure> {
     }
     Ok(Section::new("fig-4", "Fig. 4: position of the chaser in the orbital frame of the target").chart(
         Chart::new(
-            format!(
-                "The true position: radial, along-track and cross-track axes move with the target, which is at (0, 0). {}",
-                thinning(rtn_km.len())
-            ),
+            "The true position: radial, along-track and cross-track axes move with the target, which is at (0, 0).",
             460,
             data,
             traces,

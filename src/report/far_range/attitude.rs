@@ -1,16 +1,15 @@
 //! The camera's attitude, and what aberration does to it.
 
 use contract::{Body, CameraFrame, Direction, Rotation};
-use plotly::Trace;
 use sim::truth::Observer;
 
-use super::run::{FarRangeRun, broken, by_bins, thinning};
+use super::run::{FarRangeRun, broken, by_bins, time_axis};
 use crate::failure::Failure;
 use crate::report::chart::{
-    BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, axes, line, points, rounded, stacked,
+    BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, cloud, line, points, rounded, stacked,
 };
 use crate::report::page::{DataTable, Section};
-use crate::report::thin::{bins, thinned};
+use crate::report::thin::{bins, drawn, thinned};
 
 /// Rows of the table behind the correction of aberration.
 const TABLE_BINS: usize = 60;
@@ -41,15 +40,16 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
         |row: usize| degrees(run.truths[row].camera_from_icrs * run.truths[row].body_from_icrs.inverse());
     let every = thinned(count, &[]);
     let panels = ["φ, °", "θ, °", "ψ, °"].into_iter().enumerate().map(|(index, title)| {
-        let rows: Vec<usize> =
-            thinned(told.len(), &[&|i| measured[told[i]][index]]).into_iter().map(|i| told[i]).collect();
-        let y = rows.iter().map(|&row| rounded(measured[row][index], 5)).collect();
+        let value = |row: usize| measured[row][index];
+        let mut traces = cloud("measured", &told, Some(&value), MEASURED, |rows| {
+            let y = rows.iter().map(|&row| rounded(value(row), 5)).collect();
+            points("", run.times(rows), y, MEASURED)
+        });
         let (true_x, true_y) = broken(run, every.iter().map(|&row| (row, rounded(truth(row)[index], 5))));
-        let traces =
-            vec![points("measured", run.times(&rows), y, MEASURED), line("true", true_x, true_y, TRUTH)];
+        traces.push(line("true", true_x, true_y, TRUTH));
         Panel::new(title, traces)
     });
-    let (traces, layout) = stacked("time, UTC", panels.collect());
+    let (traces, layout) = stacked(time_axis(run), panels.collect());
     let data = by_bins(
         run,
         &[
@@ -62,7 +62,7 @@ pub(super) fn mounting(run: &FarRangeRun) -> Section {
         format!(
             "Euler angles 123 of the rotation from the chaser's body to the camera: the pipeline's attitude of the camera against \
              telemetry's of the body, so that the noise of both is in it. {}",
-            thinning(count)
+            drawn(&[(told.len(), "attitudes")], true)
         ),
         600,
         data,
@@ -86,7 +86,7 @@ pub(super) fn aberration(run: &FarRangeRun) -> Result<Section, Failure> {
         angles.push([in_camera.x.to_degrees(), in_camera.y.to_degrees(), correction.norm().to_degrees()]);
     }
     let times = run.times(&rows);
-    let component = |name: &str, index: usize, colour| -> Box<dyn Trace> {
+    let component = |name: &str, index: usize, colour| {
         let values = rows.iter().zip(&angles).map(|(&row, angle)| (row, rounded(angle[index], 6)));
         let (x, y) = broken(run, values);
         line(name, x, y, colour)
@@ -96,6 +96,7 @@ pub(super) fn aberration(run: &FarRangeRun) -> Result<Section, Failure> {
         component("about y", 1, BESIDE),
         component("whole", 2, REFERENCE),
     ];
+    let (traces, layout) = stacked(time_axis(run), vec![Panel::new("angle, °", traces)]);
     let mut data = DataTable::new(["time (UTC)", "about x, °", "about y, °", "whole, °"]);
     for bin in bins(rows.len(), TABLE_BINS) {
         let angle = angles[bin.start];
@@ -112,6 +113,6 @@ pub(super) fn aberration(run: &FarRangeRun) -> Result<Section, Failure> {
         340,
         data,
         traces,
-        axes("time, UTC", "angle, °"),
+        layout,
     )))
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use plotly::Trace;
 
 use super::FarRangeRun;
@@ -76,6 +77,13 @@ impl InjectedRun {
     }
 }
 
+/// The runs of an error budget that are kept with a run, in `budget/STAGE`.
+pub fn kept_budget(directory: &Path) -> Vec<PathBuf> {
+    let folder = |stage: &Stage| directory.join("budget").join(stage.to_string());
+    let folders = Stage::value_variants().iter().map(folder);
+    folders.filter(|folder| folder.join("score.json").is_file()).collect()
+}
+
 /// What each stage costs.
 pub(super) fn budget(run: &FarRangeRun) -> Section {
     let section = Section::new("budget", "Error budget by stage");
@@ -84,9 +92,8 @@ pub(super) fn budget(run: &FarRangeRun) -> Section {
     }
     if run.budget.is_empty() {
         return section.text(
-            "Nothing was held against this run. Of the built-in pipeline, `boresight run` with --inject STAGE and the same frames puts the truth in \
-             the place of a stage's result, and `boresight report` with --budget and the directory of that run, once a stage, shows here \
-             what each stage costs (docs/report.md).",
+            "Nothing was held against this run. `boresight report DIR --budget all` flies the same frames once a stage, with the truth in the \
+             place of that stage's result, and shows here what each stage of the built-in pipeline costs (docs/report.md).",
         );
     }
     let honest = ("none: the honest run".to_owned(), &run.score);

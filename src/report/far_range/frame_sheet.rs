@@ -9,6 +9,7 @@ use sim::{Exposure, Simulator};
 use super::run::{FarRangeRun, shown_time};
 use crate::failure::Failure;
 use crate::files::FrameCluster;
+use crate::report::figures::least_to_most;
 use crate::report::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch, window_around};
 use crate::report::read::rows_of_each;
 use crate::report::words::spoken;
@@ -102,13 +103,12 @@ impl FrameSheet {
         let mut picture = Picture::new(pixels, whole, RowPlace::WHOLE, Stretch::Stars)?;
         picture.title = format!("{} images over one another.", rows.len());
         picture.caption = format!(
-            "Frames {} to {}, {} to {} (UTC), {:.2} to {:.2} km.",
+            "Frames {} to {}, {} to {} (UTC), {}.",
             run.truths[first].frame,
             run.truths[last].frame,
             shown_time(&run.truths[first]),
             shown_time(&run.truths[last]),
-            run.truths[first].range_km,
-            run.truths[last].range_km
+            least_to_most(run.truths[first..=last].iter().map(|truth| truth.range_km), "km")
         );
         picture.marks = marks;
         Ok(Some(picture))
@@ -148,6 +148,8 @@ impl FrameSheet {
             picture.marks = regions(&exposure);
             picture.marks.push(true_mark(target));
             picture.marks.extend(answer_mark(run.outcomes[row].as_ref()));
+            // Above the answer, and shorter: where both agree both are seen.
+            picture.marks.push(Mark { shape: Shape::Cross(2.5), ..true_mark(target) });
             return Ok(Some(picture));
         }
         Ok(None)

@@ -9,15 +9,18 @@ use plotly::{Layout, Trace};
 use sim::truth::{Elements, State};
 
 use super::FrameSheet;
-use super::run::{FarRangeRun, by_bins, thinning};
+use super::run::{FarRangeRun, by_bins};
 use crate::failure::Failure;
-use crate::report::chart::{Chart, MEASURED, REFERENCE, WRONG, crosses, points, rounded};
+use crate::report::chart::{Chart, Curve, MEASURED, TRUTH, WRONG, cloud, crosses, line, points, rounded};
 use crate::report::page::Section;
-use crate::report::thin::{bins, thinned};
+use crate::report::thin::{bins, drawn, evenly, sampled};
 use crate::score::{Cause, Verdict};
 
 /// Room about the detector, so that a mark at its edge is whole, px.
 const ROOM_PX: f64 = 8.0;
+/// What the marks in a picture stand for.
+const KEY: &str = "Green: the target's true place; orange cross: the answer; blue: true stars that can be detected, violet: planets, the \
+                   Moon, hot pixels, tracks of particles; yellow: clusters, with what the pipeline took them for; dashed: transmitted regions.";
 /// Range of the images in the paper's Fig. 2, km.
 const SAMPLE_RANGE_KM: f64 = 16.0;
 /// Images that are laid over one another: ten degrees of an orbit from one to the next.
@@ -38,10 +41,10 @@ pub(super) fn sample(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, F
     let overlaid: Vec<usize> = bins(orbit.len(), OVERLAID).map(|bin| orbit.start + bin.start).collect();
     let pictures = [sheet.whole(run, row)?, sheet.overlaid(run, &overlaid)?];
     Ok(section
-        .text(
+        .text(format!(
             "The frame nearest to the paper's 16 km, with everything in it that can be detected, and frames of the orbit around it, of which every \
-             pixel is shown as it was at its brightest: the target runs along its ellipse, stars along their tracks.",
-        )
+             pixel is shown as it was at its brightest: the target runs along its ellipse, stars along their tracks. {KEY}"
+        ))
         .pictures(pictures.into_iter().flatten().collect()))
 }
 
@@ -69,33 +72,19 @@ pub(super) fn track(run: &FarRangeRun) -> Section {
     };
     let count = run.truths.len();
     let is = |row: usize, code: &str| run.verdicts[row].verdict.code() == code;
-    let xy = |rows: &[usize], of: &dyn Fn(usize) -> [f64; 2]| -> (Vec<f64>, Vec<f64>) {
-        rows.iter().map(|&row| of(row)).map(|[x, y]| (rounded(x, 2), rounded(y, 2))).unzip()
-    };
-    let true_rows = thinned(count, &[&|row| at(row)[0], &|row| at(row)[1]]);
-    let right: Vec<usize> = (0..count).filter(|&row| is(row, "correct")).collect();
-    let right: Vec<usize> = thinned(right.len(), &[&|i| answer(right[i])[0], &|i| answer(right[i])[1]])
-        .into_iter()
-        .map(|i| right[i])
-        .collect();
-    let wrong: Vec<usize> = (0..count).filter(|&row| is(row, "wrong")).collect();
-    let wrong: Vec<usize> = thinned(wrong.len(), &[&|i| answer(wrong[i])[0], &|i| answer(wrong[i])[1]])
-        .into_iter()
-        .map(|i| wrong[i])
-        .collect();
-    let (tx, ty) = xy(&true_rows, &at);
-    let (rx, ry) = xy(&right, &answer);
-    let (wx, wy) = xy(&wrong, &answer);
-    let numbered = |rows: &[usize]| rows.iter().map(|&row| run.truths[row].frame).collect::<Vec<_>>();
+    let rows_of = |code: &str| (0..count).filter(|&row| is(row, code)).collect::<Vec<usize>>();
+    let (right, wrong) = (rows_of("correct"), rows_of("wrong"));
     let hover = "frame %{customdata}<br>x %{x} px, y %{y} px";
-    let traces: Vec<Box<dyn Trace>> = vec![
-        points("true", tx, ty, REFERENCE)
-            .custom_data(numbered(&true_rows))
-            .hover_template(hover)
-            .opacity(0.5),
-        points("measured, right", rx, ry, MEASURED).custom_data(numbered(&right)).hover_template(hover),
-        crosses("measured, wrong", wx, wy, WRONG).custom_data(numbered(&wrong)).hover_template(hover),
-    ];
+    let told = |curve: fn(&str, Vec<f64>, Vec<f64>, &'static str) -> Curve<f64>, rows: &[usize]| {
+        let (x, y) = rows.iter().map(|&row| answer(row)).map(|[x, y]| (rounded(x, 2), rounded(y, 2))).unzip();
+        let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
+        curve("measured, wrong", x, y, WRONG).custom_data(frames).hover_template(hover)
+    };
+    let mut traces = cloud("measured, right", &right, None, MEASURED, |rows| told(points, rows));
+    let kept: Vec<usize> = sampled(wrong.len()).into_iter().map(|i| wrong[i]).collect();
+    traces.push(told(crosses, &kept));
+    traces.push(true_track(run, &at).hover_template(hover));
+    let traces = traces.into_iter().map(|trace| trace as Box<dyn Trace>).collect();
     let (columns, rows) = (camera.columns as f64, camera.rows as f64);
     let layout = Layout::new()
         .x_axis(
@@ -113,12 +102,34 @@ pub(super) fn track(run: &FarRangeRun) -> Section {
         );
     let data = by_bins(run, &[("true x, px", &|row| at(row)[0], 1), ("true y, px", &|row| at(row)[1], 1)]);
     Section::new("fig-3", "Fig. 3: track of the target in pixels").chart(Chart::new(
-        format!("Where the target is and where it was measured, whole detector. {}", thinning(count)),
+        format!(
+            "Where the target is and where it was measured, whole detector. {}",
+            drawn(&[(right.len(), "right answers"), (wrong.len(), "wrong ones")], false)
+        ),
         620,
         data,
         traces,
         layout,
     ))
+}
+
+/// The way of the target over the detector, broken where it is in no image and where another group begins.
+fn true_track(run: &FarRangeRun, at: &dyn Fn(usize) -> [f64; 2]) -> Curve<f64> {
+    let (mut x, mut y, mut frames) = (Vec::new(), Vec::new(), Vec::new());
+    let mut last: Option<usize> = None;
+    for row in evenly(run.truths.len()) {
+        let [column, line] = at(row);
+        if last.is_some_and(|last| run.verdicts[last].group != run.verdicts[row].group) {
+            x.push(f64::NAN);
+            y.push(f64::NAN);
+            frames.push(run.truths[row].frame);
+        }
+        x.push(rounded(column, 2));
+        y.push(rounded(line, 2));
+        frames.push(run.truths[row].frame);
+        last = Some(row);
+    }
+    line("true", x, y, TRUTH).custom_data(frames).opacity(0.7)
 }
 
 /// Fig. 6: a whole and a truncated region.
@@ -150,8 +161,11 @@ pub(super) fn regions(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, 
         (None, None) => "No frame of this run shows a region with the target alone.",
     };
     let pictures: Vec<_> = whole.into_iter().chain(truncated).collect();
-    let section = section.text(note);
-    Ok(if pictures.is_empty() { section } else { section.pictures(pictures) })
+    if pictures.is_empty() {
+        return Ok(section.text(note));
+    }
+    let key = "Green: the target's true centre, and a circle around its light; orange: the answer; dashed: the transmitted region.";
+    Ok(section.text(format!("{note} {key}")).pictures(pictures))
 }
 
 /// A sheet of frames: every kind of miss and of wrong answer, and right ones to compare with.
@@ -167,12 +181,10 @@ pub(super) fn frames(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, F
         middle(&|verdict| matches!(verdict, Verdict::Missed { cause } if *cause == of));
         middle(&|verdict| matches!(verdict, Verdict::Wrong { cause, .. } if *cause == of));
     }
-    let section = Section::new("frames", "Frames").text(
+    let section = Section::new("frames", "Frames").text(format!(
         "A right answer, then of every kind of miss and of wrong answer the frame in the middle of all of that kind, rendered anew \
-         from run.toml. Green circle: the target's true place; orange cross: the answer; blue: true stars that can be detected, \
-         violet: planets, the Moon, hot pixels, tracks of particles; yellow: clusters, with what the pipeline took them for; dashed: \
-         transmitted regions. Brightness is stretched in every picture by itself.",
-    );
+         from run.toml. {KEY} Brightness is stretched in every picture by itself."
+    ));
     Ok(match sheet.reason() {
         Some(reason) => section.text(format!("There are no pictures: {reason}")),
         None => section.pictures(sheet.pictures(run, &chosen)?),

@@ -11,13 +11,14 @@ mod series;
 use indexmap::IndexMap;
 use plotly::Trace;
 
-pub use budget::InjectedRun;
+pub use budget::{InjectedRun, kept_budget};
 pub use frame_sheet::FrameSheet;
 pub use run::FarRangeRun;
 
 use self::run::shown_time;
 use super::chart::{Chart, bars, rounded, stacked_bars};
-use super::figures::{figure_table, percent_cell, shown_percent};
+use super::colours::colour_of;
+use super::figures::{figure_table, least_to_most, percent_cell, shown_percent};
 use super::page::{DataTable, Page, Section};
 use super::words::spoken;
 use crate::failure::Failure;
@@ -73,7 +74,7 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Page, Fai
             fact("Frames", format!("{} to {}", first.frame, last.frame)),
             fact("From (UTC)", shown_time(first)),
             fact("To (UTC)", shown_time(last)),
-            fact("Range", format!("{:.2} to {:.2} km", first.range_km, last.range_km)),
+            fact("Range", least_to_most(run.truths.iter().map(|truth| truth.range_km), "km")),
             fact("Camera", format!("{} × {} px", scenario.camera.columns, scenario.camera.rows)),
             fact("Boresight", run.run_file.version.clone()),
         ],
@@ -167,7 +168,8 @@ fn causes(run: &FarRangeRun) -> Section {
                 .zip(score.groups.values())
                 .map(|(count, group)| rounded(100.0 * *count as f64 / group.frames.max(1) as f64, 3));
             let names = groups.iter().map(|group| (*group).clone()).collect();
-            traces.push(bars(&spoken(cause), names, percent.collect()).hover_template("%{x}: %{y} %"));
+            let bars = bars(&spoken(cause), names, percent.collect(), colour_of(cause));
+            traces.push(bars.hover_template("%{x}: %{y} %"));
         }
         section = section.chart(Chart::new(
             format!("{title} by cause, percent of the frames of a group."),

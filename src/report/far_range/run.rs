@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use contract::Outcome;
+use hifitime::Unit;
+use plotly::layout::Axis;
 use sim::truth::FrameTruth;
 
 use super::InjectedRun;
@@ -10,7 +12,7 @@ use crate::failure::Failure;
 use crate::files::{TableReader, TelemetryRow, format_utc, read_measurements, read_telemetry};
 use crate::report::page::DataTable;
 use crate::report::read::{missing, read_json};
-use crate::report::thin::{bins, summary, thinned};
+use crate::report::thin::{bins, summary};
 use crate::run;
 use crate::run_file::RunFile;
 use crate::scenario::FarRangeScenario;
@@ -126,21 +128,20 @@ pub(super) fn shown_time(truth: &FrameTruth) -> String {
 
 /// The time of a frame to the millisecond, without the `Z` that the charting library has no use for.
 pub(super) fn time_word(truth: &FrameTruth) -> String {
-    let text = format_utc(truth.time);
-    let text = text.trim_end_matches('Z');
+    word_of(&format_utc(truth.time))
+}
+
+fn word_of(utc: &str) -> String {
+    let text = utc.trim_end_matches('Z');
     text.get(..23).unwrap_or(text).to_owned()
 }
 
-/// What is told of a chart of so many frames.
-pub(super) fn thinning(count: usize) -> String {
-    if thinned(count, &[&|row| row as f64]).len() < count {
-        format!(
-            "Of {count} frames so many are drawn as a screen can show, extremes always among them; measurements.csv and \
-             truth/frames.parquet have every frame."
-        )
-    } else {
-        "Every frame is drawn.".to_owned()
-    }
+/// The axis of time of a run: the same in all of its charts, so that they can be held one below another.
+pub(super) fn time_axis(run: &FarRangeRun) -> Axis {
+    let (first, last) = (run.truths[0].time, run.truths[run.truths.len() - 1].time);
+    let room = ((last - first) * 0.02).max(1.0 * Unit::Second);
+    let ends = [first - room, last + room].map(|time| word_of(&format_utc(time)));
+    Axis::new().title("time, UTC").range(ends.to_vec())
 }
 
 /// A column of a table behind a chart: its name, its value in a row, and decimals.

@@ -1,13 +1,11 @@
 //! What is measured over time: errors, stars.
 
-use plotly::Trace;
-
-use super::run::{FarRangeRun, broken, by_bins, thinning, time_word};
+use super::run::{FarRangeRun, broken, by_bins, time_axis, time_word};
 use crate::report::chart::{
-    BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, axes, crosses, dashed, line, points, rounded, stacked,
+    BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, cloud, crosses, dashed, line, points, rounded, stacked,
 };
 use crate::report::page::Section;
-use crate::report::thin::thinned;
+use crate::report::thin::{drawn, sampled, thinned};
 use crate::score::Verdict;
 
 /// Images that the mean of Fig. 7 is taken over.
@@ -34,26 +32,27 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
     let limit = (1.15 * largest.fold(0.0, f64::max)).max(0.06);
     let ends = [time_word(&run.truths[0]), time_word(&run.truths[run.truths.len() - 1])];
     let panel = |index: usize, title: &str| {
-        let mut traces = Vec::new();
-        for (name, rows, colour) in [("right", &right, MEASURED), ("wrong", &wrong, WRONG)] {
-            let kept = thinned(rows.len(), &[&|i| component(rows[i], index)]);
-            let rows: Vec<usize> = kept.into_iter().map(|i| rows[i]).collect();
+        let of = |rows: &[usize]| -> (Vec<String>, Vec<f64>, Vec<u64>) {
             let y = rows.iter().map(|&row| rounded(component(row, index), 5)).collect();
-            let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
-            let trace = if name == "right" {
-                points(name, run.times(&rows), y, colour)
-            } else {
-                crosses(name, run.times(&rows), y, colour)
-            };
-            traces.push(trace.custom_data(frames).hover_template("frame %{customdata}<br>%{x}<br>%{y}°"));
-        }
+            (run.times(rows), y, rows.iter().map(|&row| run.truths[row].frame).collect())
+        };
+        let hover = "frame %{customdata}<br>%{x}<br>%{y}°";
+        let mut traces = cloud("right", &right, Some(&|row| component(row, index)), MEASURED, |rows| {
+            let (x, y, frames) = of(rows);
+            points("", x, y, MEASURED).custom_data(frames).hover_template(hover)
+        });
+        let kept: Vec<usize> = sampled(wrong.len()).into_iter().map(|i| wrong[i]).collect();
+        let (x, y, frames) = of(&kept);
+        traces.push(crosses("wrong", x, y, WRONG).custom_data(frames).hover_template(hover));
         for (name, at) in [("0.024° (1 px)", 0.024), ("−0.024°", -0.024)] {
             let limit = dashed(name, ends.to_vec(), vec![at; 2], BESIDE);
             traces.push(if at > 0.0 { limit } else { limit.show_legend(false) });
         }
         Panel { range: Some([-limit, limit]), ..Panel::new(title, traces) }
     };
-    let (traces, layout) = stacked("time, UTC", vec![panel(0, "RA error, °"), panel(1, "Dec error, °")]);
+    let (traces, layout) = stacked(time_axis(run), vec![panel(0, "RA error, °"), panel(1, "Dec error, °")]);
+    let is_beyond = |row: &&usize| (0..2).any(|index| component(**row, index).abs() > limit);
+    let beyond = wrong.iter().filter(is_beyond).count();
     let right_only = |row: usize, index: usize| match run.verdicts[row].verdict {
         Verdict::Correct { .. } => component(row, index),
         _ => f64::NAN,
@@ -68,8 +67,9 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
     Section::new("fig-5", "Fig. 5: errors of right ascension and declination").chart(Chart::new(
         format!(
             "Angles of the line of sight in the camera system, measured minus true: RA across columns, Dec across rows. The axes \
-             fit the right answers; wrong ones beyond them are seen by zooming out (double click). {}",
-            thinning(run.truths.len())
+             fit the right answers; {beyond} of {} wrong ones lie beyond them and are seen by zooming out (double click). {}",
+            wrong.len(),
+            drawn(&[(right.len(), "right answers"), (wrong.len(), "wrong ones")], true)
         ),
         560,
         data,
@@ -87,8 +87,6 @@ pub(super) fn stars(run: &FarRangeRun) -> Section {
     if told.is_empty() {
         return section.text("The pipeline does not tell how many stars it identified.");
     }
-    let rows: Vec<usize> =
-        thinned(told.len(), &[&|i| number(told[i])]).into_iter().map(|i| told[i]).collect();
     let mut sum = 0.0;
     let mut means = Vec::with_capacity(told.len());
     for (place, &row) in told.iter().enumerate() {
@@ -103,21 +101,21 @@ pub(super) fn stars(run: &FarRangeRun) -> Section {
         broken(run, mean_rows.into_iter().map(|i| (told[i], rounded(means[i], 2))));
     let least = run.run_file.scenario.far_range.attitude.min_stars;
     let ends = vec![time_word(&run.truths[0]), time_word(&run.truths[count - 1])];
-    let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
-    let traces: Vec<Box<dyn Trace>> = vec![
-        points("stars", run.times(&rows), rows.iter().map(|&row| number(row)).collect(), MEASURED)
-            .opacity(0.5)
+    let mut traces = cloud("stars", &told, Some(&number), MEASURED, |rows| {
+        let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
+        points("", run.times(rows), rows.iter().map(|&row| number(row)).collect(), MEASURED)
             .custom_data(frames)
-            .hover_template("frame %{customdata}<br>%{x}<br>%{y} stars"),
-        line("mean of the last 100 images", mean_times, mean_values, BESIDE),
-        dashed("least for an attitude", ends, vec![f64::from(least); 2], REFERENCE),
-    ];
+            .hover_template("frame %{customdata}<br>%{x}<br>%{y} stars")
+    });
+    traces.push(line("mean of the last 100 images", mean_times, mean_values, BESIDE));
+    traces.push(dashed("least for an attitude", ends, vec![f64::from(least); 2], REFERENCE));
+    let (traces, layout) = stacked(time_axis(run), vec![Panel::new("stars", traces)]);
     let data = by_bins(run, &[("stars", &number, 1)]);
     section.chart(Chart::new(
-        format!("The mean is over the last {MEAN_OF} images. {}", thinning(count)),
+        format!("The mean is over the last {MEAN_OF} images. {}", drawn(&[(told.len(), "images")], true)),
         380,
         data,
         traces,
-        axes("time, UTC", "stars"),
+        layout,
     ))
 }

@@ -20,13 +20,9 @@
         colorway: palette, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
         font: { color: ink, family: "system-ui, -apple-system, Segoe UI, sans-serif", size: 12 },
         margin: { l: 64, r: 16, t: 12, b: 44 }, xaxis: axis, yaxis: axis,
-        legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, bgcolor: "rgba(0,0,0,0)" },
+        legend: { orientation: "h", itemsizing: "constant", y: 1.02, yanchor: "bottom", x: 0, bgcolor: "rgba(0,0,0,0)" },
         hoverlabel: { bgcolor: isDark ? "#1e242a" : "#ffffff", bordercolor: line, font: { color: ink } },
         hovermode: "closest", modebar: { bgcolor: "rgba(0,0,0,0)", color: isDark ? "#77828d" : "#a3abb3", activecolor: ink },
-        geo: {
-          visible: false, bgcolor: "rgba(0,0,0,0)", showframe: true, framecolor: line,
-          lonaxis: { showgrid: true, gridcolor: line, dtick: 30 }, lataxis: { showgrid: true, gridcolor: line, dtick: 30 },
-        },
       },
     };
   };

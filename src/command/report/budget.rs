@@ -1,0 +1,82 @@
+//! The runs of an error budget: the frames of a run flown again, once a stage, with the truth in the place of its result.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use crate::command::options::default_jobs;
+use crate::command::output::Output;
+use crate::failure::Failure;
+use crate::files::{FileError, RunDirectory, WholeFile};
+use crate::inject::Stage;
+use crate::pipeline_choice::PipelineChoice;
+use crate::report::{FarRangeRun, check_budget};
+use crate::run::{Expectation, Flight, Prepared};
+use crate::scenario::ScenarioSource;
+use crate::toml_file;
+
+/// Flies what is missing of the error budget of a far-range run, and keeps of each stage `run.toml` and `score.json` in
+/// `budget/STAGE`: its frames are those of the run, and their truth is there already. Gives the directories.
+pub(super) fn fly_budget(directory: &Path, output: &Output) -> Result<Vec<PathBuf>, Failure> {
+    check_budget(directory)?;
+    let run = FarRangeRun::read(directory)?;
+    if run.run_file.inject.is_some() {
+        return Err(Failure::Usage(
+            "--budget is all, expected with the report of an honest run alone".to_owned(),
+        ));
+    }
+    let frames = run.truths[0].frame..run.truths[run.truths.len() - 1].frame + 1;
+    let source = ScenarioSource::read(&directory.join("run.toml").to_string_lossy())?;
+    let has_regions = run.run_file.scenario.roi.is_some();
+    let mut kept = Vec::new();
+    for &stage in Stage::value_variants() {
+        // Whole images are what such a camera sends anyway.
+        if stage == Stage::Roi && !has_regions {
+            continue;
+        }
+        let folder = directory.join("budget").join(stage.to_string());
+        if !folder.join("score.json").is_file() {
+            fly(&source, stage, frames.clone(), &folder, output)?;
+        }
+        kept.push(folder);
+    }
+    Ok(kept)
+}
+
+fn fly(
+    source: &ScenarioSource,
+    stage: Stage,
+    frames: std::ops::Range<u64>,
+    folder: &Path,
+    output: &Output,
+) -> Result<(), Failure> {
+    let create =
+        |path: &Path, source| Failure::from(FileError::Io { path: path.to_owned(), doing: "create", source });
+    std::fs::create_dir_all(folder).map_err(|error| create(folder, error))?;
+    // Beside what is kept of it: the truth of a long run may be more than a folder for temporary files can hold.
+    let scratch = tempfile::Builder::new().prefix("flight-").tempdir_in(folder);
+    let scratch = scratch.map_err(|error| create(folder, error))?;
+    let prepared = Prepared::with_truth_for(source, Some(stage))?;
+    let choice = PipelineChoice { word: None, timeout_s: 0.0, memory_mb: 0 };
+    let factory = choice.factory(&prepared.scenario().far_range, scratch.path())?;
+    let flown = RunDirectory::create(&scratch.path().join("run"))?;
+    let progress = output.progress(frames.end - frames.start, &format!("{}, true {stage}", source.name));
+    let flight = Flight { frames, jobs: default_jobs(), images: None, expectation: Expectation::Dropped };
+    let ran = prepared.run(&flown, &flight, factory.as_ref(), || {
+        progress.inc(1);
+        Ok(())
+    });
+    progress.finish_and_clear();
+    output.first_failure(ran?.first_failure.as_ref());
+    // The score last: where it is, the stage is done.
+    for name in ["run.toml", "score.json"] {
+        let path = flown.path().join(name);
+        let text = toml_file::read_text(&path).map_err(|source| FileError::Io {
+            path: path.clone(),
+            doing: "read",
+            source,
+        })?;
+        WholeFile::with_text(&folder.join(name), &text)?.replace()?;
+    }
+    Ok(())
+}
