@@ -7,6 +7,9 @@ mod support;
 use std::collections::BTreeSet;
 use std::fs;
 
+use boresight::report::{Block, FarRangeRun, FrameSheet, far_range_page};
+use boresight::score::Verdict;
+use contract::Angle;
 use serde_json::Value;
 use support::{Bench, STUDY};
 
@@ -61,6 +64,25 @@ impl PageText {
         for chart in charts {
             assert!(!chart["data"].as_array().unwrap().is_empty() && chart["layout"].is_object());
         }
+        self.check_what_is_drawn();
+    }
+
+    /// Charts with what is said below them.
+    fn captioned(&self) -> Vec<(String, Value)> {
+        let figures = self.html.split("<figure class=\"chart\">").skip(1);
+        let captions = figures.map(|figure| {
+            let caption = figure.split("<figcaption>").nth(1).unwrap();
+            caption.split("</figcaption>").next().unwrap().to_owned()
+        });
+        captions.zip(self.charts()).collect()
+    }
+
+    /// No chart leaves out a point that its caption says is drawn.
+    fn check_what_is_drawn(&self) {
+        for (caption, chart) in self.captioned() {
+            let Some((_, words)) = caption.split_once("Drawn: ") else { continue };
+            check_points(words.split('.').next().unwrap(), &chart);
+        }
     }
 
     /// No attribute and no style names anything outside of the page, and the browser is told to refuse it.
@@ -80,6 +102,88 @@ impl PageText {
     }
 }
 
+/// Holds "2500 of 9000 right answers and all 3 wrong ones" against the points of every panel, rings apart.
+fn check_points(words: &str, chart: &Value) {
+    let told: usize = words
+        .split(" and ")
+        .map(|part| {
+            let number = part.trim_start_matches("all ").split(' ').next().unwrap();
+            number.parse::<usize>().unwrap_or_else(|_| panic!("no number in `{words}`"))
+        })
+        .sum();
+    let traces = chart["data"].as_array().unwrap();
+    let axes: BTreeSet<_> = traces.iter().map(|trace| trace["yaxis"].to_string()).collect();
+    for axis in axes {
+        let is_point = |trace: &&Value| {
+            trace["yaxis"].to_string() == axis
+                && trace["mode"] == "markers"
+                && trace["marker"]["symbol"] != "circle-open"
+        };
+        let drawn: usize =
+            traces.iter().filter(is_point).map(|trace| trace["y"].as_array().unwrap().len()).sum();
+        assert_eq!(drawn, told, "`{words}` on axis {axis}");
+    }
+}
+
+#[test]
+fn the_points_of_a_long_run_lie_as_all_of_its_errors_do() {
+    let bench = Bench::new();
+    bench.boresight("run argon --frames 40..60 --out run --no-report").done();
+    let mut run = FarRangeRun::read(&bench.path("run")).unwrap();
+    // The frames many times over, with errors sharply peaked and long tails: a few of each stretch are far out.
+    let (verdicts, truths) = (run.verdicts.clone(), run.truths.clone());
+    let (outcomes, telemetry) = (run.outcomes.clone(), run.telemetry.clone());
+    let right = verdicts.iter().position(|v| matches!(v.verdict, Verdict::Correct { .. })).unwrap();
+    let law = |i: usize| {
+        let uniform =
+            ((i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+        0.4 * uniform * uniform * uniform
+    };
+    let count = 12_000;
+    let pick = |i: usize| i * verdicts.len() / count;
+    run.truths = (0..count).map(|i| truths[pick(i)].clone()).collect();
+    run.outcomes = (0..count).map(|i| outcomes[pick(i)].clone()).collect();
+    run.telemetry = (0..count).map(|i| telemetry[pick(i)].clone()).collect();
+    run.verdicts = (0..count)
+        .map(|i| {
+            let mut verdict = verdicts[right].clone();
+            if let Verdict::Correct { error } = &mut verdict.verdict {
+                error.ra = Angle::from_degrees(law(i));
+                error.dec = Angle::from_degrees(-law(i));
+            }
+            verdict
+        })
+        .collect();
+    let page = far_range_page(&run, &FrameSheet::open(&bench.path("run")).unwrap()).unwrap();
+    let section = page.sections.iter().find(|section| section.id == "fig-5").unwrap();
+    let chart = section.blocks.iter().find_map(|block| match block {
+        Block::Chart(chart) => Some(chart),
+        _ => None,
+    });
+    let chart = chart.unwrap();
+    let json: Value = serde_json::from_str(&chart.json()).unwrap();
+    let (_, words) = chart.caption.split_once("Drawn: ").unwrap();
+    assert!(words.starts_with("2500 of 12000 right answers."), "{words}");
+    check_points(words.split('.').next().unwrap(), &json);
+    let numbers = |trace: &Value| -> Vec<f64> {
+        let mut y: Vec<f64> = trace["y"].as_array().unwrap().iter().map(|y| y.as_f64().unwrap()).collect();
+        y.sort_by(f64::total_cmp);
+        y
+    };
+    let traces = json["data"].as_array().unwrap();
+    let drawn = numbers(traces.iter().find(|trace| trace["name"] == "right").unwrap());
+    let mut all: Vec<f64> = (0..count).map(law).collect();
+    all.sort_by(f64::total_cmp);
+    let below = |of: &[f64], level: f64| of.partition_point(|&value| value < level) as f64 / of.len() as f64;
+    for level in [-0.03, -0.01, -0.001, 0.001, 0.01, 0.03] {
+        let difference = below(&drawn, level) - below(&all, level);
+        assert!(difference.abs() < 0.03, "{difference} at {level}");
+    }
+    // The extremes of all are there, and are not taken for points of the law.
+    let rings = numbers(traces.iter().find(|trace| trace["marker"]["symbol"] == "circle-open").unwrap());
+    assert!((rings[0] - all[0]).abs() < 1e-5 && (rings[rings.len() - 1] - all[count - 1]).abs() < 1e-5);
+}
+
 #[test]
 fn the_page_of_a_far_range_run_has_the_papers_figures_and_the_numbers_of_its_score() {
     let bench = Bench::new();
@@ -87,7 +191,10 @@ fn the_page_of_a_far_range_run_has_the_papers_figures_and_the_numbers_of_its_sco
     let page = PageText::read(&bench, "run/report.html");
     page.check(&["table-2", "fig-2", "fig-3", "fig-4", "fig-5", "fig-6", "fig-7", "fig-8", "fig-9"]);
     page.check(&["causes", "budget", "frames"]);
-    assert!(page.html.contains("images over one another") && page.html.contains("--inject STAGE"));
+    assert!(page.html.contains("images over one another") && page.html.contains("--budget all"));
+    let km: Vec<f64> = bench.frames("run").iter().map(|truth| truth.range_km).collect();
+    let (least, most) = (km.iter().copied().fold(f64::MAX, f64::min), km.iter().copied().fold(0.0, f64::max));
+    assert!(page.html.contains(&format!("<dt>Range</dt><dd>{least:.2} to {most:.2} km</dd>")));
     let score = bench.json("run/score.json");
     assert_eq!(page.data()["score"], score);
     // Every kind of miss and of wrong answer has a picture.
@@ -184,6 +291,38 @@ fn an_error_budget_has_a_line_for_every_stage_and_refuses_other_frames() {
 }
 
 #[test]
+fn the_runs_of_an_error_budget_are_flown_once_and_kept() {
+    let bench = Bench::new();
+    bench.boresight("run argon --frames 220..240 --out run --no-report").done();
+    bench.boresight("report run --budget all").done();
+    let page = PageText::read(&bench, "run/report.html");
+    page.check(&["budget"]);
+    let chart = page.charts().into_iter().find(|chart| chart.to_string().contains("RMS error")).unwrap();
+    let stages = ["centroids", "identities", "attitude", "roi", "aberration"];
+    let told = chart["data"][0]["x"].as_array().unwrap();
+    assert_eq!(told[0], "none: the honest run");
+    assert!(told[1..].iter().zip(stages).all(|(told, stage)| *told == stage), "{told:?}");
+    let kept: BTreeSet<_> = bench.tree("run/budget").into_keys().collect();
+    let files =
+        stages.iter().flat_map(|stage| ["run.toml", "score.json"].map(|name| format!("{stage}/{name}")));
+    assert_eq!(kept, files.map(Into::into).collect());
+    // The same as flown by hand.
+    bench.boresight("run argon --frames 220..240 --inject attitude --out attitude --no-report").done();
+    bench.check_same("attitude/score.json", "run/budget/attitude/score.json");
+    // What is there is not flown again, and is in every later report.
+    fs::remove_dir_all(bench.path("run/budget/roi")).unwrap();
+    bench.boresight("report run --budget all --out again.html").done();
+    bench.check_same("run/report.html", "again.html");
+    bench.boresight("report run --out later.html").done();
+    bench.check_same("run/report.html", "later.html");
+
+    bench.boresight("report run --budget all --budget attitude").refused(&["--budget", "`all` alone"]);
+    bench.boresight("report attitude --budget all").refused(&["--budget is all", "honest run"]);
+    bench.boresight("run docking --frames 24000..24001 --out docking --no-report").done();
+    bench.boresight("report docking --budget all").refused(&["--budget", "far range", "docking"]);
+}
+
+#[test]
 fn the_page_of_a_docking_run_has_the_papers_figures_and_the_numbers_of_its_score() {
     let bench = Bench::new();
     bench.boresight("run docking --frames 15000..15060 --out run").done();
@@ -208,6 +347,8 @@ fn the_page_of_a_study_has_its_summary_and_the_commands_of_its_worst_cases() {
     page.check(&["figures", "sensitivities", "scatter", "worst"]);
     let summary = bench.json("out/summary.json");
     assert_eq!(page.data()["summary"], summary);
+    let title = STUDY.lines().find_map(|line| line.strip_prefix("title = ")).unwrap().trim_matches('"');
+    assert!(page.html.contains(&format!("<h1>{title}</h1>")), "no title {title}");
     bench.boresight("study replay study.toml --case 3 --out again").done();
     PageText::read(&bench, "again/report.html").check(&["fig-3", "frames"]);
     bench.boresight("study replay study.toml --case 3 --out silent --no-report").done();
@@ -241,9 +382,19 @@ fn the_page_of_requirements_has_table_curves_and_sky() {
     assert_eq!(page.data()["visibility"], bench.json("out/visibility.json"));
     bench.check_same("out/report.html", "beside.html");
     check_same_report(&bench, "out");
-    let map = page.charts().into_iter().find(|chart| chart["data"][0]["type"] == "scattergeo").unwrap();
-    let points = |i: usize| map["data"][i]["lat"].as_array().unwrap().len();
-    assert_eq!(points(0) + points(1), bench.csv("out/sky.csv").len());
+    // The map has the numbers of pointings that count, and no others.
+    let map = page.charts().into_iter().find(|chart| chart["data"][0]["type"] == "heatmap").unwrap();
+    let sky = bench.csv("out/sky.csv");
+    let rounded = |stars: f64| (100.0 * stars).round() as i64;
+    let counted: BTreeSet<i64> = sky
+        .iter()
+        .filter(|row| row["excluded"].is_empty())
+        .map(|row| rounded(row["stars"].parse().unwrap()))
+        .collect();
+    let rows = map["data"][0]["z"].as_array().unwrap();
+    let shown: Vec<f64> =
+        rows.iter().flat_map(|row| row.as_array().unwrap()).filter_map(Value::as_f64).collect();
+    assert!(shown.len() > 10_000 && shown.iter().all(|&stars| counted.contains(&rounded(stars))));
 }
 
 #[test]
@@ -261,7 +412,7 @@ fn the_page_of_a_gate_shows_what_flipped() {
     let page = PageText::read(&bench, "gate.html");
     page.check(&["effects", "flips"]);
     let rates = page.charts().into_iter().find(|chart| chart.to_string().contains("difference, points"));
-    assert!(rates.unwrap().to_string().contains("correct_rate"), "the rates are drawn, tolerated or not");
+    assert!(rates.unwrap().to_string().contains("correct rate"), "the rates are drawn, tolerated or not");
     assert_eq!(page.data()["figures"], report["figures"]);
     let flips = report["flips"]["units"].as_array().unwrap();
     assert!(!flips.is_empty(), "the test needs a frame that flips");

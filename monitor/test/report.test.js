@@ -129,6 +129,20 @@ const charts = (page) =>
     })),
   );
 
+/** Numbers beside an axis that cover the next one. */
+const overprinted = (page) =>
+  page.$$eval(".plot", (plots) =>
+    plots.flatMap((plot) => {
+      const axes = Map.groupBy(plot.querySelectorAll(`[class^="y"][class$="tick"] > text`), (text) => text.parentNode.getAttribute("class"));
+      return [...axes].flatMap(([axis, texts]) => {
+        const boxes = texts.map((text) => text.getBoundingClientRect()).sort((a, b) => a.top - b.top);
+        // Boxes of letters have room above and below the digits.
+        const covers = boxes.some((box, i) => i > 0 && box.top < boxes[i - 1].bottom - 0.3 * box.height);
+        return covers ? [`${axis} of ${plot.closest("section").id}`] : [];
+      });
+    }),
+  );
+
 for (const [name, { headings, pictures }] of Object.entries(REPORTS)) {
   describe(name, () => {
     for (const colorScheme of ["light", "dark"]) {
@@ -157,6 +171,11 @@ for (const [name, { headings, pictures }] of Object.entries(REPORTS)) {
         const ink = await page.$eval(".plot .xtick text, .plot .infolayer text", (text) => text.style.fill);
         const [dark, light] = colorScheme === "dark" ? [ground, ink] : [ink, ground];
         assert.ok(grey(dark) < 80 && grey(light) > 180, `ground ${ground}, ink ${ink}`);
+        const cut = await page.$$eval("section > .table", (tables) =>
+          tables.filter((table) => table.scrollWidth > table.clientWidth + 1).map((table) => table.closest("section").id),
+        );
+        assert.deepEqual(cut, [], "tables that are cut at the right");
+        assert.deepEqual(await overprinted(page), []);
         const beyond = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
         assert.ok(beyond <= 0, `the page is ${beyond} px wider than the window`);
         assert.deepEqual(problems, []);
