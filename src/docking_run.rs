@@ -4,6 +4,17 @@
 //! pipeline may ask for another contrast and brightness of the digitiser, which is in force from the next field on: a
 //! closed loop, which no number of threads can change.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::ops::Range;
 use std::path::Path;
 

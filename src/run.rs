@@ -1,5 +1,16 @@
 //! Simulate, process, score: what the commands `run`, `render`, `process` and `score` do.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::ops::Range;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};

@@ -1,5 +1,16 @@
 //! `boresight render` and `boresight process`: datasets for somebody else's pipeline, and from somebody else's camera.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;

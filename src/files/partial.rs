@@ -20,12 +20,13 @@ impl PartialFiles {
     /// Files that will be `names`; none of them may exist.
     ///
     /// # Errors
-    /// [`FileError::OutputTaken`] when one does.
+    /// [`FileError::OutputTaken`] when one does; [`FileError::Io`] when there is no folder for one.
     pub fn of(names: &[&Path]) -> Result<Self, FileError> {
         for name in names {
             if name.exists() {
                 return Err(taken(name));
             }
+            folder_of(name).metadata().map_err(|source| FileError::io(name, "create", source))?;
         }
         // Nobody else's: another process may be making the same files.
         static COUNT: AtomicU64 = AtomicU64::new(0);
@@ -37,7 +38,7 @@ impl PartialFiles {
         let names: Vec<PathBuf> = names.iter().map(|name| name.to_path_buf()).collect();
         let files = Self { paths: names.iter().map(partial).collect(), names };
         files.remove(); // What a process of the same number left that was killed.
-        folders_of(&files.names).for_each(WholeFile::remove_abandoned);
+        files.names.iter().map(|name| folder_of(name)).for_each(WholeFile::remove_abandoned);
         Ok(files)
     }
 
@@ -74,10 +75,8 @@ impl PartialFiles {
     }
 }
 
-fn folders_of(names: &[PathBuf]) -> impl Iterator<Item = &Path> {
-    names
-        .iter()
-        .map(|name| name.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))
+fn folder_of(name: &Path) -> &Path {
+    name.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 impl Drop for PartialFiles {

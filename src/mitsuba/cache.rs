@@ -1,5 +1,16 @@
 //! Images by what they are images of.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
@@ -77,14 +88,11 @@ pub(super) fn read_judged(
         let (columns, rows) = (scene.crop.columns, scene.crop.rows);
         return problem(format!("has {}×{} px, expected {columns}×{rows}", image.columns, image.rows));
     }
-    match image.radiance.iter().position(|v| !(v.is_finite() && *v >= 0.0)) {
+    match image.radiance.iter().enumerate().find(|(_, v)| !(v.is_finite() && **v >= 0.0)) {
         None => Ok(image),
-        Some(at) => {
+        Some((at, radiance)) => {
             let (x, y) = (at % image.columns, at / image.columns);
-            problem(format!(
-                "has the radiance {} at pixel ({x}, {y}), expected 0 or more",
-                image.radiance[at]
-            ))
+            problem(format!("has the radiance {radiance} at pixel ({x}, {y}), expected 0 or more"))
         }
     }
 }

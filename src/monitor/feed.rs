@@ -1,5 +1,16 @@
 //! Where frames come from: a live run, or a run directory.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 

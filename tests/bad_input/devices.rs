@@ -4,8 +4,8 @@ use std::fs;
 use std::os::unix::fs::symlink;
 use std::process::Command;
 
+use super::dataset;
 use super::support::Bench;
-use super::{dataset, dataset_of};
 
 /// The file is a pipe that nobody writes to, and then a device without end: it is refused by name, at once.
 fn check(bench: &Bench, words: &str, name: &str) {
@@ -38,8 +38,7 @@ fn tables_are_regular_files() {
 }
 
 #[test]
-fn images_and_videos_are_regular_files() {
-    check(&dataset_of("fits"), "process set", "set/frames/000021.fits");
+fn videos_are_regular_files() {
     let bench = Bench::new();
     for name in ["live.avi", "live.y4m"] {
         check(&bench, &format!("process {name} --scenario docking"), name);

@@ -1,5 +1,16 @@
 //! A child process that is asked and answers line by line, within limits of time and size.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, Command, Stdio};
@@ -9,7 +20,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::group;
-use super::protocol::MAX_LINE_BYTES;
+use super::protocol::{MAX_LINE_BYTES, harmless};
 
 /// A running child. Three threads of its own move its lines, so that no pipe, full or empty, can stop the caller for
 /// longer than a limit.
@@ -240,7 +251,7 @@ fn write_lines(mut input: impl Write, requests: &Receiver<Vec<u8>>, events: &Syn
 fn read_errors(mut output: impl Read, errors: &Mutex<Tail>) {
     let mut buffer = [0; 4096];
     while let Ok(read @ 1..) = output.read(&mut buffer) {
-        errors.lock().unwrap_or_else(PoisonError::into_inner).push(&buffer[..read]);
+        errors.lock().unwrap_or_else(PoisonError::into_inner).push(buffer.get(..read).unwrap_or_default());
     }
 }
 
@@ -264,7 +275,8 @@ impl Tail {
     fn last_lines(&mut self) -> String {
         let text = String::from_utf8_lossy(self.bytes.make_contiguous());
         let lines: Vec<&str> = text.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-        lines[lines.len().saturating_sub(Self::LINES)..].join(" | ")
+        let last = lines.get(lines.len().saturating_sub(Self::LINES)..).unwrap_or_default();
+        harmless(&last.join(" | "))
     }
 }
 

@@ -403,6 +403,7 @@ mod tests {
     /// A saddle has a positive slope along one axis and turns the other one round.
     #[test]
     fn a_jacobian_is_positive_definite_when_both_its_eigenvalues_are() {
+        assert_eq!(Jacobian { uu: 2.0, uv: 3.0, vv: 4.0 }.determinant(), -1.0);
         let is_positive = |uu, uv, vv| Jacobian { uu, uv, vv }.is_positive_definite();
         assert!(is_positive(1.0, 0.5, 2.0) && is_positive(2.0, -1.0, 1.0));
         // Eigenvalues of opposite signs, both negative, and one of them nought.
@@ -502,6 +503,20 @@ mod tests {
         assert!(half_diagonal - largest < 3e-4);
         // Half of the diagonal of 18.2° × 13.6° is 11.4°; the principal point is 24 px off the middle.
         assert!((projection.half_diagonal().degrees() - 11.7).abs() < 0.1);
+    }
+
+    /// Of a corner of the detector to the right and below the principal point it takes the last point of either side.
+    #[test]
+    fn the_half_diagonal_is_that_of_the_farthest_corner_wherever_it_is() {
+        for (x, y, corner) in
+            [(10.0, 20.0, (751.5, 579.5)), (700.0, 20.0, (-0.5, 579.5)), (10.0, 500.0, (751.5, -0.5))]
+        {
+            let camera = Camera { principal_x_px: x, principal_y_px: y, radial: [0.0; 3], ..table_1() };
+            let (fx, fy) = camera.focal_length_px();
+            let expected = libm::atan(libm::hypot((corner.0 - x) / fx, (corner.1 - y) / fy));
+            let told = Projection::new(&camera).unwrap().half_diagonal().radians();
+            assert!((told - expected).abs() < 1e-12, "{x} {y}: {told}, expected {expected}");
+        }
     }
 
     proptest! {
