@@ -1,5 +1,16 @@
 //! The report of an answer to requirements: the verification table and its curves.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::Path;
 
 use plotly::common::{Marker, MarkerSymbol, Mode};
@@ -242,8 +253,9 @@ fn sky(report: &VisibilityReport) -> Section {
     let mut by_declination = counted.clone();
     by_declination.sort_by(|a, b| a.dec_deg.total_cmp(&b.dec_deg));
     for bin in bins(by_declination.len(), 18) {
-        let of = &by_declination[bin];
-        let mut cells = vec![format!("{:.1}", of[0].dec_deg), format!("{:.1}", of[of.len() - 1].dec_deg)];
+        let of = by_declination.get(bin).unwrap_or_default();
+        let (Some(first), Some(last)) = (of.first(), of.last()) else { continue };
+        let mut cells = vec![format!("{:.1}", first.dec_deg), format!("{:.1}", last.dec_deg)];
         cells.extend(summary(of.iter().map(|p| p.stars), 2));
         data.push(cells);
     }

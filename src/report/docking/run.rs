@@ -1,5 +1,16 @@
 //! What a docking run left in its directory.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::Path;
 
 use contract::docking::{DockingOutcome, Motion};

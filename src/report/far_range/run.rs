@@ -1,5 +1,16 @@
 //! What a far-range run left in its directory, and its frames as series.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::Path;
 
 use contract::Outcome;
@@ -90,6 +101,10 @@ impl FarRangeRun {
     }
 
     /// Times of some frames, as the charts' axes take them.
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+    )]
     pub(super) fn times(&self, rows: &[usize]) -> Vec<String> {
         rows.iter().map(|&row| time_word(&self.truths[row])).collect()
     }
@@ -106,6 +121,10 @@ fn check_files(directory: &Path) -> Result<(), Failure> {
 }
 
 /// A line through some rows of a run, in order, that breaks where another group begins: days are apart.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+)]
 pub(super) fn broken(run: &FarRangeRun, rows: impl Iterator<Item = (usize, f64)>) -> (Vec<String>, Vec<f64>) {
     let (mut times, mut values) = (Vec::new(), Vec::new());
     let mut last: Option<usize> = None;
@@ -137,6 +156,10 @@ fn word_of(utc: &str) -> String {
 }
 
 /// The axis of time of a run: the same in all of its charts, so that they can be held one below another.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+)]
 pub(super) fn time_axis(run: &FarRangeRun) -> Axis {
     let (first, last) = (run.truths[0].time, run.truths[run.truths.len() - 1].time);
     let room = ((last - first) * 0.02).max(1.0 * Unit::Second);
@@ -148,6 +171,10 @@ pub(super) fn time_axis(run: &FarRangeRun) -> Axis {
 pub(super) type BinColumn<'a> = (&'a str, &'a dyn Fn(usize) -> f64, usize);
 
 /// A summary of long series, stretch by stretch: number, smallest, mean and largest of each.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+)]
 pub(super) fn by_bins(run: &FarRangeRun, columns: &[BinColumn<'_>]) -> DataTable {
     let mut head = vec!["from (UTC)".to_owned(), "frames".to_owned()];
     for (name, _, _) in columns {
