@@ -112,16 +112,16 @@ fn check_points(words: &str, chart: &Value) {
         })
         .sum();
     let traces = chart["data"].as_array().unwrap();
-    let axes: BTreeSet<_> = traces.iter().map(|trace| trace["yaxis"].to_string()).collect();
+    let axes: BTreeSet<_> = traces.iter().map(|trace| trace["yaxis"].as_str()).collect();
     for axis in axes {
         let is_point = |trace: &&Value| {
-            trace["yaxis"].to_string() == axis
+            trace["yaxis"].as_str() == axis
                 && trace["mode"] == "markers"
                 && trace["marker"]["symbol"] != "circle-open"
         };
         let drawn: usize =
             traces.iter().filter(is_point).map(|trace| trace["y"].as_array().unwrap().len()).sum();
-        assert_eq!(drawn, told, "`{words}` on axis {axis}");
+        assert_eq!(drawn, told, "`{words}` on axis {axis:?}");
     }
 }
 

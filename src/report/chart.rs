@@ -302,8 +302,9 @@ mod tests {
 
     #[test]
     fn an_axis_in_powers_of_ten_has_two_ticks_and_few_more() {
-        assert_eq!(log_ticks(1e-6, 0.5).len(), 5);
-        for (low, high) in [(0.004, 0.05), (0.004, 0.06), (0.011, 0.019), (2e-5, 0.3), (1e-9, 10.0)] {
+        for (low, high) in
+            [(0.004, 0.05), (0.004, 0.06), (0.011, 0.019), (2e-5, 0.3), (1e-6, 0.5), (1e-9, 10.0)]
+        {
             let ticks = log_ticks(low, high);
             assert!((2..=6).contains(&ticks.len()), "{low} to {high}: {ticks:?}");
         }
