@@ -9,6 +9,7 @@
 )]
 
 mod arguments;
+mod command;
 mod errors;
 mod frame;
 mod json;
@@ -26,6 +27,8 @@ mod wait;
 /// Scenarios, frames, runs, scores, studies and visibility, over the engine of the command `boresight`.
 #[pyo3::pymodule]
 mod _boresight {
+    #[pymodule_export]
+    use crate::command::command;
     #[pymodule_export]
     use crate::frame::{FieldTelemetry, Frame, SimulatedFrame, Telemetry};
     #[pymodule_export]

@@ -148,10 +148,14 @@ impl Run {
 
 /// Makes frames, has a pipeline process them, and scores its answers, as the command `boresight run` does and with the same numbers.
 ///
+/// `scenario`: a scenario, the name of a built-in one, or the path of a TOML file. `frames`: a `range` of step 1; all frames (docking:
+/// fields) without one. `jobs`: threads that make frames, 1 to 1024; default: all cores. The results do not depend on it. `out`: a new or
+/// empty directory that keeps the run. `timeout_s`: longest time that an `exec:` pipeline may take for a frame, s.
+///
 /// `pipeline` is None (the built-in one), `exec:COMMAND`, a callable of (frame, telemetry), or a class that is made with the setup and
 /// whose instances are such a callable. A callable returns `Detection`, `NoSolution`, None (no target) or a dictionary with the keys of
 /// docs/external-pipeline.md; in docking `Pose`, `RangeOnly`, `NoSolution` or None. Whatever it raises is the outcome of its frame, with
-/// its message; only what is no `Exception` (Ctrl-C) ends the run. `out` is a new or empty directory that keeps the run.
+/// its message; only what is no `Exception` (Ctrl-C) ends the run.
 #[pyfunction]
 #[pyo3(signature = (scenario, *, frames=None, pipeline=None, jobs=None, out=None, timeout_s=10.0))]
 pub(crate) fn run(

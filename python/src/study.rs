@@ -64,10 +64,12 @@ impl StudyResult {
 /// Runs what is missing of a study and sums it up, as the command `boresight study run` does.
 ///
 /// `path` is the study's file (docs/studies.md). `out` keeps the results; run again with it, only what is missing is made. Without it they
-/// are in a temporary directory, gone with the object. `pipeline` is None (the built-in one), `exec:COMMAND`, a callable of (frame,
-/// telemetry), or a class of them, as in `run`. Cases run side by side, and call it one at a time: a class is made anew for every case,
-/// with the case's setup; a function is called for frames of several cases in turn, and must remember nothing. Whatever it raises is the
-/// outcome of its frame.
+/// are in a temporary directory, gone with the object. `jobs`: threads that make frames, 1 to 1024; default: all cores. `timeout_s`: longest
+/// time that an `exec:` pipeline may take for a frame, s.
+///
+/// `pipeline` is None (the built-in one), `exec:COMMAND`, a callable of (frame, telemetry), or a class of them, as in `run`. Cases run side
+/// by side, and call it one at a time: a class is made anew for every case, with the case's setup; a function is called for frames of
+/// several cases in turn, and must remember nothing. Whatever it raises is the outcome of its frame.
 #[pyfunction]
 #[pyo3(signature = (path, *, out=None, pipeline=None, jobs=None, timeout_s=10.0))]
 pub(crate) fn study(

@@ -14,6 +14,7 @@ mod shell;
 mod study;
 mod visibility;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -54,7 +55,8 @@ enum Command {
     Report(report::ReportArguments),
     /// The page of an operator, on loopback: camera, ground track, phase chart, model and parameters
     #[command(
-        after_help = "SCENARIO may be the directory of a run: it is then replayed, its pictures drawn anew."
+        after_help = "SCENARIO may be the directory of a run: it is then replayed, its pictures drawn anew. The name of a built-in \
+                      scenario is that scenario; a folder of that name is ./NAME."
     )]
     Monitor(monitor::MonitorArguments),
     /// List, check and start scenarios
@@ -73,14 +75,22 @@ enum Answer {
     No,
 }
 
-/// Runs the command of this process's arguments. Exit status: 0 done, 1 the answer is no, 2 usage or bad input.
+/// Runs the command of this process's arguments.
 pub fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    ExitCode::from(run_words(std::env::args_os()))
+}
+
+/// Runs the command of these words, its own name first, and gives its exit status: 0 done, 1 the answer is no, 2 usage or bad input.
+pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let words: Vec<OsString> = words.into_iter().collect();
+    let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
             // The arguments are not known to be right, but what the caller reads is.
-            output::Output::new(std::env::args_os().any(|word| word == "--json")).misuse(&error);
-            error.exit();
+            output::Output::new(words.iter().any(|word| word == "--json")).misuse(&error);
+            // Nobody can be told that the stream is closed.
+            let _ = error.print();
+            return u8::from(error.use_stderr()) * Failure::EXIT_STATUS;
         }
     };
     let output = output::Output::new(arguments.json);
@@ -99,11 +109,11 @@ pub fn main() -> ExitCode {
         Command::Man(arguments) => shell::man(&arguments, &output),
     };
     match answer {
-        Ok(Answer::Yes) => ExitCode::SUCCESS,
-        Ok(Answer::No) => ExitCode::from(1),
+        Ok(Answer::Yes) => 0,
+        Ok(Answer::No) => 1,
         Err(failure) => {
             output.failure(failure);
-            ExitCode::from(Failure::EXIT_STATUS)
+            Failure::EXIT_STATUS
         }
     }
 }

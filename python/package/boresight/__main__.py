@@ -1,0 +1,26 @@
+"""The command `boresight`, out of the package: `python -m boresight ARGUMENTS`, or the script `boresight` that is installed with it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import sys
+
+from boresight._boresight import command
+
+
+def main() -> int:
+    """Runs the command of this process's arguments and gives its exit status."""
+    # Python would keep Ctrl-C to itself until the command has ended.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    # What `study run --engine dask` starts: this Python, and on the workers this command.
+    os.environ.setdefault("BORESIGHT_PYTHON", sys.executable)
+    script = shutil.which("boresight", path=os.path.dirname(sys.executable))
+    if script:
+        os.environ.setdefault("BORESIGHT_PROGRAM", script)
+    return command(sys.argv[1:])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

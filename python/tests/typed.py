@@ -1,0 +1,40 @@
+"""What type checkers must accept, and refuse: checked by `mypy --strict`, never run."""
+
+from typing import Any
+
+import boresight
+from boresight import Detection, Frame, NoSolution, Pose
+
+
+def brightest(frame: Frame, telemetry: boresight.Telemetry) -> Detection:
+    y, x = divmod(int(frame.pixels.argmax()), frame.pixels.shape[1])
+    return Detection(x, y)
+
+
+def nothing(frame: Frame, telemetry: boresight.Telemetry | boresight.FieldTelemetry) -> None:
+    return None
+
+
+class Docking:
+    def __init__(self, setup: dict[str, Any]) -> None:
+        self.cameras = setup["cameras"]
+
+    def __call__(self, field: Frame, telemetry: boresight.FieldTelemetry) -> Pose | NoSolution:
+        return NoSolution("no_target" if telemetry.camera == 0 else "out_of_field")
+
+
+def number(frame: Frame, telemetry: boresight.Telemetry) -> float:
+    return telemetry.exposure_s
+
+
+boresight.run("argon", frames=range(10), pipeline=brightest)
+boresight.run("argon", pipeline=nothing)
+boresight.run("docking", pipeline=Docking)
+boresight.run("argon", pipeline="exec:python3 pipeline.py")
+boresight.study("study.toml", pipeline=Docking)
+boresight.run("argon", pipeline=number)  # type: ignore[arg-type]
+
+telemetry = boresight.Scenario.load("argon").frame(0).telemetry
+telemetry.exposure_s  # type: ignore[union-attr]
+if isinstance(telemetry, boresight.Telemetry):
+    exposure_s: float = telemetry.exposure_s
