@@ -18,6 +18,9 @@ import zlib
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent
 COLUMNS, ROWS = 48, 36
+# What `run_directory` puts together, see fuzz/src/runs.rs.
+FAR_RUN = ["run.toml", "score.json", "measurements.csv", "telemetry.csv", "clusters.parquet", "truth/frames.parquet", "truth/objects.parquet"]
+DOCKING_RUN = ["run.toml", "setup.toml", "score.json", "measurements.csv", "motion.csv", "telemetry.csv", "features.parquet", "truth/fields.parquet"]
 
 
 def main(program):
@@ -96,6 +99,11 @@ def make(program, folder):
         keep("parquet", f"small-{path.relative_to(folder).parts[0]}-{path.name}", path)
     keep("json", "small-score.json", folder / "far/score.json")
     keep("json", "small-docking-score.json", folder / "docking/score.json")
+
+    for run, kinds in {"far": FAR_RUN, "docking": DOCKING_RUN}.items():
+        for name in kinds:
+            content = (folder / run / name).read_bytes()
+            keep("run_directory", f"small-{run}-{name.replace('/', '-')}", f"{run}/{name}\n".encode() + content)
 
     keep("study", "small.toml", bare(ROOT / "scenarios/studies/argon-optics.toml"))
     keep("study", "small-laws.toml", LAWS)

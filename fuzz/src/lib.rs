@@ -6,6 +6,7 @@
 
 mod answers;
 mod images;
+mod runs;
 mod sandbox;
 mod server;
 mod tables;
@@ -64,6 +65,7 @@ pub const TARGETS: &[Target] = &[
     Target::new("psf", "a sampled point-spread function", texts::psf),
     Target::new("raw", "raw video", videos::raw),
     Target::new("requirements", "requirements on visibility, TOML", texts::requirements),
+    Target::new("run_directory", "a file of a run that is put together with the others", runs::directory),
     Target::new("run_file", "run.toml", texts::run_file),
     Target::new("scenario", "scenarios of both worlds, TOML", texts::scenario),
     Target::new("setup", "setup.toml of a docking dataset", texts::setup),

@@ -22,7 +22,7 @@ impl Sandbox {
         self.0.path()
     }
 
-    /// Writes a file, in the place of an earlier one.
+    /// Writes a file, in the place of an earlier one, with the folders above it.
     ///
     /// # Panics
     /// When it cannot be written.
@@ -32,7 +32,9 @@ impl Sandbox {
     )]
     pub(crate) fn file(&self, name: &str, bytes: &[u8]) -> PathBuf {
         let path = self.path().join(name);
-        std::fs::write(&path, bytes).expect("the sandbox can be written");
+        let folder = path.parent().unwrap_or_else(|| self.path());
+        let written = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(&path, bytes));
+        written.expect("the sandbox can be written");
         path
     }
 }
