@@ -61,7 +61,6 @@ mod tests {
 
     /// Else nothing would be fed but the first thing that is wrong.
     #[test]
-    #[expect(clippy::unwrap_used, reason = "a panic is how a test fails")]
     fn what_is_put_together_is_right() {
         let sandbox = Sandbox::new().unwrap();
         for (run, files) in RUNS {
