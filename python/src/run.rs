@@ -1,5 +1,16 @@
 //! Simulate, process, score: what the command `run` does, with its directory behind it.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -22,6 +33,9 @@ use crate::python_pipeline::PythonPipeline;
 use crate::scenario::{Scenario, World};
 use crate::table::Table;
 use crate::wait::Ended;
+
+/// Largest score.json that is read.
+const MOST_SCORE_BYTES: u64 = 1 << 26;
 
 /// What a run gave: score, truth and measurements.
 ///
@@ -91,7 +105,7 @@ impl Run {
     #[getter]
     fn score<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let path = self.path.join("score.json");
-        let text = std::fs::read_to_string(&path);
+        let text = sim::regular_file::read_text(&path, MOST_SCORE_BYTES);
         let text = text.map_err(|error| FileError::new_err(format!("{}: {error}", path.display())))?;
         json::text_to_python(py, &text)
     }

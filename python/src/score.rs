@@ -1,9 +1,21 @@
 //! The oracle over anybody's measurements.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 use std::path::{Path, PathBuf};
 
 use boresight::docking_run::score_docking;
 use boresight::failure::Failure;
+use boresight::files::Checksums;
 use boresight::run;
 use boresight::scenario::{World, world};
 use boresight::toml_file::read_text;
@@ -75,5 +87,6 @@ fn scored(directory: &Path, measurements: &Path) -> Result<String, Failure> {
             serde_json::to_string(&score_docking(directory, measurements, motion.as_deref())?)
         }
     };
+    Checksums::check(directory, |_| true)?;
     json.map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))
 }

@@ -1,5 +1,7 @@
 """Tables for polars, pandas and pyarrow, and tables from them."""
 
+import shutil
+
 import numpy as np
 import pandas
 import polars
@@ -80,3 +82,13 @@ def test_what_is_no_run_is_told(tmp_path):
         boresight.score(tmp_path, tmp_path / "measurements.csv")
     with pytest.raises(boresight.FileError, match=r"there is no run\.toml"):
         boresight.Run.load(tmp_path)
+
+
+def test_a_run_that_was_changed_since_is_refused(run, tmp_path):
+    changed = tmp_path / "run"
+    shutil.copytree(run.directory, changed)
+    table = changed / "telemetry.csv"
+    table.write_text(table.read_text().replace(",0.", ",1.", 1))
+    for read in (lambda: boresight.Run.load(changed), lambda: boresight.score(changed, run.measurements)):
+        with pytest.raises(boresight.InputError, match="SHA-256"):
+            read()

@@ -191,6 +191,15 @@ impl Jacobian {
         self.uu * self.vv - self.uv * self.uv
     }
 
+    /// The offset that it takes to `image`.
+    fn solve(&self, image: Offset) -> Offset {
+        let determinant = self.determinant();
+        Offset {
+            u: (self.vv * image.u - self.uv * image.v) / determinant,
+            v: (self.uu * image.v - self.uv * image.u) / determinant,
+        }
+    }
+
     fn is_positive_definite(&self) -> bool {
         self.uu > 0.0 && self.determinant() > 0.0
     }
@@ -241,19 +250,16 @@ impl Distortion {
             let image = self.apply(at);
             Offset { u: distorted.u - image.u, v: distorted.v - image.v }
         };
-        let tolerance_px = 1e-12 + 8.0 * f64::EPSILON * distorted.length();
         let mut at = distorted;
         let mut residual = residual_at(at);
         for _ in 0..Self::MAX_STEPS {
-            let jacobian = self.jacobian(at);
-            let determinant = jacobian.determinant();
-            if residual == (Offset { u: 0.0, v: 0.0 }) || determinant == 0.0 {
+            if residual == (Offset { u: 0.0, v: 0.0 }) {
                 break;
             }
-            let step_u = (jacobian.vv * residual.u - jacobian.uv * residual.v) / determinant;
-            let step_v = (jacobian.uu * residual.v - jacobian.uv * residual.u) / determinant;
+            // Of a singular Jacobian the step is no number, and nothing comes closer.
+            let step = self.jacobian(at).solve(residual);
             let mut shorter = (0..20).map(|halvings| 1.0 / f64::from(1_u32 << halvings)).map(|part| {
-                let next = Offset { u: at.u + part * step_u, v: at.v + part * step_v };
+                let next = Offset { u: at.u + part * step.u, v: at.v + part * step.v };
                 (next, residual_at(next))
             });
             // No step that comes closer: either the last bit is reached, or there is no inverse.
@@ -262,7 +268,12 @@ impl Distortion {
                 None => break,
             }
         }
-        (residual.length() <= tolerance_px).then_some(at)
+        (residual.length() <= Self::tolerance_px(distorted)).then_some(at)
+    }
+
+    /// What the inverse of an offset may leave: the rounding of its coordinates.
+    fn tolerance_px(distorted: Offset) -> f64 {
+        1e-12 + 8.0 * f64::EPSILON * distorted.length()
     }
 
     /// The largest radius up to `limit_px` on whose disk the Jacobian is positive definite at every point of a
@@ -400,6 +411,31 @@ mod tests {
         assert_eq!(none.one_to_one_radius(500.0), f64::INFINITY);
     }
 
+    /// 2 · 3 + 1 · (−4) = 2 and 1 · 3 + 5 · (−4) = −17.
+    #[test]
+    fn two_equations_are_solved() {
+        let solved = Jacobian { uu: 2.0, uv: 1.0, vv: 5.0 }.solve(Offset { u: 2.0, v: -17.0 });
+        assert_eq!(solved, Offset { u: 3.0, v: -4.0 });
+    }
+
+    /// r (1 + 1e-6 r² + 3.6e-12 r⁴ − 1.25e-17 r⁶) grows up to 600 px; from where Newton's method begins, at 580, its whole step comes no closer.
+    #[test]
+    fn steps_that_go_too_far_are_halved() {
+        let distortion = Distortion { radial: [1e-6, 3.6e-12, -1.25e-17], tangential: [0.0; 2] };
+        let back = distortion.remove(distortion.apply(Offset { u: 462.0, v: 0.0 })).unwrap();
+        assert!((back.u - 462.0).abs() < 1e-9 && back.v == 0.0, "{back:?}");
+    }
+
+    /// r − 1e-6 r³ is 384.9 px at most: what lies beyond has no inverse, however near it comes.
+    #[test]
+    fn what_nothing_falls_on_has_no_inverse() {
+        let folded = Distortion { radial: [-1e-6, 0.0, 0.0], tangential: [0.0; 2] };
+        assert!(folded.remove(Offset { u: 384.5, v: 0.0 }).is_some());
+        assert_eq!(folded.remove(Offset { u: 385.5, v: 0.0 }), None);
+        // 1e-12 px and 1.776e-15 of 1000 px.
+        assert!((Distortion::tolerance_px(Offset { u: 600.0, v: -800.0 }) - 2.776e-12).abs() < 1e-15);
+    }
+
     /// A saddle has a positive slope along one axis and turns the other one round.
     #[test]
     fn a_jacobian_is_positive_definite_when_both_its_eigenvalues_are() {
@@ -454,7 +490,7 @@ mod tests {
         let projection = Projection::new(&table_1()).unwrap();
         let (along_columns, along_rows) = projection.plate_scale_px_per_rad();
         // 20.187 mm over 8.6 and 8.3 µm.
-        assert!((along_columns - 2347.325_581).abs() < 1e-6 && (along_rows - 2432.168_675).abs() < 1e-6);
+        assert!((along_columns - 2_347.325_581).abs() < 1e-6 && (along_rows - 2_432.168_675).abs() < 1e-6);
         assert_eq!(projection.detector(), (752, 580));
     }
 

@@ -298,6 +298,28 @@ mod tests {
         );
     }
 
+    /// ERFA's `eraAb`, p/γ + (1 + p·v/(1 + 1/γ)) v + w (v − (p·v) p), with p = (0.6, 0.8, 0), v = (0, 0.5, 0) and, for w of the Sun at
+    /// 1 au, a tenth: x = 0.6 · 0.826025 and y = 0.8 · 0.826025 + 0.5 · 1.314359.
+    #[test]
+    fn the_potential_of_the_sun_adds_to_aberration() {
+        let beta = Vector3::new(0.0, 0.5, 0.0);
+        let seen = boost(&Vector3::new(0.6, 0.8, 0.0), &beta, 0.75_f64.sqrt(), 0.1);
+        assert!((seen.y / seen.x - 2.659_321).abs() < 1e-6, "{seen}");
+        assert!((seen.norm() - 1.0).abs() < 1e-15 && seen.z == 0.0);
+    }
+
+    /// The Earth's mean speed is 29.8 km/s, 1.7 % more or less in its orbit; the Sun's own is 0.02 km/s.
+    #[test]
+    fn an_observer_at_rest_on_the_earth_moves_with_it() {
+        let observer = observer("2012-04-25T12:00:00Z");
+        let speed = observer.barycentric_velocity_km_s().norm();
+        assert!((29.2..30.4).contains(&speed), "{speed}");
+        let sun_au = observer.sun().vector() * observer.sun_distance_au();
+        assert!((observer.sun_km() / AU_KM - sun_au).norm() < 1e-12);
+        // Astronomical Almanac, low-precision formulae: 1.00014 − 0.01671 cos g − 0.00014 cos 2g, with g = 110.76°.
+        assert!((observer.sun_distance_au() - 1.006_17).abs() < 5e-4, "{}", observer.sun_distance_au());
+    }
+
     #[test]
     fn a_star_without_motion_stays_where_it_is_catalogued() {
         let still = star();
