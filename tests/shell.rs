@@ -39,7 +39,7 @@ fn every_command_has_a_manual_page() {
     assert!(page.contains(".TH boresight-study-run") && page.contains("\\-\\-shard"), "{page}");
     // The synopsis says what an option takes.
     let page = bench.read("pages/boresight-report.1");
-    assert!(page.contains("[\\-\\-budget <DIR>]"), "{page}");
+    assert!(page.contains("[\\-\\-budget <all|DIR>]"), "{page}");
     // Again, into the same folder.
     bench.boresight("man --out pages").done();
 }

@@ -138,7 +138,6 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
     // From the largest statistic down: where each stands, and at each exchange the largest of it and those below it.
     let mut order: Vec<usize> = (0..figures.len()).collect();
     order.sort_by(|a, b| observed[*b].total_cmp(&observed[*a]).then(a.cmp(b)));
-    let reaches = |statistic: f64, observed: f64| statistic >= observed - TIE * (1.0 + observed.abs());
     let (mut alone, mut together) = (vec![0u64; figures.len()], vec![0u64; figures.len()]);
     let mut largest = Vec::new();
     let mut exchanged = vec![0.0; figures.len()];
@@ -170,6 +169,11 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
     let reached = (alpha * count).floor() as usize;
     let critical = largest.len().checked_sub(reached + 1).map_or(0.0, |place| largest[place].max(0.0));
     JointTest { figures: tested, critical }
+}
+
+/// Whether a statistic is as large as the observed one, but for rounding.
+fn reaches(statistic: f64, observed: f64) -> bool {
+    statistic >= observed - TIE * (1.0 + observed.abs())
 }
 
 /// An interval of 95 % for the difference of two runs: the 2.5 % and 97.5 % quantiles of the difference over sets of blocks, each block in
@@ -309,6 +313,12 @@ mod tests {
         let test = test_of(&[effects(&[0.1, 0.2, -0.3])], 0.05);
         assert_eq!(test.figures[0].p, 5.0 / 8.0);
         assert!(test.figures[0].statistic > 0.0);
+    }
+
+    #[test]
+    fn a_statistic_reaches_another_within_a_billionth_of_it() {
+        assert!(reaches(3.0 - 3e-9, 3.0) && !reaches(3.0 - 5e-9, 3.0));
+        assert!(reaches(-0.9e-9, 0.0) && !reaches(-1.1e-9, 0.0));
     }
 
     /// A figure that repeats another, with any scale, costs nothing.
