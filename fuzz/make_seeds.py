@@ -6,6 +6,7 @@ Writes into fuzz/corpus/ the files named `small*`, `argon*` and `docking*`, and 
 Standard library alone.
 """
 
+import hashlib
 import pathlib
 import re
 import shutil
@@ -35,6 +36,13 @@ def keep(target, name, content):
         shutil.copyfile(content, folder / name)
     else:
         (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+
+
+def portable(text):
+    """A run.toml or study.json without the folder that it was made in, and with the hash that goes with that."""
+    text = re.sub(r'"[^"]*/stars\.csv"', '"stars.csv"', text)
+    scenario = re.sub(r"^(\[+)scenario\.", r"\1", text.partition("[scenario]\n")[2], flags=re.M)
+    return re.sub(r"^hash = .*$", f'hash = "{hashlib.sha256(scenario.encode()).hexdigest()}"', text, count=1, flags=re.M)
 
 
 def bare(path):
@@ -81,7 +89,9 @@ def make(program, folder):
     keep("raw", "small.raw", bytes(i % 251 for i in range(2 * COLUMNS * ROWS)))
     keep("tiff", "small.tiff", tiff())
 
-    keep("run_file", "small.toml", folder / "far/run.toml")
+    run_file = folder / "far/run.toml"
+    run_file.write_text(portable(run_file.read_text()))
+    keep("run_file", "small.toml", run_file)
     keep("run_file", "small-docking.toml", folder / "docking/run.toml")
     keep("camera", "small.toml", folder / "png/camera.toml")
     keep("setup", "small.toml", folder / "docking/setup.toml")
@@ -111,7 +121,7 @@ def make(program, folder):
     (folder / "study.toml").write_text(study)
     boresight("study", "run", "study.toml", "--out", "study")
     keep("json", "small-summary.json", folder / "study/summary.json")
-    keep("json", "small-study.json", folder / "study/study.json")
+    keep("json", "small-study.json", portable((folder / "study/study.json").read_text()))
     keep("parquet", "small-cases.parquet", folder / "study/cases.parquet")
     keep("requirements", "small.toml", bare(ROOT / "scenarios/requirements/uasc-far-range.toml"))
     for name in ["progress", "apollo", "idss"]:
