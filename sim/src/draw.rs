@@ -317,15 +317,24 @@ impl ExpectedImage {
     }
 
     /// Whether in piece `p` of row `y` something was drawn that may bring a pixel above `limit_e`, over a background of at
-    /// most `bound_e`.
+    /// most `bound_e`, which is no more than that.
     #[inline(always)]
-    pub(crate) fn may_rise_above(&self, y: usize, p: usize, bound_e: f64, limit_e: f64) -> bool {
+    pub(crate) fn may_rise_above<S: Simd>(
+        &self,
+        simd: S,
+        y: usize,
+        p: usize,
+        bound_e: f64,
+        limit_e: f64,
+    ) -> bool {
         if bound_e + self.peaks[y * self.words_per_row + p] <= limit_e {
             return false;
         }
         // The peaks of objects side by side were added up.
-        let (lit, signal_e) = self.signal_in(y, p);
-        lit != 0 && bound_e + signal_e.into_iter().fold(0.0, f64::max) > limit_e
+        let mut signal_e = [0.0; PIECE];
+        self.add_signal(p * PIECE, y, &mut signal_e[..self.piece_pixels(y, p).len()]);
+        let eights = signal_e.as_chunks::<LANES>().0.iter().map(|eight| Eight::of(simd, eight));
+        bound_e + eights.fold(Eight::splat(simd, 0.0), Eight::or_larger).largest() > limit_e
     }
 
     /// Of each column, the rows from the first to the last pixel with more than `limit_e` expected electrons.
@@ -347,7 +356,8 @@ impl ExpectedImage {
         }
         // Then only something drawn can be above it.
         for y in 0..self.rows {
-            for p in (0..self.words_per_row).filter(|&p| self.may_rise_above(y, p, bound_e, limit_e)) {
+            let simd = pulp::Scalar::new();
+            for p in (0..self.words_per_row).filter(|&p| self.may_rise_above(simd, y, p, bound_e, limit_e)) {
                 let piece = columns.iter_mut().enumerate().skip(p * PIECE).take(PIECE);
                 piece.filter(|(x, _)| self.at(*x, y) > limit_e).for_each(|(_, rows)| extend(rows, y));
             }
@@ -391,16 +401,10 @@ impl Work for Respond<'_> {
                 continue;
             }
             let row = row.as_chunks_mut::<LANES>().0;
-            if let Some(factors) = &image.response {
-                let factors = factors.get(y * image.columns + x..).unwrap_or_default().as_chunks::<LANES>();
-                for (electrons, factors) in row.iter_mut().zip(factors.0) {
-                    Eight::of(simd, electrons).times(Eight::of_narrow(simd, factors)).store(electrons);
-                }
-                // Of the last row some factors may be fewer than eight.
-                if let Some(electrons) = row.get_mut(factors.0.len()) {
-                    for (electrons, &factor) in electrons.iter_mut().zip(factors.1) {
-                        *electrons *= f64::from(factor);
-                    }
+            if let Some(response) = &image.response {
+                for (i, electrons) in row.iter_mut().enumerate() {
+                    let factors = Eight::of_narrow(simd, response.eight(x + i * LANES, y));
+                    Eight::of(simd, electrons).times(factors).store(electrons);
                 }
             }
             let peaks = row.iter().fold(Eight::splat(simd, 0.0), |peaks, electrons| {

@@ -1,33 +1,135 @@
 //! A factor of every pixel of a detector, the same in every frame.
 
-use std::ops::Deref;
+use std::ops::Range;
 use std::sync::Arc;
 
-/// Factors of the pixels of a detector, row by row, none below 0; shared by all frames.
+use crate::widest::LANES;
+
+/// Columns that lie together.
+const STRIP: usize = 64;
+/// Factors of a row of a strip.
+const STRIDE: usize = STRIP + LANES;
+
+/// Factors of the pixels of a detector, none below 0; shared by all frames.
+///
+/// They lie in strips of 64 columns, row after row of a strip: the rows of an image of an object so are next to each other, and not
+/// each in a page of memory of its own.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct PixelFactors {
+    /// The rows of a strip go on with the first columns of the next strip: eight pixels side by side are together wherever they begin.
     values: Arc<[f32]>,
+    columns: usize,
+    rows: usize,
     largest: f32,
 }
 
 impl PixelFactors {
+    /// Of a detector of so many columns, row by row; of no factors, none.
+    pub(crate) fn new(columns: usize, factors: impl IntoIterator<Item = f32>) -> Self {
+        let by_rows: Vec<f32> = factors.into_iter().collect();
+        if by_rows.is_empty() || columns == 0 {
+            return Self::default();
+        }
+        let rows = by_rows.len() / columns;
+        let mut values = Vec::with_capacity(columns.div_ceil(STRIP) * rows * STRIDE);
+        for strip in 0..columns.div_ceil(STRIP) {
+            for row in by_rows.chunks_exact(columns) {
+                let rest = &row[strip * STRIP..];
+                values.extend_from_slice(&rest[..rest.len().min(STRIDE)]);
+                // Where there are no pixels, there is no light either.
+                values.resize(values.len().next_multiple_of(STRIDE), 1.0);
+            }
+        }
+        let largest = by_rows.iter().copied().fold(0.0, f32::max);
+        Self { values: values.into(), columns, rows, largest }
+    }
+
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
     /// The largest of them; 0 without any.
     pub(crate) fn largest(&self) -> f64 {
         f64::from(self.largest)
     }
-}
 
-impl Deref for PixelFactors {
-    type Target = [f32];
-    fn deref(&self) -> &[f32] {
-        &self.values
+    /// Whether they are of a detector with so many columns and with a row `y`.
+    #[inline(always)]
+    pub(crate) fn has_row(&self, y: usize, columns: usize) -> bool {
+        y < self.rows && columns == self.columns
+    }
+
+    /// That of a pixel; `None` off the detector.
+    pub(crate) fn at(&self, x: usize, y: usize) -> Option<f32> {
+        let is_inside = x < self.columns && y < self.rows;
+        is_inside.then(|| self.values.get(self.place(x, y)).copied()).flatten()
+    }
+
+    /// Those of `length` pixels of a row from column `x` on, part by part: which of the pixels, and their factors.
+    #[inline(always)]
+    pub(crate) fn span(
+        &self,
+        x: usize,
+        y: usize,
+        length: usize,
+    ) -> impl Iterator<Item = (Range<usize>, &[f32])> {
+        let end = x + length;
+        (x / STRIP..end.div_ceil(STRIP)).map(move |strip| {
+            let (from, to) = (x.max(strip * STRIP), end.min((strip + 1) * STRIP));
+            let first = self.place(from, y);
+            (from - x..to - x, self.values.get(first..first + (to - from)).unwrap_or_default())
+        })
+    }
+
+    /// Those of eight pixels of a row from column `x` on; 1 off the detector.
+    #[inline(always)]
+    pub(crate) fn eight(&self, x: usize, y: usize) -> &[f32; LANES] {
+        let from = if y < self.rows { self.values.get(self.place(x, y)..) } else { None };
+        from.and_then(<[f32]>::first_chunk).unwrap_or(&[1.0; LANES])
+    }
+
+    /// Row by row.
+    #[cfg(test)]
+    pub(crate) fn iter(&self) -> impl Iterator<Item = f32> {
+        (0..self.rows).flat_map(move |y| (0..self.columns).filter_map(move |x| self.at(x, y)))
+    }
+
+    #[inline(always)]
+    fn place(&self, x: usize, y: usize) -> usize {
+        (x / STRIP * self.rows + y) * STRIDE + x % STRIP
     }
 }
 
-impl FromIterator<f32> for PixelFactors {
-    fn from_iter<I: IntoIterator<Item = f32>>(factors: I) -> Self {
-        let values: Arc<[f32]> = factors.into_iter().collect();
-        let largest = values.iter().copied().fold(0.0, f32::max);
-        Self { values, largest }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_pixel_has_its_factor_however_it_is_asked_for() {
+        for (columns, rows) in [(1, 1), (63, 2), (64, 3), (65, 2), (130, 5), (752, 4)] {
+            let of = |x: usize, y: usize| (y * 1000 + x) as f32;
+            let factors =
+                PixelFactors::new(columns, (0..rows * columns).map(|i| of(i % columns, i / columns)));
+            assert_eq!(factors.largest(), f64::from(of(columns - 1, rows - 1)));
+            assert!(factors.iter().eq((0..rows * columns).map(|i| of(i % columns, i / columns))));
+            for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))) {
+                for (lane, factor) in factors.eight(x, y).iter().enumerate() {
+                    assert_eq!(
+                        *factor,
+                        if x + lane < columns { of(x + lane, y) } else { 1.0 },
+                        "{x} {y} {lane}"
+                    );
+                }
+                let told: Vec<_> = factors.span(x, y, columns - x).collect();
+                assert!(told.iter().flat_map(|(_, part)| *part).copied().eq((x..columns).map(|x| of(x, y))));
+                assert!(told.iter().flat_map(|(pixels, _)| pixels.clone()).eq(0..columns - x));
+            }
+            assert_eq!((factors.at(columns, 0), factors.at(0, rows)), (None, None));
+            assert_eq!(factors.eight(0, rows), &[1.0; LANES]);
+            assert!(factors.has_row(rows - 1, columns));
+            assert!(!factors.has_row(rows, columns) && !factors.has_row(0, columns + 1));
+        }
+        assert!(PixelFactors::new(5, []) == PixelFactors::default() && PixelFactors::default().is_empty());
     }
 }

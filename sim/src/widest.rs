@@ -123,7 +123,11 @@ impl<S: Simd> Eight<S> {
     #[inline(always)]
     pub(crate) fn or_none_below(self, limit: Self) -> Self {
         let none = self.simd.splat_f64s(0.0);
-        self.with(limit, |simd, a, limit| simd.select_f64s(simd.less_than_f64s(a, limit), none, a))
+        // The sum changes no number. Without it numbers that are put back where they came from become a store under a mask,
+        // which some machines do one number at a time.
+        self.with(limit, |simd, a, limit| {
+            simd.select_f64s(simd.less_than_f64s(a, limit), none, simd.add_f64s(a, none))
+        })
     }
 
     /// The sum, in one order.

@@ -49,19 +49,25 @@ pub(super) struct PredictedStar {
 #[derive(Debug)]
 pub(super) struct StarList {
     stars: Vec<ListedStar>,
+    /// From the south to the north: the sine of the declination of a star, and its place among them.
+    by_declination: Vec<(f64, u32)>,
     cos_cone: f64,
 }
 
 /// Widening of the cone's cosine, so that rounding leaves no star of the corners out.
 const CONE_MARGIN: f64 = 1e-4;
 
+/// Of the sine of a declination, far more than rounding makes of it.
+const ROUNDING: f64 = 1e-9;
+
 impl StarList {
     pub(super) fn new(stars: &[ListedStar], max_magnitude: f64, model: &CameraModel) -> Self {
         let bright_enough = |star: &&ListedStar| star.magnitude <= max_magnitude;
-        Self {
-            stars: stars.iter().filter(bright_enough).copied().collect(),
-            cos_cone: (model.cos_half_field() - CONE_MARGIN).max(0.0),
-        }
+        let stars: Vec<_> = stars.iter().filter(bright_enough).copied().collect();
+        let mut by_declination: Vec<_> =
+            stars.iter().zip(0..).map(|(star, place)| (star.direction.vector().z, place)).collect();
+        by_declination.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self { stars, by_declination, cos_cone: (model.cos_half_field() - CONE_MARGIN).max(0.0) }
     }
 
     /// The listed star of this number.
@@ -79,14 +85,30 @@ impl StarList {
         let matrix = camera_from_icrs.matrix();
         // The z component in the camera is the cosine of the angle to the boresight: one product rejects most stars.
         let boresight = matrix.row(2).transpose();
-        self.stars
+        let mut near: Vec<_> = self
+            .about(boresight.z)
             .iter()
-            .filter(|star| boresight.dot(star.direction.vector()) >= self.cos_cone)
-            .filter_map(|&star| {
+            .filter_map(|&(_, place)| Some((place, self.stars.get(place as usize)?)))
+            .filter(|(_, star)| boresight.dot(star.direction.vector()) >= self.cos_cone)
+            .collect();
+        near.sort_unstable_by_key(|(place, _)| *place);
+        near.into_iter()
+            .filter_map(|(_, &star)| {
                 let position = model.project_vector(&(matrix * star.direction.vector()))?;
                 model.is_on_detector(position).then_some(PredictedStar { star, position })
             })
             .collect()
+    }
+
+    /// The stars of the declinations that the cone about a direction of the declination with the sine `z` has.
+    fn about(&self, z: f64) -> &[(f64, u32)] {
+        let (cos_cone, sin_cone) = (self.cos_cone, (1.0 - self.cos_cone * self.cos_cone).max(0.0).sqrt());
+        let (middle, half) = (z * cos_cone, (1.0 - z * z).max(0.0).sqrt() * sin_cone + ROUNDING);
+        // A cone with a pole in it has all declinations up to that pole.
+        let from = if z <= -cos_cone { f64::NEG_INFINITY } else { middle - half };
+        let to = if z >= cos_cone { f64::INFINITY } else { middle + half };
+        let before = |limit: f64| self.by_declination.partition_point(|&(sine, _)| sine < limit);
+        self.by_declination.get(before(from)..before(to)).unwrap_or_default()
     }
 }
 
@@ -180,6 +202,39 @@ mod tests {
         ];
         let ids: Vec<u32> = predict(&stars).iter().map(|p| p.star.id).collect();
         assert_eq!(ids, [1, 6]);
+    }
+
+    /// Wherever the camera looks, the poles included: a grid of a degree and a half over the whole sky.
+    #[test]
+    fn no_star_is_passed_over_and_their_order_is_the_lists() {
+        let model = argon();
+        let stars: Vec<_> = (0..29_000)
+            .map(|i| star(i, 1.5 * f64::from(i % 240), f64::from(i / 240) * 1.5 - 90.0, 3.0))
+            .collect();
+        let list = StarList::new(&stars, 7.0, &model);
+        for (dec_deg, turn_deg) in [-90.0, -85.0, -79.0, -40.0, 0.0, 13.0, 66.0, 78.3, 84.0, 90.0_f64]
+            .into_iter()
+            .zip([0.0, 20.0, 45.0, 90.0, 300.0, 170.0, 200.0, 250.0, 33.0, 80.0_f64])
+        {
+            let boresight = Direction::from_ra_dec(Angle::from_degrees(311.0), Angle::from_degrees(dec_deg));
+            let z = *boresight.vector();
+            let any = if z.z.abs() < 0.5 { nalgebra::Vector3::z() } else { nalgebra::Vector3::x() };
+            let (x, y) = (any.cross(&z).normalize(), z.cross(&any.cross(&z).normalize()));
+            let (sin, cos) = libm::sincos(turn_deg.to_radians());
+            let attitude = Rotation::from_axes(&(cos * x + sin * y), &(cos * y - sin * x), &z);
+            let all: Vec<u32> = stars
+                .iter()
+                .filter(|star| {
+                    let there = attitude.matrix() * star.direction.vector();
+                    there.z > 0.5
+                        && model.project_vector(&there).is_some_and(|place| model.is_on_detector(place))
+                })
+                .map(|star| star.id)
+                .collect();
+            let got: Vec<u32> = list.predict(&attitude, &model).iter().map(|found| found.star.id).collect();
+            assert!(all.len() > 80, "{dec_deg}: {}", all.len());
+            assert_eq!(got, all, "{dec_deg}");
+        }
     }
 
     #[test]

@@ -12,11 +12,11 @@ pub(super) struct Background {
     pub(super) smooth: Option<(SmoothField, f64)>,
     /// Electrons of light above those, row by row; empty when there are none.
     pub(super) field: Vec<f64>,
-    /// Factors of the light, row by row; where it ends they are 1.
+    /// Factors of the light; where there are none they are 1.
     pub(super) response: Option<PixelFactors>,
     /// Flat electrons that no response changes.
     pub(super) dark_e: f64,
-    /// Electrons that no response changes, and a factor of each pixel for them, row by row; where it ends there are none.
+    /// Electrons that no response changes, and a factor of each pixel for them; where there is no factor there are none.
     pub(super) pattern: Option<(f64, PixelFactors)>,
 }
 
@@ -35,20 +35,24 @@ impl Background {
             }
             None => out.fill(self.light_e),
         }
-        if let Some(field) = self.field.get(pixels.clone()) {
+        if let Some(field) = self.field.get(pixels) {
             for (out, field) in out.iter_mut().zip(field) {
                 *out += field;
             }
         }
-        if let Some(response) = self.response.as_ref().and_then(|response| response.get(pixels.clone())) {
-            for (out, &response) in out.iter_mut().zip(response) {
-                *out *= f64::from(response);
+        if let Some(response) = self.response.as_ref().filter(|response| response.has_row(y, columns)) {
+            for (pixels, factors) in response.span(x, y, out.len()) {
+                for (out, &factor) in out[pixels].iter_mut().zip(factors) {
+                    *out *= f64::from(factor);
+                }
             }
         }
-        match self.pattern.as_ref().and_then(|(e, factors)| Some((e, factors.get(pixels)?))) {
+        match self.pattern.as_ref().filter(|(_, factors)| factors.has_row(y, columns)) {
             Some((electrons, factors)) => {
-                for (out, &factor) in out.iter_mut().zip(factors) {
-                    *out += self.dark_e + electrons * f64::from(factor);
+                for (pixels, factors) in factors.span(x, y, out.len()) {
+                    for (out, &factor) in out[pixels].iter_mut().zip(factors) {
+                        *out += self.dark_e + electrons * f64::from(factor);
+                    }
                 }
             }
             None => {
@@ -62,20 +66,20 @@ impl Background {
     /// [`Background::span`] of one pixel of an image of `columns`, by the same steps.
     pub(super) fn at(&self, x: usize, y: usize, columns: usize) -> f64 {
         let index = y * columns + x;
-        // A pattern ends at the end of a row, as `span` takes it.
-        let of_row = |length: usize| length >= (y + 1) * columns;
         let mut electrons = match &self.smooth {
             Some((smooth, scale)) => self.light_e + scale * smooth.at(x, y),
             None => self.light_e,
         };
-        if let Some(field) = self.field.get(index).filter(|_| of_row(self.field.len())) {
+        if let Some(field) = self.field.get(index).filter(|_| self.field.len() >= (y + 1) * columns) {
             electrons += field;
         }
-        if let Some(response) = self.response.as_ref().filter(|response| of_row(response.len())) {
-            electrons *= f64::from(response[index]);
+        let of_pixel =
+            |factors: &PixelFactors| factors.at(x, y).filter(|_| factors.has_row(y, columns)).map(f64::from);
+        if let Some(response) = self.response.as_ref().and_then(of_pixel) {
+            electrons *= response;
         }
-        match self.pattern.as_ref().filter(|(_, factors)| of_row(factors.len())) {
-            Some((e, factors)) => electrons + (self.dark_e + e * f64::from(factors[index])),
+        match self.pattern.as_ref().and_then(|(e, factors)| Some((e, of_pixel(factors)?))) {
+            Some((e, factor)) => electrons + (self.dark_e + e * factor),
             None => electrons + self.dark_e,
         }
     }

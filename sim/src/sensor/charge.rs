@@ -171,7 +171,8 @@ mod tests {
         let charge = sensor.collect(&mut image, &opening(2.0));
         for (index, electrons) in charge.expected().iter().enumerate() {
             let (x, y) = (index % 65, index / 65);
-            let (response, dark) = (sensor.pattern().response[index], sensor.pattern().dark[index]);
+            let pattern = sensor.pattern();
+            let (response, dark) = (pattern.response.at(x, y).unwrap(), pattern.dark.at(x, y).unwrap());
             let hot = sensor.hot_pixels().iter().find(|hot| (hot.x, hot.y) == (x, y));
             let expected = if sensor.pattern().is_dead(x, y) {
                 0.0

@@ -53,7 +53,7 @@ impl FixedPatternConfig {
     }
 }
 
-/// The fixed pattern of a detector, made once. Row by row; empty where an effect is off.
+/// The fixed pattern of a detector, made once; empty where an effect is off.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct FixedPattern {
     /// Sensitivity of each pixel, of mean 1.
@@ -109,9 +109,11 @@ impl FixedPattern {
         };
         let offset = |x| config.column_offset_e * standard(Effect::ColumnOffset, x);
         let offsets = 0..if config.column_offset_e > 0.0 { columns } else { 0 };
+        let response = pixels(config.prnu_fraction > 0.0).map(|index| response(index) as f32);
+        let dark = pixels(config.dsnu_fraction > 0.0).map(|index| dark(index) as f32);
         Ok(Self {
-            response: pixels(config.prnu_fraction > 0.0).map(|index| response(index) as f32).collect(),
-            dark: pixels(config.dsnu_fraction > 0.0).map(|index| dark(index) as f32).collect(),
+            response: PixelFactors::new(columns, response),
+            dark: PixelFactors::new(columns, dark),
             column_offsets_e: offsets.map(offset).collect(),
             dead: dead(config, seed, columns, rows)?,
         })
@@ -194,8 +196,8 @@ mod tests {
         gaps.fold(0.0, f64::max) * n.sqrt()
     }
 
-    fn widened(values: &[f32]) -> Vec<f64> {
-        values.iter().map(|&value| f64::from(value)).collect()
+    fn widened(factors: &PixelFactors) -> Vec<f64> {
+        factors.iter().map(f64::from).collect()
     }
 
     #[test]
@@ -224,7 +226,7 @@ mod tests {
             let config =
                 FixedPatternConfig { prnu_fraction: 0.3, dsnu_fraction: 2.0, dsnu_law, ..Default::default() };
             let pattern = FixedPattern::new(&config, 100, 100).unwrap();
-            assert!(pattern.response.iter().chain(pattern.dark.iter()).all(|&factor| factor >= 0.0));
+            assert!(pattern.response.iter().chain(pattern.dark.iter()).all(|factor| factor >= 0.0));
         }
     }
 

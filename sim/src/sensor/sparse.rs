@@ -24,6 +24,7 @@
 //! drawn from tables: there all pixels are drawn outright.
 
 use contract::Window;
+use pulp::Simd;
 
 use super::blooming::Overflow;
 use super::charge::Charge;
@@ -37,7 +38,7 @@ use crate::SimError;
 use crate::draw::{ExpectedImage, PIECE};
 use crate::lanes::{LANES, Lanes};
 use crate::randomness::{Effect, Seed, Streams, uniform};
-use crate::widest::arch;
+use crate::widest::{Work, arch, widest};
 
 /// What a frame is read out from.
 pub(crate) struct Collected<'a> {
@@ -80,15 +81,9 @@ impl Sensor {
             return self.read_out(charge, &seed, frame, laws, image.whole());
         }
         self.check_size(expected)?;
-        let exceedances = seed.streams(frame, Effect::Exceedance);
+        let streams = &seed.streams(frame, Effect::Exceedance);
         let exceedance = laws.exceedance(&self.law, floor_dn);
-        for y in 0..self.rows {
-            let bound_e = expected.row_bound_e(y);
-            let limit = exceedance.dark_limit(bound_e);
-            image.limits.push(limit);
-            thin_row(expected, y, limit, exceedance, &exceedances, &mut image.exceeding);
-            image.want(y, |p| bound_e > limit.mean_e || expected.may_rise_above(y, p, bound_e, limit.mean_e));
-        }
+        widest(Look { expected, exceedance, streams, rows: self.rows, image });
         self.draw_wanted(collected, laws, image);
         if let Some(blooming) = &self.config().blooming {
             let streams = seed.streams(frame, Effect::PixelNoise);
@@ -129,6 +124,33 @@ impl Sensor {
         let tables = laws.own_means(law);
         // The same steps on every machine, on the widest registers that it has.
         arch().dispatch(OwnMeansPieces { task, tables, image });
+    }
+}
+
+/// The first step, and a look at which pieces the second is for.
+struct Look<'a> {
+    expected: &'a ExpectedImage,
+    exceedance: &'a mut Exceedance,
+    streams: &'a Streams,
+    rows: usize,
+    image: &'a mut SparseImage,
+}
+
+impl Work for Look<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { expected, exceedance, streams, rows, image } = self;
+        for y in 0..rows {
+            let bound_e = expected.row_bound_e(y);
+            let limit = exceedance.dark_limit(bound_e);
+            image.limits.push(limit);
+            thin_row(expected, y, limit, exceedance, streams, &mut image.exceeding);
+            image.want(y, |p| {
+                bound_e > limit.mean_e || expected.may_rise_above(simd, y, p, bound_e, limit.mean_e)
+            });
+        }
     }
 }
 
@@ -227,7 +249,7 @@ impl pulp::WithSimd for OwnMeansPieces<'_> {
 
     // Inline, all of it: only so is it compiled for the registers of the machine.
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, _: S) {
         let Self { task, tables, image } = self;
         let floor_dn = image.floor_dn;
         for y in 0..task.rows {

@@ -98,6 +98,7 @@ impl SparseImage {
     }
 
     /// Asks for the pieces of a row in which `is_wanted`.
+    #[inline(always)]
     pub(super) fn want(&mut self, y: usize, is_wanted: impl Fn(usize) -> bool) {
         let pieces = self.pieces.chunks_exact_mut(self.pieces_per_row.max(1)).nth(y).unwrap_or_default();
         for (p, piece) in pieces.iter_mut().enumerate() {
