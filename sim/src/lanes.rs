@@ -16,7 +16,7 @@ pub(crate) struct Lanes {
 
 impl Lanes {
     /// The generators at a place of one effect in one frame. A place uses these or its stream.
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn at(streams: &Streams, place: u64) -> Self {
         let base = streams.key_of(place);
         let state = std::array::from_fn(|part| {

@@ -7,6 +7,8 @@
 //! Pixels are drawn in pieces, in three short loops over each: where the cell of a pixel is, its cell, its number. The first
 //! and the last are arithmetic alike for all pixels, which a machine with wide registers does for many at once.
 
+use pulp::Simd;
+
 use super::alias::AliasTable;
 use super::pixel_law::PixelLaw;
 use super::poisson_digits::by_inversion;
@@ -57,15 +59,17 @@ impl OwnMeans {
     /// Draws the pixels of a row, each of a mean of its own, electrons (one below 0 is taken for 0), from the words of `lanes`,
     /// one a pixel. `own` tells the stream of a pixel's own address.
     #[inline(always)]
-    pub(super) fn draw_row(
+    pub(super) fn draw_row<S: Simd>(
         &mut self,
+        simd: S,
         means_e: &[f64],
         mut lanes: Lanes,
         row: &mut [u16],
         own: impl Fn(usize) -> Stream,
     ) {
+        let mut words = Words::new();
         for (p, (row, means_e)) in row.chunks_mut(PIECE).zip(means_e.chunks(PIECE)).enumerate() {
-            let words = next_words(&mut lanes);
+            words.draw(simd, &mut lanes);
             self.draw_piece(means_e, &words, row, |i| own(p * PIECE + i));
         }
     }
@@ -75,7 +79,7 @@ impl OwnMeans {
     pub(super) fn draw_piece(
         &mut self,
         means_e: &[f64],
-        words: &[u64; PIECE],
+        words: &Words,
         piece: &mut [u16],
         own: impl Fn(usize) -> Stream,
     ) {
@@ -85,7 +89,7 @@ impl OwnMeans {
         }
         let mut places = [0; PIECE];
         for i in 0..PIECE {
-            places[i] = self.place(Choice::of(means[i], words[i]).table(), words[i]);
+            places[i] = self.place(Choice::of(means[i], words.upper[i]).table(), words.lower[i]);
         }
         self.pick(&places, words, means_e, piece, own);
     }
@@ -98,20 +102,19 @@ impl OwnMeans {
         even: &EvenMean,
         is_lit: &[bool],
         means_e: &[f64],
-        words: &[u64; PIECE],
+        words: &Words,
         piece: &mut [u16],
         own: impl Fn(usize) -> Stream,
     ) {
         let mut places = [0; PIECE];
         for i in 0..PIECE {
-            places[i] = self.place(even.table(words[i]), words[i]);
+            places[i] = self.place(even.table(words.upper[i]), words.lower[i]);
         }
         for (part, _) in is_lit.iter().enumerate().filter(|(_, is_lit)| **is_lit) {
             let pixels = part * PART..((part + 1) * PART).min(means_e.len());
-            for ((place, &word), &mean_e) in
-                places[pixels.clone()].iter_mut().zip(&words[pixels.clone()]).zip(&means_e[pixels])
-            {
-                *place = self.place(Choice::of(mean_e.max(0.0) as f32, word).table(), word);
+            for i in pixels {
+                let choice = Choice::of(means_e[i].max(0.0) as f32, words.upper[i]);
+                places[i] = self.place(choice.table(), words.lower[i]);
             }
         }
         self.pick(&places, words, means_e, piece, own);
@@ -122,7 +125,7 @@ impl OwnMeans {
     fn pick(
         &mut self,
         places: &[u32; PIECE],
-        words: &[u64; PIECE],
+        words: &Words,
         means_e: &[f64],
         piece: &mut [u16],
         own: impl Fn(usize) -> Stream,
@@ -133,15 +136,19 @@ impl OwnMeans {
         for i in 0..PIECE {
             cells[i] = all.get(places[i] as usize).copied().unwrap_or(0);
         }
+        let (mut levels, mut pairs) = ([0; PIECE], [0; PIECE]);
+        for i in 0..PIECE {
+            (levels[i], pairs[i]) = halves(cells[i]);
+        }
         let mut numbers = [0; PIECE];
         for i in 0..PIECE {
-            numbers[i] = self.number(cells[i], words[i]);
+            numbers[i] = self.number(levels[i], pairs[i], words.lower[i]) as u16;
         }
         piece.copy_from_slice(&numbers[..piece.len()]);
         if cells.iter().fold(false, |open, &cell| open | is_open(cell)) {
             for (i, (number, mean_e)) in piece.iter_mut().zip(means_e).enumerate() {
                 if is_open(cells[i]) {
-                    *number = self.draw(*mean_e, words[i], || own(i));
+                    *number = self.draw(*mean_e, words.at(i), || own(i));
                 }
             }
         }
@@ -151,10 +158,14 @@ impl OwnMeans {
     /// the digital number. `own` is the stream of the pixel's own address.
     fn draw(&mut self, mean_e: f64, word: u64, own: impl FnOnce() -> Stream) -> u16 {
         let mean = mean_e.max(0.0) as f32;
-        let choice = Choice::of(mean, word);
-        let place = self.place(choice.table(), word) as usize;
+        let choice = Choice::of(mean, (word >> 32) as u32);
+        let place = self.place(choice.table(), word as u32) as usize;
         let cell = self.cells.get(place).copied().unwrap_or(0);
-        if !is_open(cell) { self.number(cell, word) } else { self.draw_open(mean_e, choice, word, own()) }
+        if is_open(cell) {
+            return self.draw_open(mean_e, choice, word, own());
+        }
+        let (level, pair) = halves(cell);
+        self.number(level, pair, word as u32) as u16
     }
 
     /// The same where there is no table, or not yet.
@@ -181,28 +192,70 @@ impl OwnMeans {
         table.draw(word as u32)
     }
 
-    /// Where the cell of a word in a table is.
+    /// Where in a table the cell of a word is, by its lower half.
     #[inline(always)]
-    fn place(&self, table: u32, word: u64) -> u32 {
-        (table << self.log2_cells) + (word as u32 >> (32 - self.log2_cells))
+    fn place(&self, table: u32, lower: u32) -> u32 {
+        (table << self.log2_cells) + (lower >> (32 - self.log2_cells))
     }
 
-    /// The number that a word picks of its cell.
+    /// The number that a word picks of its cell, by its lower half.
     #[inline(always)]
-    fn number(&self, cell: u64, word: u64) -> u16 {
-        let side = word as u32 & (u32::MAX >> self.log2_cells);
-        if side < cell as u32 { (cell >> 32) as u16 } else { (cell >> 48) as u16 }
+    fn number(&self, level: u32, pair: u32, lower: u32) -> u32 {
+        let side = lower & (u32::MAX >> self.log2_cells);
+        if side < level { pair & 0xffff } else { pair >> 16 }
     }
 }
 
-/// The words of the next piece.
-#[inline(always)]
-pub(super) fn next_words(lanes: &mut Lanes) -> [u64; PIECE] {
-    let mut words = [0; PIECE];
-    for words in words.as_chunks_mut::<LANES>().0 {
-        *words = lanes.next();
+/// The words of a piece, one a pixel, in halves: of numbers of 32 bits a register holds twice as many.
+pub(super) struct Words {
+    upper: [u32; PIECE],
+    lower: [u32; PIECE],
+}
+
+impl Words {
+    /// None drawn yet.
+    pub(super) fn new() -> Self {
+        Self { upper: [0; PIECE], lower: [0; PIECE] }
     }
-    words
+
+    /// Makes them those of the next piece.
+    #[inline(always)]
+    pub(super) fn draw<S: Simd>(&mut self, simd: S, lanes: &mut Lanes) {
+        // A function of its own: among all that is done with a piece the generators would be taken apart into single numbers.
+        simd.vectorize(DrawWords { words: self, lanes });
+    }
+
+    fn at(&self, i: usize) -> u64 {
+        u64::from(self.upper[i]) << 32 | u64::from(self.lower[i])
+    }
+}
+
+/// [`Words::draw`].
+struct DrawWords<'a> {
+    words: &'a mut Words,
+    lanes: &'a mut Lanes,
+}
+
+impl pulp::WithSimd for DrawWords<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { words: Words { upper, lower }, lanes } = self;
+        let eights = upper.as_chunks_mut::<LANES>().0.iter_mut().zip(lower.as_chunks_mut::<LANES>().0);
+        for (upper, lower) in eights {
+            let words = lanes.next();
+            for lane in 0..LANES {
+                (lower[lane], upper[lane]) = halves(words[lane]);
+            }
+        }
+    }
+}
+
+/// The lower and the upper half of a word or a cell; of a cell the level up to which its first number is picked, and its two numbers.
+#[inline(always)]
+fn halves(word: u64) -> (u32, u32) {
+    (word as u32, (word >> 32) as u32)
 }
 
 /// Whether a cell tells no number, because its table is missing, or because no table decides.
@@ -224,11 +277,11 @@ struct Choice {
 impl Choice {
     /// Of a mean from 0 on.
     ///
-    /// n is decided to 2^-24, and the mean is rounded to the 24 bits of its float.
+    /// n is decided to 2^-24, by the highest bits of the upper half of a word, and the mean is rounded to the 24 bits of its float.
     #[inline(always)]
-    fn of(mean: f32, word: u64) -> Self {
+    fn of(mean: f32, upper: u32) -> Self {
         let (quarters, rest) = node_of(mean);
-        let u = (word >> 40) as i32 as f32 * (1.0 / TWO_TO_24);
+        let u = (upper >> 8) as i32 as f32 * (1.0 / TWO_TO_24);
         let at_most = n_at_most(rest);
         let more = i32::from(u >= at_most[0]) + i32::from(u >= at_most[1]) + i32::from(u >= at_most[2]);
         Self { quarters, rest, more }
@@ -261,8 +314,8 @@ impl EvenMean {
     }
 
     #[inline(always)]
-    fn table(&self, word: u64) -> u32 {
-        let u = (word >> 40) as i32;
+    fn table(&self, upper: u32) -> u32 {
+        let u = (upper >> 8) as i32;
         let [one, two, three] = self.steps.map(|step| u >= step);
         if three { TABLES as u32 } else { self.first + u32::from(one) + u32::from(two) }
     }
@@ -347,7 +400,7 @@ mod tests {
             let mut counts = vec![0; 4096];
             for y in 0..(draws / row.len()) as u64 {
                 let own = |x: usize| streams.at((1 << 40) + (y << 10) + x as u64);
-                tables.draw_row(&means, Lanes::at(&streams, y), &mut row, own);
+                tables.draw_row(pulp::Scalar::new(), &means, Lanes::at(&streams, y), &mut row, own);
                 row.iter().for_each(|&dn| counts[usize::from(dn)] += 1);
             }
             let p = chi_square_p(&counts, &from_zero(&law.probabilities(mean_e, 0)));
@@ -392,7 +445,9 @@ mod tests {
         let means: Vec<f64> = (0..1003).map(|x| f64::from(x) * 0.31 - 2.0).collect();
         let mut row = vec![0; means.len()];
         for y in [0, 0, 1] {
-            by_row.draw_row(&means, Lanes::at(&streams, y), &mut row, |x| streams.at(10 + x as u64));
+            by_row.draw_row(pulp::Scalar::new(), &means, Lanes::at(&streams, y), &mut row, |x| {
+                streams.at(10 + x as u64)
+            });
             let mut lanes = Lanes::at(&streams, y);
             let words: Vec<u64> = (0..126).flat_map(|_| lanes.next()).collect();
             for (x, (dn, mean_e)) in row.iter().zip(&means).enumerate() {

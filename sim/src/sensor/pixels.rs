@@ -4,7 +4,7 @@ use rand::Rng;
 
 use super::config::Switch;
 use super::flat_laws::FlatLaws;
-use super::own_means::{EvenMean, OwnMeans, PART, next_words};
+use super::own_means::{EvenMean, OwnMeans, PART, Words};
 use super::poisson_digits::PoissonDigits;
 use super::raw_image::RawImage;
 use super::readout::Sensor;
@@ -132,18 +132,19 @@ impl pulp::WithSimd for OwnMeansFrame<'_> {
 
     // Inline, all of it: only so is it compiled for the registers of the machine.
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { expected, streams, tables, raw } = self;
         let (columns, rows) = (raw.columns, raw.rows);
         let even = (!expected.has_field()).then(|| EvenMean::new(expected.flat_e()));
         let mut means = vec![0.0; columns];
         let mut is_lit = vec![true; columns.div_ceil(PART)];
+        let mut words = Words::new();
         for (y, row) in raw.dn.chunks_exact_mut(columns.max(1)).enumerate() {
             let own = |x: usize| streams.at((rows + y * columns + x) as u64);
             let mut lanes = Lanes::at(streams, y as u64);
             let Some(even) = &even else {
                 expected.row(y, &mut means);
-                tables.draw_row(&means, lanes, row, own);
+                tables.draw_row(simd, &means, lanes, row, own);
                 continue;
             };
             expected.lit_parts::<PART>(y, &mut is_lit);
@@ -154,7 +155,7 @@ impl pulp::WithSimd for OwnMeansFrame<'_> {
             }
             let pieces = row.chunks_mut(PIECE).zip(means.chunks(PIECE)).zip(is_lit.chunks(PIECE / PART));
             for (p, ((row, means_e), is_lit)) in pieces.enumerate() {
-                let words = next_words(&mut lanes);
+                words.draw(simd, &mut lanes);
                 let own = |i: usize| own(p * PIECE + i);
                 tables.draw_mostly_even_piece(even, is_lit, means_e, &words, row, own);
             }

@@ -30,7 +30,7 @@ use super::blooming::Overflow;
 use super::charge::Charge;
 use super::exceedance::{DarkLimit, Exceedance};
 use super::flat_laws::FlatLaws;
-use super::own_means::{OwnMeans, next_words};
+use super::own_means::{OwnMeans, Words};
 use super::pixel_law::PixelLaw;
 use super::readout::Sensor;
 use super::sparse_image::{Piece, Pixel, SparseImage};
@@ -249,9 +249,10 @@ impl pulp::WithSimd for OwnMeansPieces<'_> {
 
     // Inline, all of it: only so is it compiled for the registers of the machine.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { task, tables, image } = self;
         let floor_dn = image.floor_dn;
+        let mut words = Words::new();
         for y in 0..task.rows {
             let pieces = &mut image.pieces[y * image.pieces_per_row..(y + 1) * image.pieces_per_row];
             if !pieces.contains(&Piece::Wanted) {
@@ -268,7 +269,7 @@ impl pulp::WithSimd for OwnMeansPieces<'_> {
                 }
                 next = p + 1;
                 *piece = Piece::Drawn;
-                let words = next_words(&mut lanes);
+                words.draw(simd, &mut lanes);
                 let first = y * task.columns + p * PIECE;
                 let length = PIECE.min(task.columns - p * PIECE);
                 let mut means_e = [0.0; PIECE];
