@@ -267,7 +267,13 @@ impl ExpectedImage {
     /// [`ExpectedImage::row`] of piece `p` alone; `out` is as long as the piece.
     #[inline(always)]
     pub(crate) fn piece(&self, y: usize, p: usize, out: &mut [f64]) {
-        self.span::<PIECE>(p * PIECE, y, out);
+        self.part::<PIECE>(y, p, out);
+    }
+
+    /// [`ExpectedImage::row`] of part `p` of `N` pixels alone; `out` is as long as the part.
+    #[inline(always)]
+    pub(crate) fn part<const N: usize>(&self, y: usize, p: usize, out: &mut [f64]) {
+        self.span::<N>(p * N, y, out);
     }
 
     /// Of each `N` pixels of row `y`, whether something was drawn in any of them.

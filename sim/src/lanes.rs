@@ -1,5 +1,7 @@
 //! Random words for bulk draws: eight generators side by side, which a machine with wide registers steps at once.
 
+use pulp::{Simd, WithSimd};
+
 use crate::randomness::{GOLDEN_GAMMA, Streams, split_mix};
 
 /// Generators side by side.
@@ -45,6 +47,73 @@ impl Lanes {
         }
         words
     }
+
+    /// Steps every generator `times` times; `tell` is told the number of the step and its words.
+    ///
+    /// To be called in a function of its own ([`Simd::vectorize`]): among much else the generators would not stay in registers.
+    #[inline(always)]
+    pub(crate) fn steps<S: Simd>(&mut self, _: S, times: usize, mut tell: impl FnMut(usize, [u64; LANES])) {
+        #[cfg(target_arch = "x86_64")]
+        if std::any::TypeId::of::<S>() == std::any::TypeId::of::<pulp::x86::V3>()
+            && let Some(registers) = pulp::x86::V3::try_new()
+        {
+            return avx2::steps(registers, self, times, tell);
+        }
+        for step in 0..times {
+            tell(step, self.next());
+        }
+    }
+
+    /// Leaves out the words of so many steps.
+    #[inline(always)]
+    pub(crate) fn skip<S: Simd>(&mut self, simd: S, times: usize) {
+        struct Skip<'a>(&'a mut Lanes, usize);
+        impl WithSimd for Skip<'_> {
+            type Output = ();
+            #[inline(always)]
+            fn with_simd<S: Simd>(self, simd: S) {
+                self.0.steps(simd, self.1, |_, _| ());
+            }
+        }
+        if times > 0 {
+            simd.vectorize(Skip(self, times));
+        }
+    }
+}
+
+/// The same steps told to AVX2 one by one: it has no rotation, and the compiler does one of them for each number alone.
+#[cfg(target_arch = "x86_64")]
+mod avx2 {
+    use pulp::x86::V3;
+    use pulp::{cast, u64x4};
+
+    use super::{LANES, Lanes};
+
+    /// Registers for a part of the state of all generators.
+    const REGISTERS: usize = 2;
+
+    #[inline(always)]
+    pub(super) fn steps(v: V3, lanes: &mut Lanes, times: usize, mut tell: impl FnMut(usize, [u64; LANES])) {
+        let mut state: [[u64x4; REGISTERS]; 4] = lanes.state.map(cast);
+        for step in 0..times {
+            let [s0, s1, s2, s3] = &mut state;
+            let mut words = [u64x4(0, 0, 0, 0); REGISTERS];
+            for i in 0..REGISTERS {
+                let sum = v.wrapping_add_u64x4(s0[i], s3[i]);
+                let rotated = v.or_u64x4(v.shl_const_u64x4::<23>(sum), v.shr_const_u64x4::<41>(sum));
+                words[i] = v.wrapping_add_u64x4(rotated, s0[i]);
+                let shifted = v.shl_const_u64x4::<17>(s1[i]);
+                s2[i] = v.xor_u64x4(s2[i], s0[i]);
+                s3[i] = v.xor_u64x4(s3[i], s1[i]);
+                s1[i] = v.xor_u64x4(s1[i], s2[i]);
+                s0[i] = v.xor_u64x4(s0[i], s3[i]);
+                s2[i] = v.xor_u64x4(s2[i], shifted);
+                s3[i] = v.or_u64x4(v.shl_const_u64x4::<45>(s3[i]), v.shr_const_u64x4::<19>(s3[i]));
+            }
+            tell(step, cast(words));
+        }
+        lanes.state = state.map(cast);
+    }
 }
 
 #[cfg(test)]
@@ -72,6 +141,33 @@ mod tests {
                 assert_eq!(*word, stream.next_u64());
             }
         }
+    }
+
+    #[test]
+    fn steps_and_what_is_skipped_are_the_same_on_all_registers() {
+        struct Steps(Lanes);
+        impl WithSimd for Steps {
+            type Output = Vec<[u64; LANES]>;
+            fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
+                let mut told = Vec::new();
+                for times in [1, 8, 0, 3] {
+                    self.0.steps(simd, times, |step, words| {
+                        assert!(step < times);
+                        told.push(words);
+                    });
+                    self.0.skip(simd, times);
+                }
+                told
+            }
+        }
+        let streams = Seed { seed: 42, case: 3 }.streams(7, Effect::PixelNoise);
+        let mut lanes = Lanes::at(&streams, 99);
+        let all: Vec<_> = (0..24).map(|_| lanes.next()).collect();
+        let expected = [&all[..1], &all[2..10], &all[18..21]].concat();
+        for registers in crate::widest::tests::registers() {
+            assert_eq!(registers.dispatch(Steps(Lanes::at(&streams, 99))), expected, "{registers:?}");
+        }
+        assert_eq!(pulp::Arch::Scalar.dispatch(Steps(Lanes::at(&streams, 99))), expected);
     }
 
     /// Words of neighbouring lanes, and of the same lane at neighbouring places, differ in half of their bits.

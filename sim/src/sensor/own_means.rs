@@ -221,7 +221,6 @@ impl Words {
     /// Makes them those of the next piece.
     #[inline(always)]
     pub(super) fn draw<S: Simd>(&mut self, simd: S, lanes: &mut Lanes) {
-        // A function of its own: among all that is done with a piece the generators would be taken apart into single numbers.
         simd.vectorize(DrawWords { words: self, lanes });
     }
 
@@ -240,15 +239,14 @@ impl pulp::WithSimd for DrawWords<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { words: Words { upper, lower }, lanes } = self;
-        let eights = upper.as_chunks_mut::<LANES>().0.iter_mut().zip(lower.as_chunks_mut::<LANES>().0);
-        for (upper, lower) in eights {
-            let words = lanes.next();
+        let (upper, lower) = (upper.as_chunks_mut::<LANES>().0, lower.as_chunks_mut::<LANES>().0);
+        lanes.steps(simd, PIECE / LANES, |step, words| {
             for lane in 0..LANES {
-                (lower[lane], upper[lane]) = halves(words[lane]);
+                (lower[step][lane], upper[step][lane]) = halves(words[lane]);
             }
-        }
+        });
     }
 }
 

@@ -136,7 +136,8 @@ impl pulp::WithSimd for OwnMeansFrame<'_> {
         let Self { expected, streams, tables, raw } = self;
         let (columns, rows) = (raw.columns, raw.rows);
         let even = (!expected.has_field()).then(|| EvenMean::new(expected.flat_e()));
-        let mut means = vec![0.0; columns];
+        // Of an even background, always those of a row on which nothing was drawn.
+        let mut means = vec![expected.flat_e(); columns];
         let mut is_lit = vec![true; columns.div_ceil(PART)];
         let mut words = Words::new();
         for (y, row) in raw.dn.chunks_exact_mut(columns.max(1)).enumerate() {
@@ -148,10 +149,8 @@ impl pulp::WithSimd for OwnMeansFrame<'_> {
                 continue;
             };
             expected.lit_parts::<PART>(y, &mut is_lit);
-            if is_lit.contains(&true) {
-                expected.row(y, &mut means);
-            } else {
-                means.fill(expected.flat_e());
+            for (part, means_e) in lit(&is_lit, &mut means) {
+                expected.part::<PART>(y, part, means_e);
             }
             let pieces = row.chunks_mut(PIECE).zip(means.chunks(PIECE)).zip(is_lit.chunks(PIECE / PART));
             for (p, ((row, means_e), is_lit)) in pieces.enumerate() {
@@ -159,8 +158,16 @@ impl pulp::WithSimd for OwnMeansFrame<'_> {
                 let own = |i: usize| own(p * PIECE + i);
                 tables.draw_mostly_even_piece(even, is_lit, means_e, &words, row, own);
             }
+            lit(&is_lit, &mut means).for_each(|(_, means_e)| means_e.fill(expected.flat_e()));
         }
     }
+}
+
+/// The parts of a row that are lit, by number, and the means of their pixels.
+#[inline(always)]
+fn lit<'a>(is_lit: &'a [bool], means_e: &'a mut [f64]) -> impl Iterator<Item = (usize, &'a mut [f64])> {
+    let parts = means_e.chunks_mut(PART).enumerate().zip(is_lit);
+    parts.filter(|(_, is_lit)| **is_lit).map(|(part, _)| part)
 }
 
 #[cfg(test)]

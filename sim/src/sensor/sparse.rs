@@ -264,9 +264,7 @@ impl pulp::WithSimd for OwnMeansPieces<'_> {
                 if *piece != Piece::Wanted {
                     continue;
                 }
-                for _ in next * PIECE / LANES..p * PIECE / LANES {
-                    lanes.next();
-                }
+                lanes.skip(simd, (p - next) * PIECE / LANES);
                 next = p + 1;
                 *piece = Piece::Drawn;
                 words.draw(simd, &mut lanes);
