@@ -107,8 +107,8 @@ impl OwnMeans {
         own: impl Fn(usize) -> Stream,
     ) {
         let mut places = [0; PIECE];
-        for i in 0..PIECE {
-            places[i] = self.place(even.table(words.upper[i]), words.lower[i]);
+        for (i, place) in places.iter_mut().enumerate() {
+            *place = self.place(even.table(words.upper[i]), words.lower[i]);
         }
         for (part, _) in is_lit.iter().enumerate().filter(|(_, is_lit)| **is_lit) {
             let pixels = part * PART..((part + 1) * PART).min(means_e.len());
