@@ -361,8 +361,8 @@ impl ExpectedImage {
             return columns;
         }
         // Then only something drawn can be above it.
+        let simd = pulp::Scalar::new();
         for y in 0..self.rows {
-            let simd = pulp::Scalar::new();
             for p in (0..self.words_per_row).filter(|&p| self.may_rise_above(simd, y, p, bound_e, limit_e)) {
                 let piece = columns.iter_mut().enumerate().skip(p * PIECE).take(PIECE);
                 piece.filter(|(x, _)| self.at(*x, y) > limit_e).for_each(|(_, rows)| extend(rows, y));
