@@ -1,6 +1,9 @@
 //! Scenarios that are embedded in the binary.
 
+use std::path::Path;
+
 use super::FarRangeScenario;
+use crate::toml_file;
 
 /// A file of the folder `scenarios/`, embedded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,7 +25,8 @@ pub const BUILT_IN: &[BuiltIn] = &[
 /// figures that the paper publishes stand beside its own.
 pub fn is_argon(scenario: &FarRangeScenario) -> bool {
     let built_in = BUILT_IN.iter().find(|built_in| built_in.name == "argon");
-    let argon = built_in.and_then(|argon| toml::from_str::<FarRangeScenario>(argon.text).ok());
+    let argon =
+        built_in.and_then(|argon| toml_file::parse::<FarRangeScenario>(Path::new("argon"), argon.text).ok());
     argon.is_some_and(|argon| argon.orbit == scenario.orbit && argon.schedule == scenario.schedule)
 }
 

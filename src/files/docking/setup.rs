@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn each_value_outside_its_range_is_named_with_its_line() {
         let directory = tempdir().unwrap();
-        let scenario: DockingScenario = toml::from_str(DOCKING).unwrap();
+        let scenario: DockingScenario = crate::toml_file::parse(Path::new("docking"), DOCKING).unwrap();
         let simulator = sim::docking::DockingSimulator::new(&scenario.simulation(), Path::new(".")).unwrap();
         let good = SetupFile::new(&simulator.setup(), &scenario.docking);
         let good_path = directory.path().join("good.toml");
