@@ -124,20 +124,23 @@ impl<'a> Campaign<'a> {
     /// [`Failure::Usage`] when shards are missing or damaged, or files are there that are none of the plan's.
     pub fn merge(&self) -> Result<CaseTable, Failure> {
         self.store.check_foreign()?;
-        let mut is_all = true;
+        let mut first_missing = None;
         let table = self.gather(|shard| {
             let read = self.store.read(shard, &self.study.table())?;
-            is_all &= read.is_some();
+            if read.is_none() {
+                first_missing = Some(shard);
+            }
             Ok(read.map(|(table, _)| table))
         })?;
-        if is_all { Ok(table) } else { Err(self.missing()?) }
+        first_missing.map_or(Ok(table), |first| Err(self.missing(first)?))
     }
 
-    /// What to say of the shards that are not there.
-    fn missing(&self) -> Result<Failure, Failure> {
+    /// What to say of the shards that are not there, of which one is known. That one is not looked for again: another process may have
+    /// made it since, and the table would still be without it.
+    fn missing(&self, first: u64) -> Result<Failure, Failure> {
         let shards = self.store.plan().shards;
-        let mut missing = Vec::new();
-        for shard in 1..=shards {
+        let mut missing = vec![first.to_string()];
+        for shard in first + 1..=shards {
             if self.store.read(shard, &self.study.table())?.is_none() {
                 missing.push(shard.to_string());
             }
