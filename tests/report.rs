@@ -102,12 +102,12 @@ impl PageText {
     }
 }
 
-/// Holds "2500 of 9000 right answers and all 3 wrong ones" against the points of every panel, rings apart.
+/// Holds "2500 of 9000 right answers and 3 of 3 wrong ones" against the points of every panel, rings apart.
 fn check_points(words: &str, chart: &Value) {
     let told: usize = words
         .split(" and ")
         .map(|part| {
-            let number = part.trim_start_matches("all ").split(' ').next().unwrap();
+            let number = part.split(' ').next().unwrap();
             number.parse::<usize>().unwrap_or_else(|_| panic!("no number in `{words}`"))
         })
         .sum();

@@ -48,10 +48,7 @@ pub(super) fn extremes(count: usize, value: &dyn Fn(usize) -> f64) -> Vec<usize>
 
 /// How much is drawn of clouds of points, by what they are points of; `rings` where their extremes are drawn beside.
 pub(super) fn drawn(clouds: &[(usize, &str)], rings: bool) -> String {
-    let of = |&(count, what): &(usize, &str)| match sampled(count).len() {
-        kept if kept < count => format!("{kept} of {count} {what}"),
-        _ => format!("all {count} {what}"),
-    };
+    let of = |&(count, what): &(usize, &str)| format!("{} of {count} {what}", sampled(count).len());
     let parts: Vec<String> = clouds.iter().filter(|(count, _)| *count > 0).map(of).collect();
     let mut text = format!("Drawn: {}.", parts.join(" and "));
     if clouds.iter().any(|(count, _)| *count > CLOUD) {
@@ -178,10 +175,10 @@ mod tests {
 
     #[test]
     fn a_caption_says_how_many_of_how_many_are_drawn() {
-        assert_eq!(drawn(&[(12, "right"), (0, "wrong")], true), "Drawn: all 12 right.");
+        assert_eq!(drawn(&[(12, "right"), (0, "wrong")], true), "Drawn: 12 of 12 right.");
         let text = drawn(&[(CLOUD + 1, "right"), (3, "wrong")], true);
         assert!(
-            text.starts_with("Drawn: 2500 of 2501 right and all 3 wrong. ") && text.contains("Rings"),
+            text.starts_with("Drawn: 2500 of 2501 right and 3 of 3 wrong. ") && text.contains("Rings"),
             "{text}"
         );
     }
