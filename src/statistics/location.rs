@@ -44,11 +44,9 @@ pub fn median_interval(sequences: &[Vec<f64>]) -> Option<Interval> {
         .collect();
     let ranks = wilson(0.5, effective_size(&below))?;
     let sorted = sorted(sequences);
-    let last = sorted.len() - 1;
-    Some(Interval {
-        low: sorted[((ranks.low * sorted.len() as f64) as usize).min(last)],
-        high: sorted[((ranks.high * sorted.len() as f64) as usize).min(last)],
-    })
+    // Of the rate ½ both bounds are between 0 and 1: there is a value at either.
+    let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied();
+    Some(Interval { low: at(ranks.low)?, high: at(ranks.high)? })
 }
 
 fn sorted(sequences: &[Vec<f64>]) -> Vec<f64> {
