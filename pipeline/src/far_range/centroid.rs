@@ -274,8 +274,9 @@ mod tests {
             offsets().flat_map(|y| offsets().map(move |x| (READOUT.bias_dn + mean(x, y)).round() as u16));
         let frame = Frame::new(0, 21, 21, 12, dn.collect(), None).unwrap();
         let mut detector = Detector::default();
-        detector.look(&frame);
-        let mut blobs = detector.detect(&frame, Thresholds { low_dn: 200, high_dn: 300 }, 150.0, 10).to_vec();
+        let thresholds = Thresholds { low_dn: 200, high_dn: 300 };
+        detector.look(&frame, thresholds);
+        let mut blobs = detector.detect(&frame, thresholds, 150.0, 10).to_vec();
         CentroidFitter::new(Some(SIGMA_PX), READOUT).fit(&frame, &detector, &mut blobs);
         let fitted = blobs[0].fitted.unwrap();
         // Four pixels to either side: five widths of the image.

@@ -56,22 +56,30 @@ pub(super) struct Detector {
     blobs: Vec<Blob>,
     /// Where the pixels of each cluster begin among the members.
     first_members: Vec<usize>,
-    peaks: Peaks,
+    bright: BrightChunks,
 }
 
-/// The largest digital number of each chunk of pixels of a frame; 0 where it holds none that was transmitted.
+/// Which chunks of the pixels of a frame hold a bright one.
 #[derive(Debug, Default)]
-struct Peaks {
-    of_chunks: Vec<u16>,
-    /// Of each chunk, whether it holds transmitted pixels.
+struct BrightChunks {
+    /// One bit a chunk, the lowest of a word first.
+    words: Vec<u64>,
+    /// Of each chunk, whether it holds transmitted pixels: all others are 0.
     holds: Vec<bool>,
+    /// Pixels of full scale.
+    saturated: usize,
 }
 
-impl Peaks {
-    fn find(&mut self, frame: &Frame) {
+/// Chunks of a word.
+const OF_A_WORD: usize = u64::BITS as usize;
+
+impl BrightChunks {
+    /// Makes them those in which a pixel is above `above_dn`, or of full scale.
+    fn find(&mut self, frame: &Frame, above_dn: u16) {
+        let full_scale = frame.full_scale_dn();
         let count = frame.dn().len().div_ceil(CHUNK);
-        self.of_chunks.clear();
-        self.of_chunks.resize(count, 0);
+        self.words.clear();
+        self.words.resize(count.div_ceil(OF_A_WORD), 0);
         self.holds.clear();
         self.holds.resize(count, frame.windows().is_none());
         for window in frame.windows().into_iter().flatten() {
@@ -80,38 +88,57 @@ impl Peaks {
                 self.holds[first / CHUNK..=(first + window.columns - 1) / CHUNK].fill(true);
             }
         }
-        pulp::Arch::new().dispatch(FindPeaks { peaks: self, dn: frame.dn() });
+        let from_dn = above_dn.saturating_add(1).min(full_scale);
+        pulp::Arch::new().dispatch(FindBright { bright: self, dn: frame.dn(), from_dn });
+        let of_full_scale = |chunk: &[u16]| chunk.iter().filter(|&&dn| dn >= full_scale).count();
+        self.saturated = self.chunks(frame).map(|(_, chunk)| of_full_scale(chunk)).sum();
     }
 
-    /// Index of the first pixel of each chunk that has one of `dn` or more, and the chunk, in the order of the frame.
-    fn chunks_from<'a>(&'a self, dn: u16, frame: &'a Frame) -> impl Iterator<Item = (usize, &'a [u16])> {
-        let chunks = frame.dn().chunks(CHUNK).enumerate().zip(&self.of_chunks);
-        chunks.filter(move |(_, peak)| **peak >= dn).map(|((i, chunk), _)| (i * CHUNK, chunk))
+    /// Index of the first pixel of each of them, and its pixels, in the order of the frame.
+    fn chunks<'a>(&'a self, frame: &'a Frame) -> impl Iterator<Item = (usize, &'a [u16])> {
+        let dn = frame.dn();
+        self.words.iter().enumerate().filter(|(_, word)| **word != 0).flat_map(move |(i, &word)| {
+            // Each word is the one before without its lowest one.
+            std::iter::successors(Some(word), |word| Some(word & word.wrapping_sub(1)))
+                .take_while(|word| *word != 0)
+                .map(move |word| {
+                    let first = (i * OF_A_WORD + word.trailing_zeros() as usize) * CHUNK;
+                    (first, &dn[first..(first + CHUNK).min(dn.len())])
+                })
+        })
     }
 }
 
-/// The peaks of the chunks of an image, on the widest registers of the machine.
-struct FindPeaks<'a> {
-    peaks: &'a mut Peaks,
+/// The bright chunks of an image, on the widest registers of the machine.
+struct FindBright<'a> {
+    bright: &'a mut BrightChunks,
     dn: &'a [u16],
+    from_dn: u16,
 }
 
-impl pulp::WithSimd for FindPeaks<'_> {
+impl pulp::WithSimd for FindBright<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        let Self { peaks: Peaks { of_chunks, holds }, dn } = self;
-        let (chunks, rest) = dn.as_chunks::<CHUNK>();
-        for ((peak, holds), chunk) in of_chunks.iter_mut().zip(&*holds).zip(chunks) {
-            if *holds {
-                *peak = chunk.iter().fold(0, |most, &dn| most.max(dn));
+        let Self { bright: BrightChunks { words, holds, .. }, dn, from_dn } = self;
+        let pixels = dn.chunks(OF_A_WORD * CHUNK).zip(holds.chunks(OF_A_WORD));
+        for (word, (dn, holds)) in words.iter_mut().zip(pixels) {
+            let (chunks, rest) = dn.as_chunks::<CHUNK>();
+            for (i, (chunk, _)) in chunks.iter().zip(holds).enumerate().filter(|(_, (_, holds))| **holds) {
+                *word |= u64::from(holds_from(from_dn, chunk)) << i;
+            }
+            if chunks.len() < holds.len() {
+                *word |= u64::from(holds_from(from_dn, rest)) << chunks.len();
             }
         }
-        if let Some(last) = of_chunks.get_mut(chunks.len()) {
-            *last = rest.iter().copied().fold(0, u16::max);
-        }
     }
+}
+
+/// Whether one of some pixels is `dn` or more: without an early exit, for all of them at once.
+#[inline(always)]
+fn holds_from(dn: u16, pixels: &[u16]) -> bool {
+    pixels.iter().fold(false, |any, &pixel| any | (pixel >= dn))
 }
 
 /// Pixels compared at once while looking for one above I2; a multiple of any vector's length.
@@ -121,9 +148,10 @@ const CHUNK: usize = 32;
 const FEW: usize = 8;
 
 impl Detector {
-    /// Looks over a frame, the next one of [`Detector::detect`].
-    pub(super) fn look(&mut self, frame: &Frame) {
-        self.peaks.find(frame);
+    /// Looks over a frame, the next one of [`Detector::detect`] with these thresholds; tells how many pixels are of full scale.
+    pub(super) fn look(&mut self, frame: &Frame, thresholds: Thresholds) -> usize {
+        self.bright.find(frame, thresholds.high_dn);
+        self.bright.saturated
     }
 
     /// The clusters of the frame that was looked over, in the order of their first bright pixel row by row, and no more than
@@ -146,11 +174,10 @@ impl Detector {
         }
         self.members.clear();
         self.marked.resize(frame.dn().len().div_ceil(64), 0);
-        let peaks = std::mem::take(&mut self.peaks);
-        for (first, chunk) in peaks.chunks_from(thresholds.high_dn.saturating_add(1), frame) {
+        let bright = std::mem::take(&mut self.bright);
+        for (first, chunk) in bright.chunks(frame) {
             for (first, few) in (first..).step_by(FEW).zip(chunk.chunks(FEW)) {
-                // Without an early exit, for all of them at once.
-                if !few.iter().fold(false, |any, &dn| any | (dn > thresholds.high_dn)) {
+                if !holds_from(thresholds.high_dn.saturating_add(1), few) {
                     continue;
                 }
                 for (index, &dn) in (first..).zip(few) {
@@ -164,20 +191,13 @@ impl Detector {
                 }
             }
         }
-        self.peaks = peaks;
+        self.bright = bright;
         if self.blobs.len() > max_clusters {
             let kept = largest(&self.blobs, max_clusters);
             self.first_members = kept.iter().map(|&i| self.first_members[i]).collect();
             self.blobs = kept.iter().map(|&i| self.blobs[i]).collect();
         }
         &self.blobs
-    }
-
-    /// Number of pixels at full scale of the frame that was looked over.
-    pub(super) fn saturated_pixels(&self, frame: &Frame) -> usize {
-        let full_scale = frame.full_scale_dn();
-        let of_chunk = |chunk: &[u16]| chunk.iter().filter(|&&dn| dn >= full_scale).count();
-        self.peaks.chunks_from(full_scale, frame).map(|(_, chunk)| of_chunk(chunk)).sum()
     }
 
     /// The pixels of cluster `i` of the last frame, as indices into its image.
@@ -202,7 +222,8 @@ impl Detector {
         self.mark(seed);
         while let Some(&index) = self.members.get(next) {
             next += 1;
-            let (x, y) = (index as usize % columns, index as usize / columns);
+            // In 32 bits: a division of 64 takes longer.
+            let (x, y) = ((index % columns as u32) as usize, (index / columns as u32) as usize);
             let weight = (f64::from(dn[index as usize].min(full_scale)) - base_dn).max(0.0);
             sum += weight;
             sum_x += weight * x as f64;
@@ -281,7 +302,7 @@ mod tests {
     }
 
     fn detect_with(detector: &mut Detector, frame: &Frame, base_dn: f64, max_clusters: usize) -> Vec<Blob> {
-        detector.look(frame);
+        detector.look(frame, THRESHOLDS);
         detector.detect(frame, THRESHOLDS, base_dn, max_clusters).to_vec()
     }
 
@@ -370,9 +391,12 @@ mod tests {
 
     #[test]
     fn saturated_pixels_are_counted() {
-        let (mut detector, frame) = (Detector::default(), drawn(&["##.", "9.#"]));
-        detector.look(&frame);
-        assert_eq!(detector.saturated_pixels(&frame), 3);
+        let frame = drawn(&["##.", "9.#"]);
+        // With every threshold, full scale itself included.
+        for high_dn in [0, 400, 4094, 4095, u16::MAX] {
+            let thresholds = Thresholds { low_dn: 0, high_dn };
+            assert_eq!(Detector::default().look(&frame, thresholds), 3);
+        }
     }
 
     /// A frame with windows is looked at in their chunks alone: that is all that is not 0.
@@ -392,10 +416,10 @@ mod tests {
         let windowed = Frame::new(0, 150, 40, 12, dn, Some(windows)).unwrap();
         let mut detector = Detector::default();
         let blobs = detect_with(&mut detector, &whole, 0.0, 1000);
-        let saturated = detector.saturated_pixels(&whole);
+        let saturated = detector.look(&whole, THRESHOLDS);
         assert!(blobs.len() > 10 && saturated > 0);
         assert_eq!(detect_with(&mut detector, &windowed, 0.0, 1000), blobs);
-        assert_eq!(detector.saturated_pixels(&windowed), saturated);
+        assert_eq!(detector.look(&windowed, THRESHOLDS), saturated);
     }
 
     proptest! {

@@ -88,10 +88,6 @@ impl FarRange {
 
     /// The clusters of a frame (section 2.1), or why there are none.
     fn detect(&mut self, frame: &Frame) -> Result<Vec<Blob>, NoSolution> {
-        self.detector.look(frame);
-        if 2 * self.detector.saturated_pixels(frame) > transmitted_pixels(frame) {
-            return Err(NoSolution::SaturatedFrame);
-        }
         let above_background = self.config.weights == Weights::AboveBackground;
         let background = if above_background || self.config.thresholds.needs_background() {
             Some(self.background.estimate(frame).ok_or(NoSolution::EmptyFrame)?)
@@ -99,6 +95,9 @@ impl FarRange {
             None
         };
         let thresholds = self.config.thresholds.of(frame, background);
+        if 2 * self.detector.look(frame, thresholds) > transmitted_pixels(frame) {
+            return Err(NoSolution::SaturatedFrame);
+        }
         let base_dn = background.filter(|_| above_background).map_or(0.0, |b| b.median_dn);
         let mut blobs =
             self.detector.detect(frame, thresholds, base_dn, self.config.max_clusters as usize).to_vec();
@@ -175,14 +174,14 @@ impl FarRange {
     }
 
     /// Links clusters to the previous frame (section 2.2). `None` when there is none to link to: at the first
-    /// frame, after a gap, and when time does not advance.
+    /// frame, after a gap, and when time does not advance. What is remembered is used up: this frame takes its place.
     fn link(
-        &self,
+        &mut self,
         blobs: &[Blob],
         telemetry: &Telemetry,
         camera_from_icrs_now: &Rotation<CameraFrame, Icrs>,
-    ) -> Option<Linked<'_>> {
-        let previous = self.previous.as_ref()?;
+    ) -> Option<Linked> {
+        let mut previous = self.previous.take()?;
         let dt_s = (telemetry.time - previous.time).to_seconds();
         if !(dt_s > 0.0 && dt_s <= self.config.max_gap_s) {
             return None;
@@ -199,15 +198,24 @@ impl FarRange {
             })
             .collect();
         let links = link(blobs, &previous.tracks, &expected, &self.config.tracking);
-        let before = links.into_iter().map(|link| link.map(|i| &previous.tracks[i])).collect();
+        // Each goes on in one cluster at most.
+        let before =
+            links.into_iter().map(|link| link.map(|i| std::mem::take(&mut previous.tracks[i]))).collect();
         Some(Linked { dt_s, before })
     }
 }
 
 /// The previous track of each cluster, `dt_s` seconds ago.
-struct Linked<'a> {
+struct Linked {
     dt_s: f64,
-    before: Vec<Option<&'a Track>>,
+    before: Vec<Option<Track>>,
+}
+
+impl Linked {
+    /// That of so many clusters which are all new.
+    fn none(clusters: usize) -> Self {
+        Self { dt_s: 0.0, before: vec![None; clusters] }
+    }
 }
 
 /// What a cluster is known to be before its motion is looked at.
@@ -270,20 +278,22 @@ impl FarRange {
         let camera_from_icrs = attitude(&self.mounting);
 
         let linked = self.link(&blobs, telemetry, &camera_from_icrs);
+        let has_previous = linked.is_some();
+        let Linked { dt_s, before } = linked.unwrap_or_else(|| Linked::none(blobs.len()));
+        let centres_before: Vec<_> = before.iter().map(|before| Some(before.as_ref()?.centre)).collect();
         let n_max = self.config.hotspots.n_max();
-        let before = |i: usize| linked.as_ref().and_then(|linked| Some((linked.before[i]?, linked.dt_s)));
         let tracks: Vec<Track> = blobs
             .iter()
-            .enumerate()
-            .map(|(i, blob)| {
-                let is_star = matches!(known[i], Known::Star { .. });
-                before(i).map_or(Track::new(blob, is_star), |(track, dt_s)| {
-                    track.extended(blob, is_star, dt_s, n_max)
-                })
+            .zip(&known)
+            .zip(before)
+            .map(|((blob, known), before)| {
+                let is_star = matches!(known, Known::Star { .. });
+                match before {
+                    Some(track) => track.extended(blob, is_star, dt_s, n_max),
+                    None => Track::new(blob, is_star),
+                }
             })
             .collect();
-        let centres_before: Vec<_> = (0..blobs.len()).map(|i| Some(before(i)?.0.centre)).collect();
-        let has_previous = linked.is_some();
 
         let labels: Vec<Label> = (0..blobs.len())
             .map(|i| match known[i] {

@@ -51,7 +51,7 @@ impl TrackingConfig {
 }
 
 /// A cluster of the previous frame and its history.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Track {
     /// c_prev.
     pub(super) centre: PixelPoint,
@@ -85,9 +85,9 @@ impl Track {
     /// Without `n_max` the mean velocity is Eq. 10 as printed, over the whole track. With it, it is the same mean
     /// over the last `n_max` steps only: what lies farther back, a jump to another object for instance, is
     /// forgotten altogether.
-    pub(super) fn extended(&self, blob: &Blob, is_star: bool, dt_s: f64, n_max: Option<u32>) -> Self {
+    pub(super) fn extended(self, blob: &Blob, is_star: bool, dt_s: f64, n_max: Option<u32>) -> Self {
         let step = [(blob.centre.x - self.centre.x) / dt_s, (blob.centre.y - self.centre.y) / dt_s];
-        let mut steps = self.steps_px_per_s.clone();
+        let mut steps = self.steps_px_per_s;
         let velocity_px_per_s = match n_max {
             None => {
                 let n = f64::from(self.length);
