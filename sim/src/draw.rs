@@ -17,6 +17,11 @@ use crate::widest::{Eight, LANES, Work, widest};
 /// Pixels of a piece of a row, the unit in which images are looked at: of each there is one word of bits.
 pub(crate) const PIECE: usize = u64::BITS as usize;
 
+/// Pixels of a part of a piece, the unit in which frames are lit and drawn in parts: about as many as a star is wide.
+pub(crate) const PART: usize = 16;
+/// Parts of a piece.
+pub(crate) const PARTS: usize = PIECE / PART;
+
 /// Expected photo-electrons of a frame: a flat level, what makes the background uneven, the images of objects, and single pixels.
 ///
 /// All of it is kept as it was told, the background in layers and the images of objects as stamps, and made for a row, or for a
@@ -264,12 +269,6 @@ impl ExpectedImage {
         self.span::<{ 16 * PIECE }>(0, y, out);
     }
 
-    /// [`ExpectedImage::row`] of piece `p` alone; `out` is as long as the piece.
-    #[inline(always)]
-    pub(crate) fn piece(&self, y: usize, p: usize, out: &mut [f64]) {
-        self.part::<PIECE>(y, p, out);
-    }
-
     /// [`ExpectedImage::row`] of part `p` of `N` pixels alone; `out` is as long as the part.
     #[inline(always)]
     pub(crate) fn part<const N: usize>(&self, y: usize, p: usize, out: &mut [f64]) {
@@ -322,25 +321,28 @@ impl ExpectedImage {
         self.background.row_bound_e(y, self.columns)
     }
 
-    /// Whether in piece `p` of row `y` something was drawn that may bring a pixel above `limit_e`, over a background of at
-    /// most `bound_e`, which is no more than that.
+    /// In which parts of piece `p` of row `y` something was drawn that may bring a pixel above `limit_e`, over a background of at
+    /// most `bound_e`, which is no more than that: a bit each, the lowest first.
     #[inline(always)]
-    pub(crate) fn may_rise_above<S: Simd>(
+    pub(crate) fn parts_that_may_rise_above<S: Simd>(
         &self,
         simd: S,
         y: usize,
         p: usize,
         bound_e: f64,
         limit_e: f64,
-    ) -> bool {
+    ) -> u64 {
         if bound_e + self.peaks[y * self.words_per_row + p] <= limit_e {
-            return false;
+            return 0;
         }
         // The peaks of objects side by side were added up.
         let mut signal_e = [0.0; PIECE];
         self.add_signal(p * PIECE, y, &mut signal_e[..self.piece_pixels(y, p).len()]);
-        let eights = signal_e.as_chunks::<LANES>().0.iter().map(|eight| Eight::of(simd, eight));
-        bound_e + eights.fold(Eight::splat(simd, 0.0), Eight::or_larger).largest() > limit_e
+        signal_e.as_chunks::<PART>().0.iter().enumerate().fold(0, |parts, (i, part)| {
+            let eights = part.as_chunks::<LANES>().0.iter().map(|eight| Eight::of(simd, eight));
+            let peak_e = eights.fold(Eight::splat(simd, 0.0), Eight::or_larger).largest();
+            parts | u64::from(bound_e + peak_e > limit_e) << i
+        })
     }
 
     /// Of each column, the rows from the first to the last pixel with more than `limit_e` expected electrons.
@@ -363,7 +365,8 @@ impl ExpectedImage {
         // Then only something drawn can be above it.
         let simd = pulp::Scalar::new();
         for y in 0..self.rows {
-            for p in (0..self.words_per_row).filter(|&p| self.may_rise_above(simd, y, p, bound_e, limit_e)) {
+            let may_rise = |&p: &usize| self.parts_that_may_rise_above(simd, y, p, bound_e, limit_e) != 0;
+            for p in (0..self.words_per_row).filter(may_rise) {
                 let piece = columns.iter_mut().enumerate().skip(p * PIECE).take(PIECE);
                 piece.filter(|(x, _)| self.at(*x, y) > limit_e).for_each(|(_, rows)| extend(rows, y));
             }

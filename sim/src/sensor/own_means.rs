@@ -12,7 +12,7 @@ use pulp::Simd;
 use super::alias::AliasTable;
 use super::pixel_law::PixelLaw;
 use super::poisson_digits::by_inversion;
-use crate::draw::PIECE;
+use crate::draw::{PART, PIECE};
 use crate::lanes::{LANES, Lanes};
 use crate::randomness::Stream;
 
@@ -27,8 +27,6 @@ pub(super) struct OwnMeans {
     cells: Vec<u64>,
 }
 
-/// Pixels of a part of a piece, the unit in which an even detector is lit: about as many as a star is wide.
-pub(super) const PART: usize = 16;
 /// The grid ends here, electrons.
 const END_E: f64 = 256.0;
 /// Tables of a mean: with 0, 1 and 2 electrons more.
@@ -67,28 +65,28 @@ impl OwnMeans {
         row: &mut [u16],
         own: impl Fn(usize) -> Stream,
     ) {
-        let mut words = Words::new();
+        let mut words = Words::<PIECE>::new();
         for (p, (row, means_e)) in row.chunks_mut(PIECE).zip(means_e.chunks(PIECE)).enumerate() {
             words.draw(simd, &mut lanes);
             self.draw_piece(means_e, &words, row, |i| own(p * PIECE + i));
         }
     }
 
-    /// [`OwnMeans::draw_row`] of one piece of a row, from its words.
+    /// [`OwnMeans::draw_row`] of at most `N` pixels side by side, from their words.
     #[inline(always)]
-    pub(super) fn draw_piece(
+    pub(super) fn draw_piece<const N: usize>(
         &mut self,
         means_e: &[f64],
-        words: &Words,
+        words: &Words<N>,
         piece: &mut [u16],
         own: impl Fn(usize) -> Stream,
     ) {
-        let mut means = [0.0; PIECE];
+        let mut means = [0.0; N];
         for (mean, &mean_e) in means.iter_mut().zip(means_e) {
             *mean = mean_e.max(0.0) as f32;
         }
-        let mut places = [0; PIECE];
-        for i in 0..PIECE {
+        let mut places = [0; N];
+        for i in 0..N {
             places[i] = self.place(Choice::of(means[i], words.upper[i]).table(), words.lower[i]);
         }
         self.pick(&places, words, means_e, piece, own);
@@ -102,7 +100,7 @@ impl OwnMeans {
         even: &EvenMean,
         is_lit: &[bool],
         means_e: &[f64],
-        words: &Words,
+        words: &Words<PIECE>,
         piece: &mut [u16],
         own: impl Fn(usize) -> Stream,
     ) {
@@ -122,26 +120,27 @@ impl OwnMeans {
 
     /// The numbers of a piece from the places of their cells; what no cell tells is drawn by the pixel's mean.
     #[inline(always)]
-    fn pick(
+    fn pick<const N: usize>(
         &mut self,
-        places: &[u32; PIECE],
-        words: &Words,
+        places: &[u32; N],
+        words: &Words<N>,
         means_e: &[f64],
         piece: &mut [u16],
         own: impl Fn(usize) -> Stream,
     ) {
         // Looked up once: where the tables are, is told to no pixel.
         let all = self.cells.as_slice();
-        let mut cells = [0; PIECE];
-        for i in 0..PIECE {
-            cells[i] = all.get(places[i] as usize).copied().unwrap_or(0);
+        let Some(last) = all.len().checked_sub(1) else { return };
+        let mut cells = [0; N];
+        for i in 0..N {
+            cells[i] = all[(places[i] as usize).min(last)];
         }
-        let (mut levels, mut pairs) = ([0; PIECE], [0; PIECE]);
-        for i in 0..PIECE {
+        let (mut levels, mut pairs) = ([0; N], [0; N]);
+        for i in 0..N {
             (levels[i], pairs[i]) = halves(cells[i]);
         }
-        let mut numbers = [0; PIECE];
-        for i in 0..PIECE {
+        let mut numbers = [0; N];
+        for i in 0..N {
             numbers[i] = self.number(levels[i], pairs[i], words.lower[i]) as u16;
         }
         piece.copy_from_slice(&numbers[..piece.len()]);
@@ -206,19 +205,19 @@ impl OwnMeans {
     }
 }
 
-/// The words of a piece, one a pixel, in halves: of numbers of 32 bits a register holds twice as many.
-pub(super) struct Words {
-    upper: [u32; PIECE],
-    lower: [u32; PIECE],
+/// The words of `N` pixels side by side, one each, in halves: of numbers of 32 bits a register holds twice as many.
+pub(super) struct Words<const N: usize> {
+    upper: [u32; N],
+    lower: [u32; N],
 }
 
-impl Words {
+impl<const N: usize> Words<N> {
     /// None drawn yet.
     pub(super) fn new() -> Self {
-        Self { upper: [0; PIECE], lower: [0; PIECE] }
+        Self { upper: [0; N], lower: [0; N] }
     }
 
-    /// Makes them those of the next piece.
+    /// Makes them the next ones of a row.
     #[inline(always)]
     pub(super) fn draw<S: Simd>(&mut self, simd: S, lanes: &mut Lanes) {
         simd.vectorize(DrawWords { words: self, lanes });
@@ -230,19 +229,19 @@ impl Words {
 }
 
 /// [`Words::draw`].
-struct DrawWords<'a> {
-    words: &'a mut Words,
+struct DrawWords<'a, const N: usize> {
+    words: &'a mut Words<N>,
     lanes: &'a mut Lanes,
 }
 
-impl pulp::WithSimd for DrawWords<'_> {
+impl<const N: usize> pulp::WithSimd for DrawWords<'_, N> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { words: Words { upper, lower }, lanes } = self;
         let (upper, lower) = (upper.as_chunks_mut::<LANES>().0, lower.as_chunks_mut::<LANES>().0);
-        lanes.steps(simd, PIECE / LANES, |step, words| {
+        lanes.steps(simd, N / LANES, |step, words| {
             for lane in 0..LANES {
                 (lower[step][lane], upper[step][lane]) = halves(words[lane]);
             }

@@ -4,11 +4,11 @@ use rand::Rng;
 
 use super::config::Switch;
 use super::flat_laws::FlatLaws;
-use super::own_means::{EvenMean, OwnMeans, PART, Words};
+use super::own_means::{EvenMean, OwnMeans, Words};
 use super::poisson_digits::PoissonDigits;
 use super::raw_image::RawImage;
 use super::readout::Sensor;
-use crate::draw::{ExpectedImage, PIECE};
+use crate::draw::{ExpectedImage, PART, PIECE};
 use crate::lanes::Lanes;
 use crate::randomness::Streams;
 use crate::widest::arch;

@@ -16,7 +16,7 @@
 //! Pixels brighter than λ₀, near sources, are drawn outright by the second step alone. Every pixel so has the law that it has
 //! without a floor, and, where nothing exceeds, the same number.
 //!
-//! The first step costs a candidate a row or fewer. The second can be done for any piece of 64 pixels of a row alone: for those
+//! The first step costs a candidate a row or fewer. The second can be done for any part of 16 pixels of a row alone: for those
 //! in which a pixel may be brighter than λ₀, and then, once the camera has found its regions among the pixels above the floor,
 //! for those of its regions. What overflows is drawn column by column from the pixels' own addresses in either case.
 //!
@@ -33,9 +33,9 @@ use super::flat_laws::FlatLaws;
 use super::own_means::{OwnMeans, Words};
 use super::pixel_law::PixelLaw;
 use super::readout::Sensor;
-use super::sparse_image::{Piece, Pixel, SparseImage};
+use super::sparse_image::{Parts, Pixel, SparseImage, pixels};
 use crate::SimError;
-use crate::draw::{ExpectedImage, PIECE};
+use crate::draw::{ExpectedImage, PART, PARTS, set_bits};
 use crate::lanes::{LANES, Lanes};
 use crate::randomness::{Effect, Seed, Streams, uniform};
 use crate::widest::{Work, arch, widest};
@@ -50,16 +50,7 @@ pub(crate) struct Collected<'a> {
 impl Sensor {
     /// A raw image of which nothing is drawn.
     pub(crate) fn new_sparse(&self) -> SparseImage {
-        let pieces_per_row = self.columns.div_ceil(PIECE);
-        SparseImage {
-            raw: self.new_raw(),
-            pieces_per_row,
-            pieces: vec![Piece::Blank; pieces_per_row * self.rows],
-            limits: Vec::new(),
-            exceeding: Vec::new(),
-            bloomed: Vec::new(),
-            floor_dn: 0,
-        }
+        SparseImage::new(self.new_raw())
     }
 
     /// Draws every pixel whose digital number is above `floor_dn`.
@@ -106,14 +97,14 @@ impl Sensor {
         for window in windows {
             let right = window.x + window.columns;
             for y in window.y..window.y + window.rows {
-                image.want(y, |p| window.x < (p + 1) * PIECE && p * PIECE < right);
+                image.wanted.add_columns(y, window.x, right);
             }
         }
         self.draw_wanted(collected, laws, image);
         image.set_single_pixels();
     }
 
-    /// Draws the pieces that are wanted and not yet drawn.
+    /// Draws the parts that are wanted and not yet drawn.
     fn draw_wanted(&self, collected: &Collected<'_>, laws: &mut FlatLaws, image: &mut SparseImage) {
         let &Collected { charge, seed, frame } = collected;
         let expected = charge.expected();
@@ -123,11 +114,11 @@ impl Sensor {
         let task = Task { law, expected, words: &words, again: &again, columns, rows };
         let tables = laws.own_means(law);
         // The same steps on every machine, on the widest registers that it has.
-        arch().dispatch(OwnMeansPieces { task, tables, image });
+        arch().dispatch(OwnMeansParts { task, tables, image });
     }
 }
 
-/// The first step, and a look at which pieces the second is for.
+/// The first step, and a look at which parts the second is for.
 struct Look<'a> {
     expected: &'a ExpectedImage,
     exceedance: &'a mut Exceedance,
@@ -147,9 +138,14 @@ impl Work for Look<'_> {
             let limit = exceedance.dark_limit(bound_e);
             image.limits.push(limit);
             thin_row(expected, y, limit, exceedance, streams, &mut image.exceeding);
-            image.want(y, |p| {
-                bound_e > limit.mean_e || expected.may_rise_above(simd, y, p, bound_e, limit.mean_e)
-            });
+            if bound_e > limit.mean_e {
+                image.wanted.add_columns(y, 0, expected.size().0);
+                continue;
+            }
+            for p in 0..expected.size().0.div_ceil(PARTS * PART) {
+                let parts = expected.parts_that_may_rise_above(simd, y, p, bound_e, limit.mean_e);
+                image.wanted.add(y, p * PARTS, parts);
+            }
         }
     }
 }
@@ -192,7 +188,7 @@ fn thin_row(
     }
 }
 
-/// What the pieces of a frame are drawn from.
+/// What the parts of a frame are drawn from.
 #[derive(Clone, Copy)]
 struct Task<'a> {
     law: &'a PixelLaw,
@@ -237,46 +233,46 @@ impl Task<'_> {
     }
 }
 
-/// The wanted pieces of a detector in which every pixel has a mean of its own.
-struct OwnMeansPieces<'a> {
+/// The wanted parts of a detector in which every pixel has a mean of its own.
+struct OwnMeansParts<'a> {
     task: Task<'a>,
     tables: &'a mut OwnMeans,
     image: &'a mut SparseImage,
 }
 
-impl pulp::WithSimd for OwnMeansPieces<'_> {
+impl pulp::WithSimd for OwnMeansParts<'_> {
     type Output = ();
 
     // Inline, all of it: only so is it compiled for the registers of the machine.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { task, tables, image } = self;
-        let floor_dn = image.floor_dn;
-        let mut words = Words::new();
-        for y in 0..task.rows {
-            let pieces = &mut image.pieces[y * image.pieces_per_row..(y + 1) * image.pieces_per_row];
-            if !pieces.contains(&Piece::Wanted) {
+        let SparseImage { raw, drawn, wanted, limits, floor_dn, .. } = image;
+        let mut words = Words::<PART>::new();
+        // Where there are no limits, all pixels are drawn.
+        for (y, &limit) in limits.iter().enumerate() {
+            let (wanted, drawn) = (wanted.row(y), drawn.row_mut(y));
+            if wanted.iter().zip(&*drawn).all(|(wanted, drawn)| wanted & !drawn == 0) {
                 continue;
             }
             let mut lanes = Lanes::at(task.words, y as u64);
             let mut next = 0;
-            for (p, piece) in pieces.iter_mut().enumerate() {
-                if *piece != Piece::Wanted {
-                    continue;
+            for (i, (wanted, drawn)) in wanted.iter().zip(drawn).enumerate() {
+                for part in set_bits(wanted & !*drawn).map(|bit| i * Parts::OF_A_WORD + bit) {
+                    lanes.skip(simd, (part - next) * PART / LANES);
+                    next = part + 1;
+                    words.draw(simd, &mut lanes);
+                    let pixels = pixels(task.columns, y, part);
+                    let mut means_e = [0.0; PART];
+                    let means_e = &mut means_e[..pixels.len()];
+                    task.expected.part::<PART>(y, part, means_e);
+                    let first = pixels.start;
+                    let row = &mut raw.dn[pixels];
+                    let own = |i: usize| task.words.at(task.place(first + i));
+                    tables.draw_piece(means_e, &words, row, own);
+                    task.keep_dark_pixels_below(*floor_dn, limit, first, means_e, row);
                 }
-                lanes.skip(simd, (p - next) * PIECE / LANES);
-                next = p + 1;
-                *piece = Piece::Drawn;
-                words.draw(simd, &mut lanes);
-                let first = y * task.columns + p * PIECE;
-                let length = PIECE.min(task.columns - p * PIECE);
-                let mut means_e = [0.0; PIECE];
-                let means_e = &mut means_e[..length];
-                task.expected.piece(y, p, means_e);
-                let row = &mut image.raw.dn[first..first + length];
-                let own = |i: usize| task.words.at(task.place(first + i));
-                tables.draw_piece(means_e, &words, row, own);
-                task.keep_dark_pixels_below(floor_dn, image.limits[y], first, means_e, row);
+                *drawn |= *wanted;
             }
         }
     }
@@ -426,11 +422,11 @@ mod tests {
             image.floor_dn = 65;
             let limit = laws.exceedance(&sensor.law, 65).dark_limit(22.0);
             image.limits.resize(40, limit);
-            (0..40).for_each(|y| image.want(y, |p| (y + p) % 2 == 0));
+            (0..40).for_each(|y| image.wanted.add(y, y % 2, 0x2_5555));
             let task =
                 Task { law: &sensor.law, expected, words: &words, again: &again, columns: 301, rows: 40 };
             let tables = laws.own_means(&sensor.law);
-            registers.dispatch(OwnMeansPieces { task, tables, image: &mut image });
+            registers.dispatch(OwnMeansParts { task, tables, image: &mut image });
             image.raw.dn
         };
         for registers in crate::widest::tests::registers() {

@@ -1,17 +1,20 @@
-//! A raw image that is drawn in pieces.
+//! A raw image that is drawn in parts.
 
 use super::exceedance::DarkLimit;
 use super::raw_image::RawImage;
-use crate::draw::PIECE;
+use crate::draw::{PART, set_bits};
 
-/// A raw image of which pieces are drawn. Reused from frame to frame.
+/// A raw image of which parts of rows are drawn, 16 pixels each. Reused from frame to frame.
 #[derive(Debug)]
 pub(crate) struct SparseImage {
     /// Pixels that are not drawn are 0, unless they are above the floor.
     pub(super) raw: RawImage,
-    pub(super) pieces_per_row: usize,
-    /// Of each piece, row by row: what of it is in the image.
-    pub(super) pieces: Vec<Piece>,
+    /// Which parts are drawn, all of their pixels.
+    pub(super) drawn: Parts,
+    /// Which parts are to be drawn.
+    pub(super) wanted: Parts,
+    /// In which parts pixels were set one by one.
+    touched: Parts,
     /// The limit of dark pixels in each row; empty where all pixels are drawn outright.
     pub(super) limits: Vec<DarkLimit>,
     /// Dark pixels above the floor.
@@ -21,19 +24,6 @@ pub(crate) struct SparseImage {
     pub(super) floor_dn: u16,
 }
 
-/// What of a piece of a row is in the image.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Piece {
-    /// Nothing: all is 0.
-    Blank,
-    /// Some pixels.
-    Touched,
-    /// To be drawn.
-    Wanted,
-    /// All pixels.
-    Drawn,
-}
-
 /// A pixel by its index in the image, and its digital number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Pixel {
@@ -41,7 +31,64 @@ pub(super) struct Pixel {
     pub(super) dn: u16,
 }
 
+/// Some of the parts of the rows of an image: a bit each, in words of their own for each row.
+#[derive(Debug, Clone)]
+pub(super) struct Parts {
+    words: Vec<u64>,
+    words_per_row: usize,
+}
+
+impl Parts {
+    /// Parts of a word, which is that many pixels.
+    pub(super) const OF_A_WORD: usize = u64::BITS as usize;
+
+    /// None of an image of `columns` × `rows`.
+    fn none(columns: usize, rows: usize) -> Self {
+        let words_per_row = columns.div_ceil(PART).div_ceil(Self::OF_A_WORD);
+        Self { words: vec![0; words_per_row * rows], words_per_row }
+    }
+
+    /// The words of a row.
+    #[inline(always)]
+    pub(super) fn row(&self, y: usize) -> &[u64] {
+        &self.words[y * self.words_per_row..(y + 1) * self.words_per_row]
+    }
+
+    #[inline(always)]
+    pub(super) fn row_mut(&mut self, y: usize) -> &mut [u64] {
+        &mut self.words[y * self.words_per_row..(y + 1) * self.words_per_row]
+    }
+
+    /// Adds parts of row `y`: `bits`, of which the lowest is part `part`; all of them are in one word.
+    #[inline(always)]
+    pub(super) fn add(&mut self, y: usize, part: usize, bits: u64) {
+        self.words[y * self.words_per_row + part / Self::OF_A_WORD] |= bits << (part % Self::OF_A_WORD);
+    }
+
+    /// Adds the parts of row `y` in which the pixels of some columns are.
+    pub(super) fn add_columns(&mut self, y: usize, from: usize, to: usize) {
+        for part in from / PART..to.div_ceil(PART) {
+            self.add(y, part, 1);
+        }
+    }
+}
+
 impl SparseImage {
+    /// One of which nothing is drawn, in `raw`.
+    pub(super) fn new(raw: RawImage) -> Self {
+        let none = Parts::none(raw.columns, raw.dn.len() / raw.columns.max(1));
+        Self {
+            raw,
+            drawn: none.clone(),
+            wanted: none.clone(),
+            touched: none,
+            limits: Vec::new(),
+            exceeding: Vec::new(),
+            bloomed: Vec::new(),
+            floor_dn: 0,
+        }
+    }
+
     /// The image. Digital numbers are those of the whole frame where they are above the floor or were asked for.
     pub(crate) fn raw(&self) -> &RawImage {
         &self.raw
@@ -49,28 +96,26 @@ impl SparseImage {
 
     /// The image, to be drawn as a whole.
     pub(crate) fn whole(&mut self) -> &mut RawImage {
-        self.pieces.fill(Piece::Drawn);
+        for y in 0..self.raw.rows {
+            self.drawn.add_columns(y, 0, self.raw.columns);
+        }
         &mut self.raw
     }
 
-    /// The pixels that are in the image, piece by piece: index of the first, and their digital numbers. All others are 0.
+    /// The pixels that are in the image, part by part: index of the first, and their digital numbers. All others are 0.
     pub(crate) fn runs(&self) -> impl Iterator<Item = (usize, &[u16])> {
-        let columns = self.raw.columns;
-        self.pieces.iter().enumerate().filter(|(_, piece)| **piece != Piece::Blank).map(move |(i, _)| {
-            let first = i / self.pieces_per_row * columns + i % self.pieces_per_row * PIECE;
-            let length = PIECE.min(columns - i % self.pieces_per_row * PIECE);
-            (first, &self.raw.dn[first..first + length])
+        let Self { raw, drawn, touched, .. } = self;
+        parts_in(drawn, touched).map(|(y, part)| {
+            let pixels = pixels(raw.columns, y, part);
+            (pixels.start, &raw.dn[pixels])
         })
     }
 
     /// Makes 0 of all that is not above a floor.
     pub(crate) fn suppress(&mut self, floor_dn: u16) {
-        let columns = self.raw.columns.max(1);
-        let rows =
-            self.raw.dn.chunks_exact_mut(columns).zip(self.pieces.chunks_exact(self.pieces_per_row.max(1)));
-        for (row, pieces) in rows {
-            let drawn = row.chunks_mut(PIECE).zip(pieces).filter(|(_, piece)| **piece != Piece::Blank);
-            for dn in drawn.flat_map(|(pixels, _)| pixels) {
+        let Self { raw, drawn, touched, .. } = self;
+        for (y, part) in parts_in(drawn, touched) {
+            for dn in &mut raw.dn[pixels(raw.columns, y, part)] {
                 *dn = if *dn > floor_dn { *dn } else { 0 };
             }
         }
@@ -78,46 +123,78 @@ impl SparseImage {
 
     /// Nothing drawn.
     pub(super) fn clear(&mut self) {
-        let columns = self.raw.columns.max(1);
-        let rows = self
-            .raw
-            .dn
-            .chunks_exact_mut(columns)
-            .zip(self.pieces.chunks_exact_mut(self.pieces_per_row.max(1)));
-        for (row, pieces) in rows {
-            for (pixels, piece) in
-                row.chunks_mut(PIECE).zip(pieces).filter(|(_, piece)| **piece != Piece::Blank)
-            {
-                pixels.fill(0);
-                *piece = Piece::Blank;
-            }
+        let Self { raw, drawn, wanted, touched, .. } = self;
+        for (y, part) in parts_in(drawn, touched) {
+            raw.dn[pixels(raw.columns, y, part)].fill(0);
+        }
+        for parts in [drawn, wanted, touched] {
+            parts.words.fill(0);
         }
         self.limits.clear();
         self.exceeding.clear();
         self.bloomed.clear();
     }
 
-    /// Asks for the pieces of a row in which `is_wanted`.
-    #[inline(always)]
-    pub(super) fn want(&mut self, y: usize, is_wanted: impl Fn(usize) -> bool) {
-        let pieces = self.pieces.chunks_exact_mut(self.pieces_per_row.max(1)).nth(y).unwrap_or_default();
-        for (p, piece) in pieces.iter_mut().enumerate() {
-            if *piece != Piece::Drawn && is_wanted(p) {
-                *piece = Piece::Wanted;
-            }
-        }
-    }
-
-    /// Sets the pixels that were drawn one by one, over those that were drawn in pieces.
+    /// Sets the pixels that were drawn one by one, over those that were drawn in parts.
     pub(super) fn set_single_pixels(&mut self) {
         let columns = self.raw.columns;
         for pixel in self.exceeding.iter().chain(&self.bloomed) {
             self.raw.dn[pixel.index] = pixel.dn;
-            let piece =
-                &mut self.pieces[pixel.index / columns * self.pieces_per_row + pixel.index % columns / PIECE];
-            if *piece == Piece::Blank {
-                *piece = Piece::Touched;
-            }
+            self.touched.add(pixel.index / columns, pixel.index % columns / PART, 1);
         }
+    }
+}
+
+/// Row and number of each part that is among these or those.
+fn parts_in<'a>(these: &'a Parts, those: &'a Parts) -> impl Iterator<Item = (usize, usize)> + 'a {
+    let words_per_row = these.words_per_row.max(1);
+    these
+        .words
+        .iter()
+        .zip(&those.words)
+        .map(|(a, b)| a | b)
+        .enumerate()
+        .filter(|(_, word)| *word != 0)
+        .flat_map(move |(i, word)| {
+            let first = i % words_per_row * Parts::OF_A_WORD;
+            set_bits(word).map(move |bit| (i / words_per_row, first + bit))
+        })
+}
+
+/// The pixels of a part of row `y` of an image of `columns`, as indices into the image.
+#[inline(always)]
+pub(super) fn pixels(columns: usize, y: usize, part: usize) -> std::ops::Range<usize> {
+    y * columns + part * PART..y * columns + ((part + 1) * PART).min(columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// More parts to a row than a word has bits, the last of them short.
+    #[test]
+    fn what_is_set_is_told_part_by_part_and_cleared() {
+        let (columns, rows) = (2 * Parts::OF_A_WORD * PART + 5, 3);
+        let mut image = SparseImage::new(RawImage::from_dn(columns, rows, 12, vec![0; columns * rows]));
+        assert_eq!(image.runs().count(), 0);
+        image.drawn.add_columns(0, columns - 6, columns);
+        image.drawn.add(1, Parts::OF_A_WORD - 4, 0b1001);
+        image.exceeding.push(Pixel { index: 2 * columns, dn: 9 });
+        image.bloomed.push(Pixel { index: columns + (Parts::OF_A_WORD - 1) * PART, dn: 70 });
+        image.set_single_pixels();
+        let told: Vec<_> =
+            image.runs().map(|(first, run)| (first % columns / PART, first / columns, run.len())).collect();
+        let last = 2 * Parts::OF_A_WORD;
+        let middle = Parts::OF_A_WORD;
+        assert_eq!(
+            told,
+            [(last - 1, 0, PART), (last, 0, 5), (middle - 4, 1, PART), (middle - 1, 1, PART), (0, 2, PART)]
+        );
+        image.suppress(50);
+        assert_eq!(image.raw().dn().iter().map(|&dn| usize::from(dn)).sum::<usize>(), 70);
+        image.clear();
+        assert!(image.runs().count() == 0 && image.raw().dn().iter().all(|&dn| dn == 0));
+        image.whole().dn.fill(1);
+        assert_eq!(image.runs().map(|(_, run)| run.len()).sum::<usize>(), columns * rows);
     }
 }
