@@ -18,8 +18,10 @@ use crate::plain::{COLUMNS, PlainScene, ROWS};
 /// A frame of each day of ARGON, with what follows it.
 const DAYS: [(u64, &str); 5] =
     [(300, "day 1"), (1800, "day 2"), (5000, "day 3"), (9000, "day 4"), (14_000, "day 5")];
-/// Frames of a day that are made in turn.
-const FRAMES_OF_A_DAY: u64 = 200;
+/// Frames of a day that are made in turn, and how far they are apart: frames differ by a factor of two and more, and every turn of a
+/// comparison is to make the same ones.
+const FRAMES_OF_A_DAY: u64 = 10;
+const STEP: u64 = 20;
 /// Frames that are kept for detection.
 const KEPT: u64 = 8;
 
@@ -118,7 +120,7 @@ fn frames(name: String, simulator: &'static Simulator, first: u64) -> Result<Wor
     let mut number = 0;
     let step = move || {
         number += 1;
-        black_box(camera.expose(first + number % FRAMES_OF_A_DAY)?);
+        black_box(camera.expose(first + STEP * (number % FRAMES_OF_A_DAY))?);
         Ok(None)
     };
     Ok(Work { name, step: Box::new(step) })
