@@ -84,6 +84,9 @@ impl ExpectedImage {
     pub fn clear(&mut self, flat_e: f64) {
         let rows = self.single.chunks_exact_mut(self.columns.max(1));
         for (row, words) in rows.zip(self.is_single.chunks_exact_mut(self.words_per_row.max(1))) {
+            if !any(words) {
+                continue;
+            }
             for (pixels, word) in row.chunks_mut(PIECE).zip(words).filter(|(_, word)| **word != 0) {
                 pixels.fill(0.0);
                 *word = 0;
@@ -275,6 +278,13 @@ impl ExpectedImage {
         self.span::<N>(p * N, y, out);
     }
 
+    /// Whether something was drawn in row `y`.
+    #[inline(always)]
+    pub(crate) fn is_row_lit(&self, y: usize) -> bool {
+        let words = &self.is_single[y * self.words_per_row..(y + 1) * self.words_per_row];
+        self.objects.are_in_row(y) || any(words)
+    }
+
     /// Of each `N` pixels of row `y`, whether something was drawn in any of them.
     pub(crate) fn lit_parts<const N: usize>(&self, y: usize, is_lit: &mut [bool]) {
         is_lit.fill(false);
@@ -317,6 +327,7 @@ impl ExpectedImage {
     }
 
     /// No pixel of the background of row `y` has more electrons.
+    #[inline(always)]
     pub(crate) fn row_bound_e(&self, y: usize) -> f64 {
         self.background.row_bound_e(y, self.columns)
     }
@@ -389,6 +400,12 @@ impl ExpectedImage {
                 set_bits(lit).map(move |bit| (first + bit, signal_e[bit]))
             })
     }
+}
+
+/// Whether any bit is set: without an early exit, for many words at once.
+#[inline(always)]
+fn any(words: &[u64]) -> bool {
+    words.iter().fold(0, |all, word| all | word) != 0
 }
 
 /// The image of an object, as the pixels of an image respond to it.

@@ -7,17 +7,21 @@ use crate::widest::LANES;
 
 /// Columns that lie together.
 const STRIP: usize = 64;
-/// Factors of a row of a strip.
-const STRIDE: usize = STRIP + LANES;
+/// Factors of a line of memory, 64 bytes.
+const LINE: usize = 16;
+/// Factors of a row of a strip: whole lines.
+const STRIDE: usize = (STRIP + LANES).next_multiple_of(LINE);
 
 /// Factors of the pixels of a detector, none below 0; shared by all frames.
 ///
 /// They lie in strips of 64 columns, row after row of a strip: the rows of an image of an object so are next to each other, and not
-/// each in a page of memory of its own.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// each in a page of memory of its own; and each row of a strip begins with a line of memory.
+#[derive(Debug, Clone, Default)]
 pub(crate) struct PixelFactors {
     /// The rows of a strip go on with the first columns of the next strip: eight pixels side by side are together wherever they begin.
     values: Arc<[f32]>,
+    /// Where the first strip begins.
+    first: usize,
     columns: usize,
     rows: usize,
     largest: f32,
@@ -31,22 +35,24 @@ impl PixelFactors {
             return Self::default();
         }
         let rows = by_rows.len() / columns;
-        let mut values = Vec::with_capacity(columns.div_ceil(STRIP) * rows * STRIDE);
-        for strip in 0..columns.div_ceil(STRIP) {
-            for row in by_rows.chunks_exact(columns) {
-                let rest = &row[strip * STRIP..];
-                values.extend_from_slice(&rest[..rest.len().min(STRIDE)]);
-                // Where there are no pixels, there is no light either.
-                values.resize(values.len().next_multiple_of(STRIDE), 1.0);
-            }
+        // Where there are no pixels, there is no light either.
+        let mut values: Arc<[f32]> = vec![1.0; columns.div_ceil(STRIP) * rows * STRIDE + LINE].into();
+        // At a line's begin, or wherever it may be: it changes no factor.
+        let first = values.as_ptr().align_offset(size_of::<[f32; LINE]>()).min(LINE);
+        let places = Arc::get_mut(&mut values).unwrap_or_default()[first..].chunks_exact_mut(STRIDE);
+        let strips = (0..columns).step_by(STRIP);
+        let all = strips.flat_map(|from| by_rows.chunks_exact(columns).map(move |row| &row[from..]));
+        for (place, factors) in places.zip(all) {
+            let together = factors.len().min(STRIDE);
+            place[..together].copy_from_slice(&factors[..together]);
         }
         let largest = by_rows.iter().copied().fold(0.0, f32::max);
-        Self { values: values.into(), columns, rows, largest }
+        Self { values, first, columns, rows, largest }
     }
 
     /// Whether there are none.
     pub(crate) fn is_empty(&self) -> bool {
-        self.values.is_empty()
+        self.rows == 0
     }
 
     /// The largest of them; 0 without any.
@@ -97,7 +103,16 @@ impl PixelFactors {
 
     #[inline(always)]
     fn place(&self, x: usize, y: usize) -> usize {
-        (x / STRIP * self.rows + y) * STRIDE + x % STRIP
+        self.first + (x / STRIP * self.rows + y) * STRIDE + x % STRIP
+    }
+}
+
+/// Wherever in memory they are.
+impl PartialEq for PixelFactors {
+    fn eq(&self, other: &Self) -> bool {
+        let strips = self.values.len().saturating_sub(LINE);
+        let (these, those) = (self.values.iter().skip(self.first), other.values.iter().skip(other.first));
+        (self.columns, self.rows) == (other.columns, other.rows) && these.take(strips).eq(those.take(strips))
     }
 }
 

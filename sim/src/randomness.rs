@@ -108,6 +108,16 @@ impl Streams {
         Stream::seed_from_u64(self.key_of(place))
     }
 
+    /// The first uniform number of the stream at a place, without the cost of the stream.
+    #[inline(always)]
+    pub(crate) fn first_uniform(&self, place: u64) -> f64 {
+        let key = self.key_of(place);
+        // The first word of xoshiro256++ is made of the first and the fourth of the numbers that key it.
+        let [first, fourth] =
+            [0, 3].map(|number| split_mix(key.wrapping_add(GOLDEN_GAMMA.wrapping_mul(number))));
+        in_unit_interval(first.wrapping_add(fourth).rotate_left(23).wrapping_add(first))
+    }
+
     /// What keys the generators at a place.
     pub(crate) fn key_of(&self, place: u64) -> u64 {
         split_mix(self.key ^ place)
@@ -135,8 +145,14 @@ pub(crate) fn split_mix(word: u64) -> u64 {
 
 /// A uniform number in the open interval (0, 1), with 53 bits.
 pub fn uniform(stream: &mut Stream) -> f64 {
+    in_unit_interval(stream.next_u64())
+}
+
+/// The uniform number of a word.
+#[inline(always)]
+fn in_unit_interval(word: u64) -> f64 {
     // The half step keeps 0 out, so that a logarithm can be taken.
-    ((stream.next_u64() >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0)
+    ((word >> 11) as f64 + 0.5) * (1.0 / 9_007_199_254_740_992.0)
 }
 
 /// A normal number of mean 0 and standard deviation 1 (Box & Muller 1958, the cosine half).
@@ -164,6 +180,14 @@ mod tests {
     }
 
     const FIRST_OF_42: u64 = 5_719_266_020_278_784_404;
+
+    #[test]
+    fn the_first_uniform_number_is_that_of_the_stream() {
+        for place in 0..1000 {
+            let streams = SEED.streams(place, Effect::Exceedance);
+            assert_eq!(streams.first_uniform(place), uniform(&mut streams.at(place)));
+        }
+    }
 
     #[test]
     fn every_word_of_the_address_matters() {

@@ -45,7 +45,9 @@ impl BackgroundEstimator {
         let rows = windows.iter().flat_map(|window| {
             (window.y..window.y + window.rows).map(|y| &frame.row(y)[window.x..window.x + window.columns])
         });
+        let mut sampled = 0;
         for row in rows.step_by(step) {
+            sampled += row.len();
             let (fours, rest) = row.as_chunks::<TABLES>();
             for pixels in fours.iter().map(<[u16; TABLES]>::as_slice).chain([rest]) {
                 for (table, &dn) in pixels.iter().enumerate() {
@@ -53,27 +55,38 @@ impl BackgroundEstimator {
                 }
             }
         }
-        let (_, median_dn) = self.quantile(0.5)?;
-        let (lower_bin, lower) = self.quantile(BELOW_ONE_SIGMA)?;
+        let rank = |fraction: f64| fraction * sampled as f64;
+        let [(lower_bin, lower), (_, median_dn)] = self.at_ranks([BELOW_ONE_SIGMA, 0.5].map(rank))?;
         // A lower percentile in the first bin is cut by the converter, not by the noise.
         let sigma_dn = if lower_bin > 0 {
             median_dn - lower
         } else {
-            self.quantile(1.0 - BELOW_ONE_SIGMA)?.1 - median_dn
+            let [(_, upper)] = self.at_ranks([1.0 - BELOW_ONE_SIGMA].map(rank))?;
+            upper - median_dn
         };
         Some(Background { median_dn, sigma_dn: sigma_dn.max(QUANTISATION_DN) })
     }
 
-    /// The bin that holds a quantile, and the quantile interpolated inside it (bin n covers n ± 0.5).
-    fn quantile(&self, fraction: f64) -> Option<(usize, f64)> {
-        let counts =
-            || self.counts.iter().map(|tables| tables.iter().map(|&count| u64::from(count)).sum::<u64>());
-        let rank = fraction * counts().sum::<u64>() as f64;
+    /// The bins that hold pixels of some ranks, which grow, and the values there, interpolated inside each (bin n covers n ± 0.5);
+    /// `None` without any pixels.
+    fn at_ranks<const N: usize>(&self, ranks: [f64; N]) -> Option<[(usize, f64); N]> {
+        let (mut found, mut next) = ([(0, 0.0); N], 0);
         let mut below = 0.0;
-        for (bin, count) in counts().enumerate().filter(|&(_, count)| count > 0) {
-            let count = count as f64;
-            if below + count >= rank {
-                return Some((bin, bin as f64 - 0.5 + (rank - below) / count));
+        for (bin, tables) in self.counts.iter().enumerate() {
+            let count = tables.iter().sum::<u32>();
+            if count == 0 {
+                continue;
+            }
+            let count = f64::from(count);
+            while let Some(&rank) = ranks.get(next) {
+                if below + count < rank {
+                    break;
+                }
+                found[next] = (bin, bin as f64 - 0.5 + (rank - below) / count);
+                next += 1;
+            }
+            if next == N {
+                return Some(found);
             }
             below += count;
         }

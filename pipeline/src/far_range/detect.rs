@@ -1,6 +1,6 @@
 //! Detection of clusters of bright pixels (section 2.1, Eqs. 1 and 2).
 
-use contract::{Frame, PixelPoint};
+use contract::{Frame, PixelPoint, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -64,8 +64,6 @@ pub(super) struct Detector {
 struct BrightChunks {
     /// One bit a chunk, the lowest of a word first.
     words: Vec<u64>,
-    /// Of each chunk, whether it holds transmitted pixels: all others are 0.
-    holds: Vec<bool>,
     /// Pixels of full scale.
     saturated: usize,
 }
@@ -80,16 +78,15 @@ impl BrightChunks {
         let count = frame.dn().len().div_ceil(CHUNK);
         self.words.clear();
         self.words.resize(count.div_ceil(OF_A_WORD), 0);
-        self.holds.clear();
-        self.holds.resize(count, frame.windows().is_none());
-        for window in frame.windows().into_iter().flatten() {
-            for y in window.y..window.y + window.rows {
-                let first = y * frame.columns() + window.x;
-                self.holds[first / CHUNK..=(first + window.columns - 1) / CHUNK].fill(true);
-            }
-        }
         let from_dn = above_dn.saturating_add(1).min(full_scale);
-        pulp::Arch::new().dispatch(FindBright { bright: self, dn: frame.dn(), from_dn });
+        let (dn, columns) = (frame.dn(), frame.columns());
+        pulp::Arch::new().dispatch(FindBright {
+            words: &mut self.words,
+            dn,
+            columns,
+            windows: frame.windows(),
+            from_dn,
+        });
         let of_full_scale = |chunk: &[u16]| chunk.iter().filter(|&&dn| dn >= full_scale).count();
         self.saturated = self.chunks(frame).map(|(_, chunk)| of_full_scale(chunk)).sum();
     }
@@ -111,8 +108,11 @@ impl BrightChunks {
 
 /// The bright chunks of an image, on the widest registers of the machine.
 struct FindBright<'a> {
-    bright: &'a mut BrightChunks,
+    words: &'a mut [u64],
     dn: &'a [u16],
+    columns: usize,
+    /// Where pixels were transmitted, if not everywhere: all others are 0.
+    windows: Option<&'a [Window]>,
     from_dn: u16,
 }
 
@@ -121,15 +121,26 @@ impl pulp::WithSimd for FindBright<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        let Self { bright: BrightChunks { words, holds, .. }, dn, from_dn } = self;
-        let pixels = dn.chunks(OF_A_WORD * CHUNK).zip(holds.chunks(OF_A_WORD));
-        for (word, (dn, holds)) in words.iter_mut().zip(pixels) {
-            let (chunks, rest) = dn.as_chunks::<CHUNK>();
-            for (i, (chunk, _)) in chunks.iter().zip(holds).enumerate().filter(|(_, (_, holds))| **holds) {
-                *word |= u64::from(holds_from(from_dn, chunk)) << i;
+        let Self { words, dn, columns, windows, from_dn } = self;
+        let Some(windows) = windows else {
+            for (word, dn) in words.iter_mut().zip(dn.chunks(OF_A_WORD * CHUNK)) {
+                let (chunks, rest) = dn.as_chunks::<CHUNK>();
+                for (i, chunk) in chunks.iter().enumerate() {
+                    *word |= u64::from(holds_from(from_dn, chunk)) << i;
+                }
+                if !rest.is_empty() {
+                    *word |= u64::from(holds_from(from_dn, rest)) << chunks.len();
+                }
             }
-            if chunks.len() < holds.len() {
-                *word |= u64::from(holds_from(from_dn, rest)) << chunks.len();
+            return;
+        };
+        for window in windows {
+            for y in window.y..window.y + window.rows {
+                let first = y * columns + window.x;
+                for chunk in first / CHUNK..=(first + window.columns - 1) / CHUNK {
+                    let pixels = &dn[chunk * CHUNK..((chunk + 1) * CHUNK).min(dn.len())];
+                    words[chunk / OF_A_WORD] |= u64::from(holds_from(from_dn, pixels)) << (chunk % OF_A_WORD);
+                }
             }
         }
     }
@@ -278,7 +289,6 @@ pub(super) fn transmitted_pixels(frame: &Frame) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use contract::Window;
     use proptest::prelude::*;
 
     /// A 12-bit frame drawn in characters: '.' 0, digits hundreds of DN, '#' full scale.

@@ -4,7 +4,7 @@ use crate::pixel_factors::PixelFactors;
 use crate::smooth_field::SmoothField;
 
 /// The background of every pixel: (light + smooth + field) · response + dark + pattern.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Background {
     /// Electrons of flat light.
     pub(super) light_e: f64,
@@ -99,12 +99,14 @@ impl Background {
     }
 
     /// No pixel of a row has more, in an image of `columns`.
+    #[inline(always)]
     pub(super) fn row_bound_e(&self, y: usize, columns: usize) -> f64 {
         let smooth_e = self.smooth.as_ref().map_or(0.0, |(smooth, scale)| scale * smooth.largest_of_row(y));
         self.bound_with(smooth_e, self.field.get(y * columns..(y + 1) * columns).unwrap_or_default())
     }
 
     /// No pixel has more whose light is at most `smooth_e` and one of `field`.
+    #[inline(always)]
     fn bound_with(&self, smooth_e: f64, field: &[f64]) -> f64 {
         let field_e = field.iter().copied().fold(0.0, f64::max);
         let response = self.response.as_ref().map_or(1.0, |response| response.largest().max(1.0));

@@ -56,6 +56,12 @@ impl Objects {
         self.in_row[y].push(Part { object: self.count, from, to });
     }
 
+    /// Whether objects cover some of row `y`.
+    #[inline(always)]
+    pub(super) fn are_in_row(&self, y: usize) -> bool {
+        !self.in_row[y].is_empty()
+    }
+
     /// Tells the parts of a row that objects cover, each by its first column and the one after its last.
     pub(super) fn parts_of(&self, y: usize, mut tell: impl FnMut(usize, usize)) {
         self.in_row[y].iter().for_each(|part| tell(part.from, part.to));

@@ -17,6 +17,8 @@ pub(super) struct Exceedance {
     /// The means, in quarters of an electron, from and up to which the limit of dark pixels follows the background; `None` where
     /// the darkest pixel exceeds the floor too often.
     limits: Option<(u32, u32)>,
+    /// The limit told last, and its mean in quarters of an electron: rows side by side mostly have the same.
+    last_limit: Option<(u32, DarkLimit)>,
     /// By the mean in quarters of an electron, then by the electrons more.
     tails: BTreeMap<(u32, u32), Tail>,
 }
@@ -55,7 +57,7 @@ const MOST_MORE: u32 = 8;
 impl Exceedance {
     /// Of a law with shot noise.
     pub(super) fn new(law: &PixelLaw, floor_dn: u16) -> Self {
-        let mut new = Self { law: *law, floor_dn, limits: None, tails: BTreeMap::new() };
+        let mut new = Self { law: *law, floor_dn, limits: None, last_limit: None, tails: BTreeMap::new() };
         new.limits = new.last_below(MOST_FREQUENT).map(|high| (new.last_below(RAREST).unwrap_or(0), high));
         new
     }
@@ -77,11 +79,20 @@ impl Exceedance {
     }
 
     /// The limit of dark pixels over a background of at most `bound_e` electrons a pixel.
+    #[inline(always)]
     pub(super) fn dark_limit(&mut self, bound_e: f64) -> DarkLimit {
         let Some((low, high)) = self.limits else { return DarkLimit::NOWHERE };
         // A cast saturates.
         let quarters = ((4.0 * bound_e).ceil() as u32).clamp(low, high);
-        DarkLimit { mean_e: 0.25 * f64::from(quarters), probability: self.tail(quarters, 0).probability() }
+        if let Some((of, limit)) = self.last_limit
+            && of == quarters
+        {
+            return limit;
+        }
+        let probability = self.tail(quarters, 0).probability();
+        let limit = DarkLimit { mean_e: 0.25 * f64::from(quarters), probability };
+        self.last_limit = Some((quarters, limit));
+        limit
     }
 
     /// A number above the floor of a dark pixel with a mean of `mean_e` electrons, or none: with the probability that it

@@ -142,6 +142,9 @@ impl Work for Look<'_> {
                 image.wanted.add_columns(y, 0, expected.size().0);
                 continue;
             }
+            if !expected.is_row_lit(y) {
+                continue;
+            }
             for p in 0..expected.size().0.div_ceil(PARTS * PART) {
                 let parts = expected.parts_that_may_rise_above(simd, y, p, bound_e, limit.mean_e);
                 image.wanted.add(y, p * PARTS, parts);
@@ -151,6 +154,7 @@ impl Work for Look<'_> {
 }
 
 /// Appends the dark pixels of a row that are above the floor.
+#[inline(always)]
 fn thin_row(
     expected: &ExpectedImage,
     y: usize,
@@ -163,12 +167,12 @@ fn thin_row(
     if limit.probability <= 0.0 {
         return;
     }
-    let mut stream = streams.at(y as u64);
-    let mut level = uniform(&mut stream);
-    // P(no candidate) = (1 − p)ⁿ ≥ 1 − n p: nearly all rows need no logarithm.
-    if level <= 1.0 - columns as f64 * limit.probability {
+    // P(no candidate) = (1 − p)ⁿ ≥ 1 − n p: nearly all rows need no more than the first number of their stream.
+    if streams.first_uniform(y as u64) <= 1.0 - columns as f64 * limit.probability {
         return;
     }
+    let mut stream = streams.at(y as u64);
+    let mut level = uniform(&mut stream);
     let per_pixel = libm::log1p(-limit.probability);
     let mut x = 0.0;
     loop {
