@@ -237,6 +237,10 @@ impl Task<'_> {
     }
 }
 
+/// Parts whose means are made one after the other, then their words, then their numbers: each comes from places in memory of its
+/// own, and of one kind of work several are on their way at once.
+const BATCH: usize = 32;
+
 /// The wanted parts of a detector in which every pixel has a mean of its own.
 struct OwnMeansParts<'a> {
     task: Task<'a>,
@@ -251,32 +255,41 @@ impl pulp::WithSimd for OwnMeansParts<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { task, tables, image } = self;
-        let SparseImage { raw, drawn, wanted, limits, floor_dn, .. } = image;
-        let mut words = Words::<PART>::new();
+        let SparseImage { raw, drawn, wanted, to_draw, limits, floor_dn, .. } = image;
+        to_draw.clear();
         // Where there are no limits, all pixels are drawn.
-        for (y, &limit) in limits.iter().enumerate() {
-            let (wanted, drawn) = (wanted.row(y), drawn.row_mut(y));
-            if wanted.iter().zip(&*drawn).all(|(wanted, drawn)| wanted & !drawn == 0) {
-                continue;
-            }
-            let mut lanes = Lanes::at(task.words, y as u64);
-            let mut next = 0;
-            for (i, (wanted, drawn)) in wanted.iter().zip(drawn).enumerate() {
-                for part in set_bits(wanted & !*drawn).map(|bit| i * Parts::OF_A_WORD + bit) {
-                    lanes.skip(simd, (part - next) * PART / LANES);
-                    next = part + 1;
-                    words.draw(simd, &mut lanes);
-                    let pixels = pixels(task.columns, y, part);
-                    let mut means_e = [0.0; PART];
-                    let means_e = &mut means_e[..pixels.len()];
-                    task.expected.part::<PART>(y, part, means_e);
-                    let first = pixels.start;
-                    let row = &mut raw.dn[pixels];
-                    let own = |i: usize| task.words.at(task.place(first + i));
-                    tables.draw_piece(means_e, &words, row, own);
-                    task.keep_dark_pixels_below(*floor_dn, limit, first, means_e, row);
-                }
+        for y in 0..limits.len() {
+            let rows = wanted.row(y).iter().zip(drawn.row_mut(y));
+            for (i, (wanted, drawn)) in
+                rows.enumerate().filter(|(_, (wanted, drawn))| **wanted & !**drawn != 0)
+            {
+                to_draw.extend(set_bits(wanted & !*drawn).map(|bit| (y, i * Parts::OF_A_WORD + bit)));
                 *drawn |= *wanted;
+            }
+        }
+        let mut means_e = [[0.0; PART]; BATCH];
+        let mut words: [Words<PART>; BATCH] = std::array::from_fn(|_| Words::new());
+        let (mut lanes, mut of_row, mut next) = (Lanes::at(task.words, 0), 0, 0);
+        for parts in to_draw.chunks(BATCH) {
+            for (&(y, part), means_e) in parts.iter().zip(&mut means_e) {
+                let length = pixels(task.columns, y, part).len();
+                task.expected.part::<PART>(y, part, &mut means_e[..length]);
+            }
+            for (&(y, part), words) in parts.iter().zip(&mut words) {
+                if y != of_row {
+                    (lanes, of_row, next) = (Lanes::at(task.words, y as u64), y, 0);
+                }
+                lanes.skip(simd, (part - next) * PART / LANES);
+                next = part + 1;
+                words.draw(simd, &mut lanes);
+            }
+            for ((&(y, part), words), means_e) in parts.iter().zip(&words).zip(&means_e) {
+                let pixels = pixels(task.columns, y, part);
+                let (first, means_e) = (pixels.start, &means_e[..pixels.len()]);
+                let row = &mut raw.dn[pixels];
+                let own = |i: usize| task.words.at(task.place(first + i));
+                tables.draw_piece(means_e, words, row, own);
+                task.keep_dark_pixels_below(*floor_dn, limits[y], first, means_e, row);
             }
         }
     }

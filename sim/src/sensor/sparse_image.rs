@@ -13,6 +13,8 @@ pub(crate) struct SparseImage {
     pub(super) drawn: Parts,
     /// Which parts are to be drawn.
     pub(super) wanted: Parts,
+    /// Row and number of the parts that are drawn together.
+    pub(super) to_draw: Vec<(usize, usize)>,
     /// In which parts pixels were set one by one.
     touched: Parts,
     /// The limit of dark pixels in each row; empty where all pixels are drawn outright.
@@ -81,6 +83,7 @@ impl SparseImage {
             raw,
             drawn: none.clone(),
             wanted: none.clone(),
+            to_draw: Vec::new(),
             touched: none,
             limits: Vec::new(),
             exceeding: Vec::new(),
