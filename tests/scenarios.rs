@@ -32,6 +32,23 @@ fn every_built_in_scenario_passes_its_check() {
     }
 }
 
+/// What a run would refuse, a check does not pass.
+#[test]
+fn a_check_asks_the_pipeline_too() {
+    let bench = Bench::new();
+    let suppressed = format!("zero_suppression_dn = 67\n{STARTING_POINT}");
+    bench.write("suppressed.toml", suppressed);
+    let answer = bench.boresight("scenario check suppressed.toml --json");
+    assert_eq!(answer.status, Some(1), "{}", answer.stderr);
+    let check = answer.json();
+    let error = check["error"].as_str().unwrap();
+    assert!(error.contains("far_range.thresholds.mode") && error.contains("is automatic"), "{error}");
+    bench.boresight("run suppressed.toml --frames 0..1").refused(&["thresholds.mode is automatic"]);
+    // A program finds its own thresholds.
+    bench.boresight("scenario check suppressed.toml --pipeline exec:true").done();
+    bench.boresight("scenario check suppressed.toml --pipeline nobody").refused(&["no pipeline `nobody`"]);
+}
+
 #[test]
 fn the_list_names_every_built_in_scenario_with_its_frames() {
     let bench = Bench::new();

@@ -257,6 +257,30 @@ fn the_plan_holds_the_command_of_every_shard() {
     bench.boresight("study merge study.toml --out out").done();
 }
 
+/// The study of docs/studies.md that draws no dark pixels runs as it stands there, and is refused with thresholds below.
+#[test]
+fn whole_images_are_drawn_above_a_floor_by_one_word_and_never_looked_at_below() {
+    let bench = Bench::new();
+    let page = include_str!("../docs/studies.md");
+    let study = page.split("```toml").find(|part| part.contains("zero_suppression_dn\"\nvalues")).unwrap();
+    let study = study.split("```").next().unwrap();
+    bench.write("study.toml", study);
+    bench.boresight("study check study.toml").done();
+    bench.boresight("study run study.toml --out out --no-report").done();
+    assert!(bench.csv("out/cases.csv").iter().all(|case| case["hit_rate"].parse::<f64>().unwrap() > 0.9));
+    let refused = |old: &str, new: &str, parts: &[&str]| {
+        assert_eq!(study.matches(old).count(), 1, "`{old}`");
+        bench.write("study.toml", study.replace(old, new));
+        for verb in ["check", "plan", "run"] {
+            bench.boresight(&format!("study {verb} study.toml")).refused(parts);
+        }
+    };
+    refused("low = 0.0165", "low = 0.016", &["thresholds.low is 0.016, 65 DN"]);
+    refused("values = [67]", "values = [67, 100]", &["thresholds.low is 0.0165, 67 DN"]);
+    let constant = "{ mode = \"constant\", low = 0.0165, high = 0.03 }";
+    refused(constant, "{ mode = \"automatic\" }", &["thresholds.mode is automatic"]);
+}
+
 /// Every mistake names the file, the field, the value and what was expected.
 #[test]
 fn a_study_that_is_wrong_says_where() {

@@ -19,7 +19,7 @@ PROGRAM = ROOT / "target" / "release" / "boresight"
 LIMITS = [3.0, 4.0, 5.0, 6.0, 7.0]
 CASES = 4
 FRAMES, FEW = 2000, 20
-TURNS = 3
+TURNS = 5
 
 STUDY = """
 title = "A star field"

@@ -37,7 +37,7 @@ impl PixelFactors {
         let rows = by_rows.len() / columns;
         // Where there are no pixels, there is no light either.
         let mut values: Arc<[f32]> = vec![1.0; columns.div_ceil(STRIP) * rows * STRIDE + LINE].into();
-        // At a line's begin, or wherever it may be: it changes no factor.
+        // From the beginning of a line of memory, if that can be had: it changes no factor.
         let first = values.as_ptr().align_offset(size_of::<[f32; LINE]>()).min(LINE);
         let places = Arc::get_mut(&mut values).unwrap_or_default()[first..].chunks_exact_mut(STRIDE);
         let strips = (0..columns).step_by(STRIP);

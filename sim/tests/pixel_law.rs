@@ -16,9 +16,15 @@ const READ_NOISE_E: f64 = 1.2;
 const BIAS_DN: f64 = 20.3;
 const COLUMNS: usize = 1000;
 
-/// The twenty means, evenly on a logarithmic scale, each moved to the middle between two quarters.
+/// The twenty means, evenly on a logarithmic scale, each moved to the middle between two quarters, no two to the same.
 fn means_e() -> Vec<f64> {
-    (0..20).map(|i| 0.25 * (4.0 * 0.1 * libm::pow(1e5, f64::from(i) / 19.0)).floor() + 0.125).collect()
+    let mut after = 0.0;
+    let middles = (0..20).map(|i| {
+        let quarter = (4.0 * 0.1 * libm::pow(1e5, f64::from(i) / 19.0)).floor().max(after);
+        after = quarter + 1.0;
+        0.25 * quarter + 0.125
+    });
+    middles.collect()
 }
 
 fn even() -> SensorConfig {

@@ -9,8 +9,10 @@ use serde_json::json;
 use sim::onboard::image_bytes;
 
 use super::Answer;
+use super::options::PipelineOptions;
 use super::output::Output;
 use crate::failure::Failure;
+use crate::pipeline_choice::PipelineChoice;
 use crate::scenario::{
     BUILT_IN, CAMERAS, DOCKING, DockingScenario, FarRangeScenario, STARTING_POINT, Scenario, ScenarioSource,
     World,
@@ -24,6 +26,8 @@ pub(super) enum ScenarioCommand {
     Check {
         /// A built-in scenario or a TOML file
         scenario: String,
+        #[command(flatten)]
+        pipeline: PipelineOptions,
     },
     /// List the built-in cameras, or print one: the tables [camera] and [sensor], each value with its source
     Camera {
@@ -49,7 +53,7 @@ pub(super) enum ScenarioCommand {
 pub(super) fn scenario(command: &ScenarioCommand, output: &Output) -> Result<Answer, Failure> {
     match command {
         ScenarioCommand::List => list(output),
-        ScenarioCommand::Check { scenario } => return check(scenario, output),
+        ScenarioCommand::Check { scenario, pipeline } => return check(scenario, &pipeline.choice(), output),
         ScenarioCommand::Camera { name: None } => {
             let names: Vec<_> = CAMERAS.iter().map(|camera| camera.name).collect();
             output.answer(&names, names.join("\n"))
@@ -101,10 +105,19 @@ fn camera(name: &str, output: &Output) -> Result<(), Failure> {
 }
 
 /// A mistake in a scenario is the answer no; a file that cannot be read is none.
-fn check(scenario: &str, output: &Output) -> Result<Answer, Failure> {
-    let checked = ScenarioSource::read(scenario).and_then(|source| match &source.scenario {
-        Scenario::FarRange(scenario) => check_far_range(&source, scenario),
-        Scenario::Docking(scenario) => check_docking(&source, scenario),
+fn check(scenario: &str, choice: &PipelineChoice, output: &Output) -> Result<Answer, Failure> {
+    let checked = ScenarioSource::read(scenario).and_then(|source| {
+        let checked = match &source.scenario {
+            Scenario::FarRange(scenario) => check_far_range(&source, scenario)?,
+            Scenario::Docking(scenario) => check_docking(&source, scenario)?,
+        };
+        choice.check(&source.scenario)?;
+        if choice.is_built_in(source.scenario.world())
+            && let Scenario::FarRange(scenario) = &source.scenario
+        {
+            source.check_built_in_pipeline(scenario)?;
+        }
+        Ok(checked)
     });
     let (document, text) = match checked {
         Err(mistake @ Failure::Toml(_)) => {

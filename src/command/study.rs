@@ -118,6 +118,8 @@ pub(super) struct ReplayArguments {
 pub(super) struct CheckArguments {
     /// A TOML file (docs/studies.md)
     study: PathBuf,
+    #[command(flatten)]
+    pipeline: PipelineOptions,
 }
 
 /// A shard of so many.
@@ -292,7 +294,7 @@ fn plan(arguments: &PlanArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
     refuse_until(&study)?;
     let choice = arguments.pipeline.choice();
-    choice.check(study.scenario())?;
+    check_pipeline(&choice, &study)?;
     let plan = Plan::new(&study, study.hash_with(&choice), arguments.shards)?;
     let planned = planned(&study, &plan, &arguments.study, &choice)?;
     let command = |verb: &str| {
@@ -323,6 +325,15 @@ fn refuse_until(study: &Study) -> Result<(), Failure> {
             study.name
         ))),
     }
+}
+
+/// Refuses a pipeline that the study's scenario does not have, or that cannot be run on its cameras.
+fn check_pipeline(choice: &PipelineChoice, study: &Study) -> Result<(), Failure> {
+    choice.check(study.scenario())?;
+    if choice.is_built_in(study.scenario().world()) {
+        study.check_built_in_pipeline()?;
+    }
+    Ok(())
 }
 
 fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> Result<Planned, Failure> {
@@ -410,6 +421,7 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
 
 fn check(arguments: &CheckArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
+    check_pipeline(&arguments.pipeline.choice(), &study)?;
     let document = serde_json::json!({
         "study": study.name, "title": study.file.title, "cases": study.cases(), "hash": study.hash(),
         "parameters": study.drawn_columns().keys().collect::<Vec<_>>(), "figures": study.figures(),

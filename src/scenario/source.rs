@@ -168,6 +168,15 @@ impl ScenarioSource {
         Simulator::new(&scenario.simulation(), &self.folder).map_err(|error| self.explain(error))
     }
 
+    /// Checks that the built-in pipeline can be run on the camera of a far-range scenario.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the parameter by which it cannot.
+    pub fn check_built_in_pipeline(&self, scenario: &FarRangeScenario) -> Result<(), Failure> {
+        let (floor_dn, bit_depth) = (scenario.zero_suppression_dn, scenario.sensor.bit_depth);
+        self.check_pipeline("far_range", scenario.far_range.check_suppression(floor_dn, bit_depth))
+    }
+
     /// The simulator of a docking scenario; every value is checked, those of the target's file too.
     ///
     /// # Errors

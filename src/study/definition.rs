@@ -196,6 +196,26 @@ impl Study {
         self.file.stop.cases
     }
 
+    /// Number of points of the sweep: the first so many cases are one of each.
+    fn sweep_points(&self) -> u64 {
+        self.sweep.iter().map(|swept| swept.values.len() as u64).product()
+    }
+
+    /// Checks that the built-in pipeline can be run on the cameras of the sweep, of its first thousand points.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the parameter by which it cannot, in the case's scenario.
+    pub fn check_built_in_pipeline(&self) -> Result<(), Failure> {
+        const MOST_POINTS: u64 = 1000;
+        for number in 0..self.sweep_points().min(self.cases()).min(MOST_POINTS) {
+            let source = self.case(number)?.source;
+            if let Scenario::FarRange(scenario) = &source.scenario {
+                source.check_built_in_pipeline(scenario)?;
+            }
+        }
+        Ok(())
+    }
+
     /// SHA-256 of all that the rows depend on but the pipeline: the study, its scenario, its tables; hexadecimal.
     pub fn hash(&self) -> &str {
         &self.hash
@@ -289,7 +309,7 @@ impl Study {
     /// # Errors
     /// A [`Failure`] when the values drawn make no scenario; the place is that of the value in the case's scenario.
     pub fn case(&self, number: u64) -> Result<Case, Failure> {
-        let cells: u64 = self.sweep.iter().map(|swept| swept.values.len() as u64).product();
+        let cells = self.sweep_points();
         let (mut cell, replicate) = (number % cells, number / cells);
         let mut values = self.base_values.clone();
         let mut drawn = Vec::new();

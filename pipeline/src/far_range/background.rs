@@ -67,7 +67,7 @@ impl BackgroundEstimator {
         Some(Background { median_dn, sigma_dn: sigma_dn.max(QUANTISATION_DN) })
     }
 
-    /// The bins that hold pixels of some ranks, which grow, and the values there, interpolated inside each (bin n covers n ± 0.5);
+    /// The bins that hold the pixels of some ranks, in ascending order, and the values there, interpolated inside each (bin n covers n ± 0.5);
     /// `None` without any pixels.
     fn at_ranks<const N: usize>(&self, ranks: [f64; N]) -> Option<[(usize, f64); N]> {
         let (mut found, mut next) = ([(0, 0.0); N], 0);

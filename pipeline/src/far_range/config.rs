@@ -98,7 +98,7 @@ impl FarRangeConfig {
     ///
     /// # Errors
     /// [`PipelineError::Parameter`] for the parameter by which it would.
-    pub(super) fn check_suppression(
+    pub fn check_suppression(
         &self,
         zero_suppression_dn: Option<u16>,
         bit_depth: u8,

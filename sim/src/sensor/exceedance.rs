@@ -150,7 +150,7 @@ impl Tail {
                 sum
             })
             .collect();
-        Self { first_dn: whole.first_dn + below as u16, cumulative }
+        Self { first_dn: whole.first_dn.saturating_add(below as u16), cumulative }
     }
 
     fn probability(&self) -> f64 {

@@ -389,8 +389,11 @@ mod tests {
         let law = law();
         let mut tables = OwnMeans::new(&law);
         let mut row = vec![0; 1000];
+        let mut after = 0.0;
         for i in 0..20_u64 {
-            let quarters = (4.0 * 0.1 * libm::pow(2550.0, i as f64 / 19.0)).floor();
+            // No two in the same quarter.
+            let quarters = (4.0 * 0.1 * libm::pow(2550.0, i as f64 / 19.0)).floor().max(after);
+            after = quarters + 1.0;
             let mean_e = 0.25 * quarters + 0.125;
             let streams = Seed { seed: 26, case: i }.streams(0, Effect::PixelNoise);
             let means = vec![mean_e; row.len()];

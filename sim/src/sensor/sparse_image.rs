@@ -41,7 +41,7 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// Parts of a word, which is that many pixels.
+    /// Parts of a word: a bit each.
     pub(super) const OF_A_WORD: usize = u64::BITS as usize;
 
     /// None of an image of `columns` × `rows`.
