@@ -36,7 +36,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 SCENARIO = ROOT / "scenarios" / "argon.toml"
 
-# Benninghoff et al., Table 2, percent: days 1 to 5. src/score/argon_table2.rs has it too; a test compares the two.
+# Benninghoff et al., Table 2, percent: days 1 to 5. oracle/score/src/argon_table2.rs has it too; a test compares the two.
 TABLE_2 = {
     "hit_rate": [94.92, 94.99, 92.22, 92.63, 96.41],
     "ra_within_1px": [83.50, 83.95, 85.63, 87.30, 84.96],

@@ -1,33 +1,34 @@
-//! The oracle: it knows the truth, hears what a pipeline says, and tells how good the pipeline is and why it
-//! failed where it failed. The command `boresight` stands on it.
+//! Boresight as a library: the oracle's crates under one name, and the command `boresight` on top of them.
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
 
 pub mod command;
-pub mod dataset_writer;
-pub mod docking_renderer;
-pub mod docking_run;
-pub mod docking_table;
-pub mod docking_writer;
-pub mod failure;
-pub mod files;
-pub mod flight;
-pub mod gate;
-pub mod gate_table;
-pub mod inject;
-pub mod mitsuba;
-pub mod monitor;
-pub mod pipeline_choice;
-pub mod report;
-pub mod run;
-pub mod run_file;
-pub mod scenario;
-pub mod score;
-pub mod sha256;
-pub mod star_list;
-pub mod statistics;
-pub mod study;
-pub mod study_engine;
-pub mod study_table;
 pub mod table;
-pub mod toml_file;
-pub mod visibility;
-pub mod visibility_table;
+
+#[cfg(feature = "mitsuba")]
+pub use ::mitsuba;
+#[cfg(feature = "monitor")]
+pub use ::monitor;
+#[cfg(feature = "report")]
+pub use ::report;
+pub use files::{self, failure, sha256, toml_file};
+pub use gate;
+pub use run::{
+    self, dataset_writer, docking_renderer, docking_run, docking_writer, flight, inject, pipeline_choice,
+    star_list,
+};
+pub use scenario::{self, run_file};
+pub use score;
+pub use show;
+pub use statistics;
+pub use study;
+pub use visibility;

@@ -109,11 +109,19 @@ impl Frame {
     }
 
     /// One row.
+    ///
+    /// # Panics
+    /// For a row that the frame does not have.
+    #[allow(clippy::indexing_slicing, reason = "as of a slice, the caller keeps to the size of the frame")]
     pub fn row(&self, y: usize) -> &[u16] {
         &self.dn[y * self.columns..(y + 1) * self.columns]
     }
 
     /// The digital number of the pixel (x, y).
+    ///
+    /// # Panics
+    /// For a pixel that the frame does not have.
+    #[allow(clippy::indexing_slicing, reason = "as of a slice, the caller keeps to the size of the frame")]
     pub fn at(&self, x: usize, y: usize) -> u16 {
         self.dn[y * self.columns + x]
     }

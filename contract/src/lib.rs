@@ -5,8 +5,24 @@
 //! Conventions and parameters live here; mathematics of projection or aberration does not, because an error
 //! in shared mathematics would cancel and the oracle would be blind to it.
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
 mod angle;
 mod camera;
+#[allow(
+    clippy::indexing_slicing,
+    clippy::expect_used,
+    reason = "the images are made here, in the size of the camera"
+)]
 pub mod conformance;
 mod direction;
 pub mod docking;

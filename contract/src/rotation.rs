@@ -95,6 +95,7 @@ impl<To, From> Rotation<To, From> {
     }
 
     /// The Euler angles (φ, θ, ψ) of [`Rotation::from_euler_123`]; θ in [−90°, 90°].
+    #[allow(clippy::indexing_slicing, reason = "constant indices of a 3 × 3 matrix")]
     pub fn euler_123(&self) -> (Angle, Angle, Angle) {
         let m = self.matrix();
         let phi = libm::atan2(-m[(2, 1)], m[(2, 2)]);

@@ -51,7 +51,7 @@ class Ours:
     """The example frame_speed, which waits for requests."""
 
     def __init__(self):
-        command = ["cargo", "build", "--release", "--example", "frame_speed", "--message-format=json"]
+        command = ["cargo", "build", "--release", "-p", "boresight-research", "--bin", "frame_speed", "--message-format=json"]
         built = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
         if built.returncode != 0:
             stop("frame_speed was not built")

@@ -14,12 +14,12 @@ fn prepare() -> (&'static Target, Sandbox) {
     let name = std::env::var("BORESIGHT_TARGET").unwrap_or_default();
     let target =
         Target::named(&name).unwrap_or_else(|| panic!("BORESIGHT_TARGET is `{name}`, expected a target"));
-    // The fuzzer's own hook ends the process at every panic. Those inside the crates of Parquet are caught by the reader, which makes
+    // The fuzzer's own hook ends the process at every panic. Those inside the crate `parquet` and the buffers it slices are caught by the reader, which makes
     // errors of them; one that comes as far as here is the reader's.
     let _ = take_hook();
     set_hook(Box::new(|panic| {
         let place = panic.location().map_or("", |location| location.file());
-        if !["parquet-", "arrow-"].iter().any(|name| place.contains(name)) {
+        if !["parquet-", "bytes-"].iter().any(|name| place.contains(name)) {
             eprintln!("{panic}\n{}", std::backtrace::Backtrace::force_capture());
             std::process::abort();
         }
@@ -30,7 +30,7 @@ fn prepare() -> (&'static Target, Sandbox) {
 fuzz_target!(|bytes: &[u8]| {
     let (target, sandbox) = TARGET.get_or_init(prepare);
     if catch_unwind(std::panic::AssertUnwindSafe(|| target.run(sandbox, bytes))).is_err() {
-        eprintln!("a panic of the crates of Parquet came out of the reader");
+        eprintln!("a panic of the crate `parquet` came out of the reader");
         std::process::abort();
     }
 });

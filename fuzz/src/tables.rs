@@ -4,8 +4,8 @@ use std::path::Path;
 
 use boresight::files::docking::{FeatureRow, read_field_measurements, read_motion};
 use boresight::files::{
-    Dataset, FrameCluster, Row, TableReader, arrow_of_csv, arrow_of_parquet, read_column,
-    read_field_telemetry, read_measurements, read_stars, read_telemetry,
+    Dataset, FrameCluster, Row, TableReader, read_column, read_csv_table, read_field_telemetry,
+    read_measurements, read_parquet_table, read_stars, read_telemetry,
 };
 use boresight::gate::Baseline;
 use boresight::study::CaseTable;
@@ -31,7 +31,7 @@ pub(crate) fn csv(sandbox: &Sandbox, bytes: &[u8]) {
     let _ = read_stars(&path);
     let _ = read_sky(&path);
     let _ = read_column(&path, "value");
-    let _ = arrow_of_csv(&path);
+    let _ = read_csv_table(&path);
 }
 
 pub(crate) fn parquet(sandbox: &Sandbox, bytes: &[u8]) {
@@ -42,7 +42,7 @@ pub(crate) fn parquet(sandbox: &Sandbox, bytes: &[u8]) {
     rows::<FeatureRow>(&path);
     rows::<FrameCluster>(&path);
     let _ = CaseTable::columns_of(&path).and_then(|columns| columns.read(&path));
-    let _ = arrow_of_parquet(&path);
+    let _ = read_parquet_table(&path);
 }
 
 fn rows<R: Row>(path: &Path) {

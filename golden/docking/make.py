@@ -1,6 +1,6 @@
 """Makes golden/docking/*.exr: docking scenes rendered by Mitsuba.
 
-The scenes are told to Mitsuba by this project's own exporter (sim/src/mitsuba), which tests/mitsuba_live.rs holds against
+The scenes are told to Mitsuba by this project's own exporter (sim/src/mitsuba), which the suite mitsuba_live holds against
 closed forms; what shines where is Mitsuba's work alone. Needs cargo, and Mitsuba 3.9.1 on the PATH or in
 BORESIGHT_MITSUBA. Takes some ten minutes of four cores.
 
@@ -22,7 +22,7 @@ import manifest  # noqa: E402
 def main():
     reason = manifest.begin().reason
     subprocess.run(
-        ["cargo", "run", "--quiet", "--example", "golden_docking", "--", str(HERE)], cwd=HERE.parent.parent, check=True
+        ["cargo", "run", "--quiet", "-p", "boresight-research", "--bin", "golden_docking", "--", str(HERE)], cwd=HERE.parent.parent, check=True
     )
     for path in [*sorted(HERE.glob("*.exr")), HERE / "cases.toml", HERE / "target.toml"]:
         manifest.record(path, reason)

@@ -16,7 +16,7 @@ pub(crate) fn raised(failure: Failure) -> PyErr {
         Failure::File(ReadOrWrite::Io { .. } | ReadOrWrite::OutputTaken { .. }) => {
             FileError::new_err(failure.to_string())
         }
-        Failure::Mitsuba(_) => BoresightError::new_err(failure.to_string()),
+        Failure::Renderer(_) => BoresightError::new_err(failure.to_string()),
         _ => {
             let text = failure.explain();
             InputError::new_err(text.strip_prefix("error: ").unwrap_or(&text).to_owned())

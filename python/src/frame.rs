@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use arrow_array::RecordBatch;
-use boresight::files::{Row, arrow_of_rows, format_utc};
+use boresight::files::{Row, format_utc};
 use contract::docking::{Field, FieldTelemetry as DockingTelemetry};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -11,8 +11,10 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::PyDict;
 use sim::Exposure;
 use sim::docking::FieldTruth;
+use sim::truth::{FrameTruth, ObjectTruth};
 
-use crate::errors::{BoresightError, raised, refused};
+use crate::arrow::batch;
+use crate::errors::{raised, refused};
 use crate::scenario::{Ready, World};
 use crate::table::{Table, row};
 
@@ -139,8 +141,8 @@ impl SimulatedFrame {
     pub(crate) fn of(py: Python<'_>, exposure: Exposure, ready: &Arc<Ready>) -> PyResult<Py<Self>> {
         let own = Self {
             telemetry: Py::new(py, Telemetry::of(&exposure.telemetry))?.into_any(),
-            truth: batch(&[exposure.truth])?,
-            objects: Some(batch(&exposure.objects)?),
+            truth: batch(FrameTruth::columns(&[exposure.truth]))?,
+            objects: Some(batch(ObjectTruth::columns(&exposure.objects))?),
             ready: Arc::clone(ready),
             expected: PyOnceLock::new(),
         };
@@ -157,17 +159,13 @@ impl SimulatedFrame {
     ) -> PyResult<Py<Self>> {
         let own = Self {
             telemetry: Py::new(py, FieldTelemetry::of(telemetry))?.into_any(),
-            truth: batch(&[truth])?,
+            truth: batch(FieldTruth::columns(&[truth]))?,
             objects: None,
             ready: Arc::clone(ready),
             expected: PyOnceLock::new(),
         };
         Py::new(py, PyClassInitializer::from(Frame::of_field(py, field)?).add_subclass(own))
     }
-}
-
-fn batch<R: Row>(rows: &[R]) -> PyResult<RecordBatch> {
-    arrow_of_rows(rows).map_err(|error| BoresightError::new_err(error.to_string()))
 }
 
 #[pymethods]

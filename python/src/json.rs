@@ -1,16 +1,5 @@
 //! Values between Python and Rust, as JSON: numbers keep every bit both ways.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde_json::Value;

@@ -3,12 +3,23 @@
 //!
 //! Nothing is computed here: values change hands. Every number is that of the command, bit for bit (python/tests).
 
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
 #![allow(
     clippy::result_large_err,
     reason = "the engine's failures are what they are, and are made once a call"
 )]
 
 mod arguments;
+mod arrow;
 mod command;
 mod errors;
 mod frame;

@@ -116,8 +116,8 @@ fn reason(py: Python<'_>, error: PyErr, ended: &Ended) -> String {
 /// The beginning of what an exception says.
 fn said(error: &PyErr) -> String {
     let text = error.to_string();
-    match text.char_indices().nth(REASON) {
-        Some((end, _)) => format!("{}…", &text[..end]),
+    match text.char_indices().nth(REASON).and_then(|(end, _)| text.get(..end)) {
+        Some(beginning) => format!("{beginning}…"),
         None => text,
     }
 }

@@ -1,22 +1,11 @@
 //! Simulate, process, score: what the command `run` does, with its directory behind it.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use boresight::docking_run::DockingFlight;
 use boresight::failure::Failure;
-use boresight::files::{Checksums, RunDirectory, arrow_of_csv, arrow_of_parquet};
+use boresight::files::{Checksums, RunDirectory, read_csv_table, read_parquet_table};
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::{Expectation, FirstFailure, Flight};
 use boresight::scenario::{Scenario as Values, ScenarioSource};
@@ -27,6 +16,7 @@ use pyo3::prelude::*;
 use tempfile::TempDir;
 
 use crate::arguments;
+use crate::arrow::batch;
 use crate::errors::{BoresightError, FileError, file_error, raised, refused};
 use crate::json;
 use crate::python_pipeline::PythonPipeline;
@@ -55,13 +45,13 @@ impl Run {
 
     fn parquet(&self, py: Python<'_>, name: &str) -> PyResult<Table> {
         let path = self.path.join(name);
-        let (schema, batches) = py.detach(|| arrow_of_parquet(&path)).map_err(file_error)?;
-        Ok(Table::new(schema, batches))
+        Table::of_parts(py.detach(|| read_parquet_table(&path)).map_err(file_error)?)
     }
 
     fn csv(&self, py: Python<'_>, name: &str) -> PyResult<Table> {
         let path = self.path.join(name);
-        py.detach(|| arrow_of_csv(&path)).map(Table::of_batch).map_err(file_error)
+        let columns = py.detach(|| read_csv_table(&path)).map_err(file_error)?;
+        batch(columns).map(Table::of_batch)
     }
 
     fn of_world(&self, what: &str, is_docking: bool) -> PyResult<()> {

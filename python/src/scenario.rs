@@ -7,6 +7,7 @@ use boresight::docking_renderer::DockingRenderer;
 use boresight::docking_run::PreparedDocking;
 use boresight::failure::Failure;
 use boresight::run::Prepared;
+use boresight::run_file::ScenarioFile;
 use boresight::scenario::{BUILT_IN, Scenario as Values, ScenarioSource};
 use boresight::study::{Study, value_at, with_overlay};
 use contract::docking::Digitiser;
@@ -169,10 +170,10 @@ impl Scenario {
     /// All its values with all defaults, as a TOML file that can be run.
     fn to_toml(&self) -> PyResult<String> {
         let text = match &self.ready.source.scenario {
-            Values::FarRange(scenario) => toml::to_string(scenario),
-            Values::Docking(scenario) => toml::to_string(scenario),
+            Values::FarRange(scenario) => scenario.to_toml(),
+            Values::Docking(scenario) => scenario.to_toml(),
         };
-        text.map_err(|error| BoresightError::new_err(error.to_string()))
+        text.map_err(raised)
     }
 
     /// What a pipeline is told before the first frame, a dictionary: camera, mounting and star list (docking: cameras and target). Its keys

@@ -1,16 +1,5 @@
 //! The oracle over anybody's measurements.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 use std::path::{Path, PathBuf};
 
 use boresight::docking_run::score_docking;

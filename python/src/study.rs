@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use boresight::failure::Failure;
-use boresight::files::arrow_of_parquet;
+use boresight::files::read_parquet_table;
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::FirstFailure;
 use boresight::study::{Campaign, Evaluated, Known, Study, StudyPipeline, Workers};
@@ -52,8 +52,7 @@ impl StudyResult {
     /// A row a case: `case`, `seed`, `set.PATH` for what was drawn, and NAME, NAME.count, NAME.of for each figure.
     #[getter]
     fn rows(&self, py: Python<'_>) -> PyResult<Table> {
-        let (schema, batches) = py.detach(|| arrow_of_parquet(&self.cases)).map_err(file_error)?;
-        Ok(Table::new(schema, batches))
+        Table::of_parts(py.detach(|| read_parquet_table(&self.cases)).map_err(file_error)?)
     }
 
     fn __repr__(&self) -> String {

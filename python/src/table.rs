@@ -6,11 +6,13 @@ use arrow_array::types::{Float64Type, TimestampNanosecondType, UInt32Type, UInt6
 use arrow_array::{Array, ArrayRef, RecordBatch, RecordBatchIterator};
 use arrow_schema::ffi::FFI_ArrowSchema;
 use arrow_schema::{ArrowError, DataType, SchemaRef};
+use boresight::files::WholeTable;
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict, PyList};
 
+use crate::arrow::{batch, schema};
 use crate::errors::BoresightError;
 
 /// A table: columns by name, units in the names, as docs/formats.md describes them.
@@ -24,8 +26,11 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    pub(crate) fn new(schema: SchemaRef, batches: Vec<RecordBatch>) -> Self {
-        Self { schema, batches }
+    /// A table of a file.
+    pub(crate) fn of_parts(table: WholeTable) -> PyResult<Self> {
+        let schema = schema(&table.header);
+        let batches = table.parts.into_iter().map(batch).collect::<PyResult<_>>()?;
+        Ok(Self { schema, batches })
     }
 
     pub(crate) fn of_batch(batch: RecordBatch) -> Self {

@@ -4,7 +4,7 @@
 //! `cargo bench -p boresight-sim --bench frame`; `docs/speed/benchmarks.py` makes tables and a chart of what it finds.
 #![allow(clippy::unwrap_used, reason = "a benchmark ends by panicking")]
 
-#[path = "../tests/argon/mod.rs"]
+#[path = "../tests/it/argon.rs"]
 mod argon;
 #[path = "../../benches/support/processor_time.rs"]
 mod processor_time;
@@ -20,7 +20,7 @@ use boresight_sim::randomness::{Effect, Seed};
 use boresight_sim::sensor::{
     FixedPatternConfig, FlatLaws, LineNoiseConfig, Opening, RawImage, Sensor, SensorConfig,
 };
-use boresight_sim::{Drawing, Simulator};
+use boresight_sim::{Drawing, Simulation, Simulator};
 use contract::PixelPoint;
 use criterion::{BenchmarkId, Criterion, Throughput};
 use processor_time::ProcessorTime;

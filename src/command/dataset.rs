@@ -1,38 +1,26 @@
 //! `boresight render` and `boresight process`: datasets for somebody else's pipeline, and from somebody else's camera.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use contract::Setup;
 use contract::docking::Digitiser;
+use files::docking::SetupFile;
+use files::{
+    Checksums, Dataset, Failure, FieldOrder, FieldSource, FileError, FrameSize, ImageFormat, RunDirectory,
+    Scan, SequenceOptions, StarRow, read_stars,
+};
+use run::docking_renderer::DockingRenderer;
+use run::docking_run::{DockingFlight, PreparedDocking, process_fields, stream_fields};
+use run::docking_writer::FieldImages;
+use run::star_list::star_list;
+use run::{self, Expectation, Flight, Prepared};
+use scenario::{Scenario, ScenarioSource};
 use serde_json::json;
 
 use super::Answer;
 use super::options::{PipelineOptions, RendererOptions, Selection, format_of};
 use super::output::Output;
-use crate::docking_renderer::DockingRenderer;
-use crate::docking_run::{DockingFlight, PreparedDocking, process_fields, stream_fields};
-use crate::docking_writer::FieldImages;
-use crate::failure::Failure;
-use crate::files::docking::SetupFile;
-use crate::files::{
-    Checksums, Dataset, FieldOrder, FieldSource, FileError, FrameSize, ImageFormat, RunDirectory, Scan,
-    SequenceOptions, StarRow, read_stars,
-};
-use crate::run::{self, Expectation, Flight, Prepared};
-use crate::scenario::{Scenario, ScenarioSource};
-use crate::star_list::star_list;
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArguments {

@@ -3,17 +3,16 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-
-use super::Answer;
-use super::output::Output;
-use crate::failure::Failure;
-use crate::files::WholeFile;
-use crate::gate::{
+use files::{Failure, WholeFile};
+use gate::{
     Baseline, CompareOptions, FigureVerdict, GateReport, Replace, compare, junit, junit_of_failure,
     read_result,
 };
-use crate::gate_table::{baseline_text, gate_table};
-use crate::report::{FlippedFrames, gate_page, write_page};
+
+use super::Answer;
+use super::output::Output;
+use super::report::{check_option, write_gate};
+use crate::table::{baseline_text, gate_table};
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -121,6 +120,7 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
             path.display()
         )));
     }
+    check_option(arguments.report.as_ref())?;
     let compared = compared(arguments);
     if let Some(path) = &arguments.junit {
         let xml = match &compared {
@@ -131,7 +131,7 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
     }
     let report = compared?;
     if let Some(path) = &arguments.report {
-        write_page(&gate_page(&report, FlippedFrames::render(&report, &arguments.result)?), path)?;
+        write_gate(&report, &arguments.result, path)?;
     }
     output.answer(&report, gate_table(&report, output.is_terminal()))?;
     Ok(if report.verdict == FigureVerdict::Worse { Answer::No } else { Answer::Yes })

@@ -19,23 +19,12 @@ pub(super) fn end_programs_when_interrupted() {
     });
 }
 
-/// Waits for the first of the signals that end a process; its number.
+/// Waits for the first of the signals that end a process and returns its number.
 #[cfg(unix)]
 fn first_signal() -> std::io::Result<i32> {
-    use tokio::signal::unix::{SignalKind, signal};
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    runtime.block_on(async {
-        let kinds = [SignalKind::interrupt(), SignalKind::terminate(), SignalKind::hangup()];
-        let mut signals = kinds.into_iter().map(signal).collect::<std::io::Result<Vec<_>>>()?;
-        std::future::poll_fn(|context| {
-            let mut both = kinds.iter().zip(&mut signals);
-            match both.find_map(|(kind, signal)| signal.poll_recv(context).is_ready().then_some(kind)) {
-                Some(kind) => std::task::Poll::Ready(Ok(kind.as_raw_value())),
-                None => std::task::Poll::Pending,
-            }
-        })
-        .await
-    })
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP])?;
+    signals.forever().next().ok_or_else(|| std::io::ErrorKind::UnexpectedEof.into())
 }
 
 /// Elsewhere a program ends when its input does.

@@ -1,5 +1,6 @@
 //! The command `boresight`: arguments in, exit status out. Printing, clocks and environment live here.
 
+mod cluster;
 mod dataset;
 mod gate;
 mod interrupt;
@@ -11,15 +12,14 @@ mod run;
 mod scenario;
 mod score;
 mod shell;
+mod show;
 mod study;
 mod visibility;
-
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-
-use crate::failure::Failure;
+use files::Failure;
 
 /// Synthetic scene simulator and test oracle for optical navigation.
 ///
@@ -53,6 +53,8 @@ enum Command {
     Gate(gate::GateArguments),
     /// One HTML file of what a directory of results holds: charts, tables, frames; it needs no network
     Report(report::ReportArguments),
+    /// Draw frames of a run or dataset: pixels, truth, answer, regions, scale bar and legend as one PNG
+    Show(show::ShowArguments),
     /// The page of an operator, on loopback: camera, ground track, phase chart, model and parameters
     #[command(
         after_help = "SCENARIO may be the directory of a run: it is then replayed, its pictures drawn anew. The name of a built-in \
@@ -103,6 +105,7 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Visibility(arguments) => visibility::visibility(&arguments, &output),
         Command::Gate(arguments) => gate::gate(&arguments, &output),
         Command::Report(arguments) => report::report(&arguments, &output),
+        Command::Show(arguments) => show::show(&arguments, &output),
         Command::Monitor(arguments) => monitor::monitor(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
         Command::Completions(arguments) => shell::completions(&arguments, &output),
@@ -122,4 +125,11 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
 fn scratch_directory() -> Result<tempfile::TempDir, Failure> {
     tempfile::tempdir()
         .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))
+}
+
+/// The failure of a command that needs a feature which this build does not have.
+fn missing_feature(feature: &str) -> Failure {
+    Failure::Usage(format!(
+        "this boresight was built without the feature `{feature}`, expected a build with it: cargo install --path . --features {feature}"
+    ))
 }

@@ -1,18 +1,16 @@
 //! Arguments that several commands share.
-
 use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
+use files::Failure;
 use pipeline::external::DEFAULT_MEMORY_MB;
+use run::docking_renderer::DockingRenderer;
+use run::pipeline_choice::PipelineChoice;
+use scenario::ScenarioSource;
 
 use super::interrupt::end_programs_when_interrupted;
-use crate::docking_renderer::DockingRenderer;
-use crate::failure::Failure;
-use crate::mitsuba::MitsubaOptions;
-use crate::pipeline_choice::PipelineChoice;
-use crate::scenario::ScenarioSource;
 
 /// A range of frames, `A..B`: from A up to and without B.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -137,13 +135,23 @@ impl RendererOptions {
             self.check_fast()?;
             return Ok(DockingRenderer::Fast);
         }
-        let mut options = MitsubaOptions {
+        self.mitsuba_renderer()
+    }
+
+    #[cfg(feature = "mitsuba")]
+    fn mitsuba_renderer(&self) -> Result<DockingRenderer, Failure> {
+        let mut options = mitsuba::MitsubaOptions {
             command: self.mitsuba.clone(),
             cache: self.mitsuba_cache.clone(),
-            ..MitsubaOptions::default()
+            ..mitsuba::MitsubaOptions::default()
         };
         options.settings.samples = self.mitsuba_rays.unwrap_or(options.settings.samples);
         DockingRenderer::mitsuba(options)
+    }
+
+    #[cfg(not(feature = "mitsuba"))]
+    fn mitsuba_renderer(&self) -> Result<DockingRenderer, Failure> {
+        Err(super::missing_feature("mitsuba"))
     }
 
     /// The number of threads: one where each image has several of its own.

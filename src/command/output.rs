@@ -1,15 +1,13 @@
 //! What goes to stdout and stderr: a table for a person, or one JSON document.
-
 use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 use std::time::Duration;
 
+use files::Failure;
 use indicatif::{ProgressBar, ProgressStyle};
 use pipeline::external::protocol::harmless;
+use run::FirstFailure;
 use serde::Serialize;
-
-use crate::failure::Failure;
-use crate::run::FirstFailure;
 
 /// The two streams, and whether stdout belongs to a machine.
 #[derive(Debug, Clone, Copy)]
@@ -34,6 +32,10 @@ impl Output {
     }
 
     /// Prints `document` where `--json` asks for it: of a command that has nothing else for stdout.
+    #[cfg_attr(
+        not(feature = "monitor"),
+        expect(dead_code, reason = "only the monitor answers while it runs")
+    )]
     pub(super) fn document(&self, document: &impl Serialize) -> Result<(), Failure> {
         if self.json { self.answer(document, "") } else { Ok(()) }
     }

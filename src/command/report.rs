@@ -1,20 +1,24 @@
-//! `boresight report`: one HTML file of what a directory of results holds.
+//! `boresight report`, and the reports that other commands leave beside their results.
 
+#[cfg(feature = "report")]
 mod budget;
-
-use std::path::{Path, PathBuf};
+#[cfg(feature = "report")]
+mod pages;
+#[cfg(not(feature = "report"))]
+#[path = "report/no_pages.rs"]
+mod pages;
+use std::path::PathBuf;
 
 use clap::Args;
+use files::Failure;
 use serde_json::json;
 
-use self::budget::fly_budget;
-use super::Answer;
 use super::output::Output;
-use crate::failure::Failure;
-use crate::report::{Page, report_of, report_with_budget, write_page};
+use super::{Answer, missing_feature};
 
-/// The word for the runs of every stage.
-const ALL: &str = "all";
+pub(super) use pages::{
+    write_beside_far_range_run, write_beside_results, write_gate, write_visibility, write_visibility_beside,
+};
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {
@@ -30,35 +34,20 @@ pub(super) struct ReportArguments {
     budget: Vec<PathBuf>,
 }
 
+/// Refuses the option `--report` in a build that cannot write reports.
+///
+/// # Errors
+/// [`Failure::Usage`] that names the missing feature.
+pub(super) fn check_option(report: Option<&PathBuf>) -> Result<(), Failure> {
+    if report.is_some() && !cfg!(feature = "report") { Err(missing_feature("report")) } else { Ok(()) }
+}
+
 pub(super) fn report(arguments: &ReportArguments, output: &Output) -> Result<Answer, Failure> {
     let path = arguments.out.clone().unwrap_or_else(|| arguments.directory.join("report.html"));
-    let page = if arguments.budget.is_empty() {
-        report_of(&arguments.directory)?
-    } else {
-        match arguments.budget.as_slice() {
-            [only] if only == Path::new(ALL) => {
-                report_with_budget(&arguments.directory, &fly_budget(&arguments.directory, output)?)?
-            }
-            several if several.iter().any(|path| path == Path::new(ALL)) => {
-                return Err(Failure::Usage(
-                    "--budget is `all` and a directory, expected `all` alone: it flies every stage"
-                        .to_owned(),
-                ));
-            }
-            directories => report_with_budget(&arguments.directory, directories)?,
-        }
-    };
-    let bytes = write_page(&page, &path)?;
+    let bytes = pages::write_report(&arguments.directory, &arguments.budget, &path, output)?;
     output.answer(
         &json!({ "report": path, "bytes": bytes }),
         format!("{} ({:.1} MB)", path.display(), bytes as f64 / 1e6),
     )?;
     Ok(Answer::Yes)
-}
-
-/// Writes the report of results that are complete into their directory. They stand without it: why there is none is a remark.
-pub(super) fn write_beside(page: Result<Page, Failure>, directory: &Path, output: &Output) {
-    if let Err(failure) = page.and_then(|page| write_page(&page, &directory.join("report.html"))) {
-        output.note(format!("the report was not written: {failure}"));
-    }
 }

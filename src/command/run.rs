@@ -3,22 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use files::{Failure, RunDirectory};
+use run::docking_run::{DockingFlight, PreparedDocking};
+use run::docking_writer::FieldImages;
+use run::{Expectation, Flight, Prepared};
+use scenario::{Scenario, ScenarioSource, Stage, World, is_argon};
+use score::ARGON_TABLE_2;
 
 use super::Answer;
 use super::dataset::check_size;
 use super::options::{PipelineOptions, RendererOptions, Selection, format_of};
 use super::output::Output;
-use super::report::write_beside;
-use crate::docking_run::{DockingFlight, PreparedDocking};
-use crate::docking_table::docking;
-use crate::docking_writer::FieldImages;
-use crate::failure::Failure;
-use crate::files::RunDirectory;
-use crate::inject::Stage;
-use crate::report::{far_range_report, report_of};
-use crate::run::{Expectation, Flight, Prepared};
-use crate::scenario::{Scenario, ScenarioSource, World, is_argon};
-use crate::score::ARGON_TABLE_2;
+use super::report::{write_beside_far_range_run, write_beside_results};
+use crate::table::docking;
 use crate::table::{TableStyle, far_range};
 
 /// Where numbered run directories go when `--out` is not given.
@@ -108,7 +105,7 @@ fn run_far_range(
     output.first_failure(ran.first_failure.as_ref());
     let score = ran.scored.score;
     if !arguments.no_report {
-        write_beside(far_range_report(directory.path(), ran.scored.verdicts), directory.path(), output);
+        write_beside_far_range_run(directory.path(), ran.scored.verdicts, output);
     }
 
     let style = TableStyle {
@@ -157,7 +154,7 @@ fn run_docking(
     let ran = ran?;
     output.first_failure(ran.first_failure.as_ref());
     if !arguments.no_report {
-        write_beside(report_of(directory.path()), directory.path(), output);
+        write_beside_results(directory.path(), output);
     }
     let text = docking(&ran.score, output.is_terminal());
     output.answer(&ran.score, format!("{text}\nresults in {}", directory.path().display()))?;

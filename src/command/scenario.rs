@@ -5,18 +5,18 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Subcommand;
+use files::Failure;
+use run::pipeline_choice::PipelineChoice;
+use scenario::{
+    BUILT_IN, CAMERAS, DOCKING, DockingScenario, FarRangeScenario, STARTING_POINT, Scenario, ScenarioSource,
+    World,
+};
 use serde_json::json;
 use sim::onboard::image_bytes;
 
 use super::Answer;
 use super::options::PipelineOptions;
 use super::output::Output;
-use crate::failure::Failure;
-use crate::pipeline_choice::PipelineChoice;
-use crate::scenario::{
-    BUILT_IN, CAMERAS, DOCKING, DockingScenario, FarRangeScenario, STARTING_POINT, Scenario, ScenarioSource,
-    World,
-};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum ScenarioCommand {

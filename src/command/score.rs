@@ -3,19 +3,17 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use files::{Checksums, Failure, FileError, toml_file};
+use run;
+use run::docking_run::score_docking;
+use scenario::run_file::RunFile;
+use scenario::{FarRangeScenario, World, is_argon, world};
+use score::ARGON_TABLE_2;
 
 use super::Answer;
 use super::output::Output;
-use crate::docking_run::score_docking;
-use crate::docking_table::docking;
-use crate::failure::Failure;
-use crate::files::{Checksums, FileError};
-use crate::run;
-use crate::run_file::RunFile;
-use crate::scenario::{FarRangeScenario, World, is_argon, world};
-use crate::score::ARGON_TABLE_2;
+use crate::table::docking;
 use crate::table::{TableStyle, far_range};
-use crate::toml_file;
 
 #[derive(Debug, Args)]
 pub(super) struct ScoreArguments {

@@ -1,15 +1,13 @@
 //! `boresight completions` and `boresight man`: what a shell and its manual need, from the command's own definition.
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
+use files::{Failure, FileError, WholeFile};
 
 use super::output::Output;
 use super::{Answer, Arguments};
-use crate::failure::Failure;
-use crate::files::{FileError, WholeFile};
 
 #[derive(Debug, Args)]
 pub(super) struct CompletionsArguments {

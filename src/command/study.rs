@@ -4,27 +4,25 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use clap::{Args, Subcommand};
+use files::{Failure, RunDirectory};
+use run::docking_renderer::DockingRenderer;
+use run::docking_run::{DockingFlight, PreparedDocking};
+use run::docking_writer::FieldImages;
+use run::pipeline_choice::PipelineChoice;
+use run::{Expectation, FirstFailure, Flight, Prepared};
+use scenario::Scenario;
 use serde::Serialize;
+use study::{
+    Campaign, CaseTable, Evaluated, Known, Plan, ShardManifest, Study, StudyFile, Workers, command_line,
+};
 
 use super::Answer;
 use super::options::{PipelineOptions, default_jobs, format_of};
 use super::output::Output;
-use super::report::write_beside;
-use crate::docking_renderer::DockingRenderer;
-use crate::docking_run::{DockingFlight, PreparedDocking};
-use crate::docking_table::docking;
-use crate::docking_writer::FieldImages;
-use crate::failure::Failure;
-use crate::files::RunDirectory;
-use crate::pipeline_choice::PipelineChoice;
-use crate::report::{far_range_report, report_of};
-use crate::run::{Expectation, FirstFailure, Flight, Prepared};
-use crate::scenario::Scenario;
-use crate::study::{
-    Campaign, CaseTable, Evaluated, Known, Plan, ShardManifest, Study, StudyFile, Workers, command_line,
-};
-use crate::study_engine::{Engine, check_dask, run_on_dask};
-use crate::study_table::{LiveFigure, study_table};
+use super::report::{write_beside_far_range_run, write_beside_results};
+use crate::command::cluster::{Engine, check_dask, run_on_dask};
+use crate::table::docking;
+use crate::table::{LiveFigure, study_table};
 use crate::table::{TableStyle, far_range};
 
 #[derive(Debug, Subcommand)]
@@ -147,7 +145,7 @@ pub(super) fn study(command: &StudyCommand, output: &Output) -> Result<Answer, F
         StudyCommand::Run(arguments) => {
             let answer = run(arguments, output)?;
             if arguments.shard.is_none() && !arguments.no_report {
-                write_beside(report_of(&arguments.out), &arguments.out, output);
+                write_beside_results(&arguments.out, output);
             }
             Ok(answer)
         }
@@ -155,7 +153,7 @@ pub(super) fn study(command: &StudyCommand, output: &Output) -> Result<Answer, F
         StudyCommand::Merge(arguments) => {
             let answer = merge(arguments, output)?;
             if !arguments.no_report {
-                write_beside(report_of(&arguments.out), &arguments.out, output);
+                write_beside_results(&arguments.out, output);
             }
             Ok(answer)
         }
@@ -393,8 +391,7 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
             let ran = prepared.run(&directory, &flight, factory.as_ref(), || Ok(()))?;
             output.first_failure(ran.first_failure.as_ref());
             if !arguments.no_report {
-                let page = far_range_report(directory.path(), ran.scored.verdicts);
-                write_beside(page, directory.path(), output);
+                write_beside_far_range_run(directory.path(), ran.scored.verdicts, output);
             }
             let style = TableStyle { styled: output.is_terminal(), ..TableStyle::default() };
             let text = far_range(&ran.scored.score, style);
@@ -410,7 +407,7 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
             let ran = prepared.run(&directory, &flight, factory.as_ref(), || Ok(()))?;
             output.first_failure(ran.first_failure.as_ref());
             if !arguments.no_report {
-                write_beside(report_of(directory.path()), directory.path(), output);
+                write_beside_results(directory.path(), output);
             }
             let text = docking(&ran.score, output.is_terminal());
             output.answer(&ran.score, format!("{text}\nresults in {}", directory.path().display()))?;

@@ -3,14 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use files::Failure;
+use visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, Status, assess, write_report};
 
 use super::Answer;
 use super::output::Output;
-use super::report::write_beside;
-use crate::failure::Failure;
-use crate::report::{visibility_page, write_page};
-use crate::visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, Status, assess, write_report};
-use crate::visibility_table::{visibility_markdown, visibility_table};
+use super::report::{check_option, write_visibility, write_visibility_beside};
+use crate::table::{visibility_markdown, visibility_table};
 
 #[derive(Debug, Args)]
 pub(super) struct VisibilityArguments {
@@ -51,6 +50,7 @@ pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Re
         output.answer(&names, names.join("\n"))?;
         return Ok(Answer::Yes);
     };
+    check_option(arguments.report.as_ref())?;
     let mut requirements = Requirements::read(word)?;
     if let Some(frames) = arguments.frames {
         requirements.file.confirm.frames = frames;
@@ -68,10 +68,10 @@ pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Re
     progress.finish_and_clear();
     if let Some(folder) = &arguments.out {
         write_report(&report, &visibility_markdown(&report), folder)?;
-        write_beside(Ok(visibility_page(&report)), folder, output);
+        write_visibility_beside(&report, folder, output);
     }
     if let Some(path) = &arguments.report {
-        write_page(&visibility_page(&report), path)?;
+        write_visibility(&report, path)?;
     }
     let mut text = visibility_table(&report, output.is_terminal());
     if let Some(folder) = &arguments.out {

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Mutation testing (cargo-mutants) of what an oracle must not have wrong: score, gate, statistics, astrometry, cameras, attitude.
 
-A mutant is compiled in seconds, because every crate is pruned to the modules in question and what they need,
-in a copy of the tree; a module sees the same code, and is tested by its own tests. Survivors that are no faults are argued away in
+A mutant is compiled in seconds: the crates of the oracle are small, and in a copy of the tree the simulator and the pipelines are pruned
+to the modules in question and what they need; a module sees the same code, and is tested by its own tests. Survivors that are no faults are argued away in
 `.cargo/mutants.toml`.
 
     python3 tests/mutants/run.py                  every group; exit 1 when a mutant survives
@@ -22,13 +22,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# By group: package, files, further tests than those of the library, words that choose tests and words that leave tests out.
+# By group: package, files, suites of integration tests beside the tests of the library, words that choose tests and words that leave tests out.
 GROUPS = {
-    "score": ("boresight", ["src/score/**"], [], ["score::"], []),
-    # Laws of intervals are tried by thousands of samples, which without optimisation takes a minute.
-    "statistics": ("boresight", ["src/statistics/**"], [], ["statistics::"], ["covers_the_truth", "wild_laws", "cover_the_truth"]),
-    # What reads a run or a study (read.rs) has no mutants here: it needs the whole program.
-    "gate": ("boresight", ["src/gate/**"], [], ["gate::"], []),
+    "score": ("boresight-score", ["oracle/score/src/**"], [], [], []),
+    # Intervals are tried by thousands of samples, which without optimisation takes a minute.
+    "statistics": ("boresight-statistics", ["oracle/statistics/src/**"], [], [], ["covers_the_truth", "wild_laws", "cover_the_truth"]),
+    # Runs and studies are read by tests of the whole program: read.rs has no mutants here.
+    "gate": ("boresight-gate", ["oracle/gate/src/[!r]*.rs", "oracle/gate/src/rows.rs", "oracle/gate/src/report.rs"], [], [], []),
     "contract": ("boresight-contract", ["contract/src/camera.rs"], [], ["camera"], []),
     "sim": (
         "boresight-sim",
@@ -46,58 +46,48 @@ GROUPS = {
     ),
 }
 
-# What is left of the module trees.
+# What is left of the module trees of large crates, by the folder of the crate.
 PRUNED = {
-    "src/lib.rs": "pub mod score;\npub mod statistics;",
-    "sim/src/lib.rs": "pub mod catalog;\nmod constants;\nmod error;\npub mod optics;\npub mod regular_file;\npub mod truth;\npub use error::SimError;",
-    "sim/src/optics/mod.rs": "mod projection;\npub use projection::*;",
-    "sim/src/truth/mod.rs": "mod apparent;\npub mod clock;\npub mod ecliptic;\npub mod ephemeris;\nmod kepler;\nmod planets;\n"
-    "pub use apparent::{Observer, StarMotion, aberrate, deflect, unaberrate};\npub use planets::{Planet, PlanetSight};",
-    "pipeline/src/lib.rs": "mod camera_model;\nmod error;\npub mod far_range;\npub use camera_model::CameraModel;\npub use error::PipelineError;",
-    "pipeline/src/far_range/mod.rs": "mod aberration;\nmod attitude;\nmod line_of_sight;\n"
-    "pub use aberration::aberration_correction;\npub use attitude::{AttitudeConfig, StarWeights};",
-}
-# And in the place of that, for some groups.
-PRUNED_FOR = {
-    "gate": {
-        "src/lib.rs": "pub mod failure;\npub mod files;\npub mod gate;\npub mod mitsuba;\npub mod score;\npub mod sha256;\npub mod statistics;\npub mod toml_file;",
-        "src/gate/mod.rs": "mod baseline;\nmod blocks;\nmod compare;\nmod effects;\nmod flips;\n#[cfg(test)]\nmod hand_made;\nmod identity;\nmod junit;\nmod report;\nmod rows;\nmod sample;\n"
-        "pub use baseline::*;\npub use blocks::*;\npub use compare::*;\npub use flips::*;\npub use identity::*;\npub use junit::*;\npub use report::*;\npub use sample::*;",
-        "src/files/mod.rs": "mod checksums;\nmod error;\nmod parquet_claims;\nmod parquet_file;\nmod parquet_table;\nmod thrift;\nmod whole_file;\n"
-        "pub use checksums::Checksums;\npub use error::{FileError, Place};\npub(crate) use parquet_file::ParquetFile;\npub(crate) use parquet_table::unwritten;\npub use whole_file::WholeFile;",
-        "src/mitsuba/mod.rs": "#[derive(Debug, thiserror::Error)]\n#[error(\"pruned\")]\npub struct MitsubaError;",
+    "sim": {
+        "sim/src/lib.rs": "pub mod catalog;\nmod constants;\nmod error;\npub mod optics;\npub mod regular_file;\npub mod truth;\npub use error::SimError;",
+        "sim/src/optics/mod.rs": "mod projection;\npub use projection::*;",
+        "sim/src/truth/mod.rs": "mod apparent;\npub mod clock;\npub mod ecliptic;\npub mod ephemeris;\nmod kepler;\nmod planets;\n"
+        "pub use apparent::{Observer, StarMotion, aberrate, deflect, unaberrate};\npub use planets::{Planet, PlanetSight};",
+    },
+    "pipeline": {
+        "pipeline/src/lib.rs": "mod camera_model;\nmod error;\npub mod far_range;\npub use camera_model::CameraModel;\npub use error::PipelineError;",
+        "pipeline/src/far_range/mod.rs": "mod aberration;\nmod attitude;\nmod line_of_sight;\n"
+        "pub use aberration::aberration_correction;\npub use attitude::{AttitudeConfig, StarWeights};",
     },
 }
-# score and statistics use types of the whole simulator, astrometry and optics nothing of it: two trees.
-WHOLE = {"boresight": ("sim/", "pipeline/"), "boresight-contract": ("sim/", "pipeline/"), "boresight-sim": (), "boresight-pipeline": ("sim/",)}
 
 
 def prune(tree: Path, group: str) -> None:
     """Makes `tree` the pruned copy that a group is tested in."""
-    package, _, tests, _, _ = GROUPS[group]
+    package, files, suites, _, _ = GROUPS[group]
     shutil.rmtree(tree, ignore_errors=True)
     listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True, capture_output=True)
     for name in listed.stdout.decode().split("\0"):
         first, *rest = Path(name).parts or [""]
         inner = rest[0] if first in ("contract", "sim", "pipeline") and rest else first
-        is_test = inner == "tests" and Path(name).stem not in tests
+        is_test = inner == "tests" and Path(name).stem not in suites
         if not name or is_test or inner in ("benches", "examples") or first in ("python", "fuzz", "monitor", "docs") or not (ROOT / name).is_file():
-            continue
-        if name in ("src/main.rs", "build.rs"):
             continue
         (tree / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, tree / name)
-    for name, text in (PRUNED | PRUNED_FOR.get(group, {})).items():
-        if not name.startswith(WHOLE[package]):
-            (tree / name).write_text(f"//! Pruned.\n#![allow(missing_docs, dead_code, unused, unreachable_pub)]\n{text}\n" if name.endswith("lib.rs") else f"//! Pruned.\n{text}\n")
+    for name, text in PRUNED.get(group, {}).items():
+        (tree / name).write_text(f"//! Pruned.\n#![allow(missing_docs, dead_code, unused, unreachable_pub)]\n{text}\n" if name.endswith("lib.rs") else f"//! Pruned.\n{text}\n")
+    if suites:
+        modules = "".join(f"mod {suite};\n" for suite in suites)
+        (tree / files[0].split("/")[0] / "tests" / "it" / "main.rs").write_text(f"//! Pruned.\n{modules}")
     for manifest in tree.rglob("Cargo.toml"):
         text = re.sub(r"\[\[bench\]\][^\[]*", "", manifest.read_text())
-        manifest.write_text(text.replace(', "python", "fuzz"', "").replace('default-run = "boresight"\n', ""))
+        manifest.write_text(text.replace('"python", "fuzz"', "").replace(", ,", ",").replace(", ]", "]"))
 
 
 def run(group: str, tree: Path, arguments: list[str]) -> int:
-    package, files, tests, chosen, skipped = GROUPS[group]
-    cargo = ["--cargo-arg=--lib"] + [f"--cargo-arg={word}" for test in tests for word in ("--test", test)]
+    package, files, suites, chosen, skipped = GROUPS[group]
+    cargo = [f"--cargo-arg={word}" for word in ["--lib", *(["--test", "it"] if suites else [])]]
     files = [word for file in files for word in ("-f", file)]
     filters = chosen + [word for name in skipped for word in ("--skip", name)]
     command = ["cargo", "mutants", "-d", str(tree), "--package", package, *files, *arguments]

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Asserts that the pose is measured better than by OpenCV, from the table of examples/docking_accuracy on standard input.
+"""Asserts that the pose is measured better than by OpenCV, from the table of research/src/bin/docking_accuracy on standard input.
 
-    cargo run --release --example docking_accuracy -- OUT --poses 10 --python PYTHON | python3 tests/python/check_docking_accuracy.py
+    cargo run --release -p boresight-research --bin docking_accuracy -- OUT --poses 10 --python PYTHON | python3 tests/python/check_docking_accuracy.py
 
 In every row: nine poses of ten are answered, the root mean squares of the errors of range, place and angles are smaller than OpenCV's on
 the same frames, and within 2.5 times the Cramer-Rao bound (2 are wanted of 200 poses; a root mean square of ten is known to a quarter).

@@ -83,6 +83,12 @@ class Judging(unittest.TestCase):
             (made / "b.csv").write_text("x\n1.5\n")
             self.assertEqual(verify.compared(committed, made, ["a.csv", "b.csv"]), 0.5)
 
+    def test_words_that_choose_no_test_are_a_mistake(self):
+        line = "test result: ok. {} passed; 0 failed; 0 ignored; 0 measured; 7 filtered out; finished in 0.1s\n"
+        self.assertEqual(verify.passed(line.format(2) + line.format(3), "planets::"), 5)
+        with self.assertRaisesRegex(AssertionError, "no test is chosen by planet::"):
+            verify.passed(line.format(0), "planet::")
+
     def test_the_versions_of_debian_are_printed(self):
         self.assertIn("Debian    astrometry.net ", self.asked(agrees)[1])
 

@@ -1,4 +1,4 @@
-"""The pose of docking frames with OpenCV: the referee of examples/docking_accuracy.
+"""The pose of docking frames with OpenCV: the referee of research/src/bin/docking_accuracy.
 
     python docking_pnp.py FOLDER [--quiet]
 

@@ -11,7 +11,8 @@ the tree, the tests are compiled once, and run for each fault with BORESIGHT_SAB
     python3 tests/saboteurs/run.py --suites all       slow tests too
     python3 tests/saboteurs/run.py --write            and write the table into docs/saboteurs.md
 
-A suite that was run once with a fault is not run again as long as its executable is the same: a run that was interrupted goes on.
+A suite is the unit tests of a crate (`sim/src`) or a module of its integration tests (`sim/tests/pixel_law`). One that was run once
+with a fault is not run again as long as its executable is the same: a run that was interrupted goes on.
 """
 
 import argparse
@@ -25,7 +26,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,8 +34,9 @@ HERE = ROOT / "tests" / "saboteurs"
 PAGE = ROOT / "docs" / "saboteurs.md"
 BEGIN, END = "<!-- written by tests/saboteurs/run.py -->", "<!-- end -->"
 
-# What is compiled and run. The Python package computes nothing of its own.
-PACKAGES = ["boresight-contract", "boresight-sim", "boresight-pipeline", "boresight"]
+# All packages of the workspace are compiled and run but these: the Python package computes nothing, the fuzzer only feeds
+# the readers, and the research programs have no tests.
+LEFT_OUT = {"boresight-python", "boresight-fuzz", "boresight-research"}
 
 # Fails at any change of the code, right or wrong: it says that something changed, and is no witness against a fault.
 FROZEN = re.compile(r"frozen")
@@ -66,11 +68,10 @@ def sentence(patch: Path) -> str:
     return " ".join(patch.read_text().split("\n--- ", 1)[0].split())
 
 
-def touched(patch: Path) -> set[str]:
-    """The folders of the crates that a fault changes; the root package is ''."""
+def touched(patch: Path, crates: Iterable[str]) -> set[str]:
+    """Those of the crates (their folders; the root package is '') that a fault changes."""
     files = re.findall(r"^\+\+\+ b/(\S+)", patch.read_text(), re.MULTILINE)
-    first = {file.split("/")[0] for file in files}
-    return {folder if folder in ("contract", "sim", "pipeline") else "" for folder in first}
+    return {max((crate for crate in crates if not crate or file.startswith(f"{crate}/")), key=len) for file in files}
 
 
 def check() -> int:
@@ -112,24 +113,50 @@ def plant(tree: Path) -> None:
             sys.exit(f"the patches do not apply (see --check):\n{applied.stderr}")
         wanted = {file.relative_to(stage) for file in stage.rglob("*") if file.is_file()}
         for file in [file for file in tree.rglob("*") if file.is_file()]:
-            if file.relative_to(tree) not in wanted:
+            if file.relative_to(tree) not in wanted and file.relative_to(tree).parts[0] != ".git":
                 file.unlink()
         for name in wanted:
             source, goal = stage / name, tree / name
             if not goal.exists() or goal.read_bytes() != source.read_bytes():
                 goal.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(source, goal)
+    # Some suites ask git which files there are.
+    for command in (["init", "--quiet"], ["add", "--all"]):
+        subprocess.run(["git", *command], cwd=tree, check=True, stderr=subprocess.DEVNULL)
 
 
 class Suite:
-    """An executable of tests."""
+    """Tests of one executable: the unit tests of a crate, or a module of its integration tests."""
 
-    def __init__(self, name: str, crate: str, folder: Path, executable: Path, identity: str):
-        self.name, self.crate, self.folder, self.executable, self.identity = name, crate, folder, executable, identity
+    def __init__(self, name: str, crate: str, folder: Path, executable: Path, identity: str, tests: list[str]):
+        self.name, self.crate, self.folder, self.executable, self.identity, self.tests = name, crate, folder, executable, identity, tests
+
+
+def metadata(tree: Path) -> list[dict]:
+    """The packages of the workspace, as cargo describes them."""
+    asked = subprocess.run(["cargo", "metadata", "--format-version", "1", "--no-deps", "--locked"], cwd=tree, check=True, capture_output=True)
+    return json.loads(asked.stdout)["packages"]
+
+
+def names_of_tests(executable: Path, folder: Path) -> list[str]:
+    """The tests of an executable, those that are ignored too."""
+    listed = subprocess.run([executable, "--list", "--format", "terse"], cwd=folder, check=True, capture_output=True, text=True)
+    return [line.removesuffix(": test") for line in listed.stdout.splitlines() if line.endswith(": test")]
+
+
+def by_module(unit: str, kind: str, tests: list[str]) -> dict[str, list[str]]:
+    """The suites of an executable: of integration tests one per module at the root (`tests/NAME`), else one of all tests."""
+    if kind != "test":
+        return {unit: tests}
+    suites: dict[str, list[str]] = {}
+    for test in tests:
+        module, separator, _ = test.partition("::")
+        suites.setdefault(f"tests/{module}" if separator else unit, []).append(test)
+    return suites
 
 
 def compile_tests(tree: Path, target: Path, cargo: list[str]) -> list[Suite]:
-    packages = [word for package in PACKAGES for word in ("-p", package)]
+    packages = [word for package in metadata(tree) if package["name"] not in LEFT_OUT for word in ("-p", package["name"])]
     command = ["cargo", "test", "--locked", *cargo, *packages, "--lib", "--bins", "--tests", "--no-run", "--message-format=json-render-diagnostics"]
     made = subprocess.run(command, cwd=tree, env=os.environ | {"CARGO_TARGET_DIR": str(target)}, stdout=subprocess.PIPE, text=True)
     if made.returncode:
@@ -146,14 +173,14 @@ def compile_tests(tree: Path, target: Path, cargo: list[str]) -> list[Suite]:
         # End-to-end tests run the program: with another program they are other tests.
         files = [executable] + ([Path(program)] if program and crate == "" and kind == "test" else [])
         identity = hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in files)).hexdigest()
-        suites.append(Suite("/".join(filter(None, [crate, unit])), crate, folder, executable, identity))
+        for name, tests in by_module(unit, kind, names_of_tests(executable, folder)).items():
+            suites.append(Suite("/".join(filter(None, [crate, name])), crate, folder, executable, identity, tests))
     return suites
 
 
 def dependents(tree: Path) -> dict[str, set[str]]:
     """For each crate the crates whose tests may notice a fault in it: itself and what depends on it."""
-    asked = subprocess.run(["cargo", "metadata", "--format-version", "1", "--no-deps", "--locked"], cwd=tree, check=True, capture_output=True)
-    packages = json.loads(asked.stdout)["packages"]
+    packages = metadata(tree)
     crate_of = lambda path: Path(path).resolve().relative_to(tree.resolve()).as_posix().removeprefix(".")
     uses = {
         crate_of(Path(p["manifest_path"]).parent): {crate_of(d["path"]) for d in p["dependencies"] if d.get("path")}
@@ -176,7 +203,9 @@ def run_suite(suite: Suite, fault: str, threads: int, skipped: list[str], limit_
         "PROPTEST_MAX_SHRINK_ITERS": "0",
         "RUST_BACKTRACE": "0",
     }
-    command = [str(suite.executable), "--test-threads", str(threads), *(word for name in skipped for word in ("--skip", name))]
+    chosen = [test for test in suite.tests if not any(word in test for word in skipped)]
+    # No name chooses all tests.
+    command = [str(suite.executable), "--test-threads", str(threads), "--exact", *chosen] if chosen else ["true"]
     start = time.monotonic()
     process = subprocess.Popen(command, cwd=suite.folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True)
     try:
@@ -282,10 +311,11 @@ def main() -> int:
 
     rows, missed = [], []
     for patch in chosen:
-        crates = set().union(*(reach[crate] for crate in touched(patch)))
+        own = touched(patch, reach)
+        crates = set().union(*(reach[crate] for crate in own))
         able = [suite for suite in suites if suite.crate in crates]
         # From the cheap to the dear. Where one is enough, those of the crate itself come before, and no time is asked for.
-        near = lambda suite: (suite.crate not in touched(patch), kept.seconds(suite), suite.name)
+        near = lambda suite: (suite.crate not in own, kept.seconds(suite), suite.name)
         able.sort(key=near if options.suites == "first" else lambda suite: control(run, suite)["seconds"])
         caught, took = {}, 0.0
         for suite in able:

@@ -456,10 +456,13 @@ mod tests {
     fn marks_in_shadow_are_rejected() {
         let scene = Scene { range_m: 3.0, shadow_from_m: 0.15, ..Scene::default() };
         let fit = measure(&scene, Lines::Odd);
+        let mut used = 0;
         for seen in &fit.marks {
             let y1 = shapes(&synthetic::target())[seen.mark.index as usize].centre_m[0];
             assert_eq!(seen.mark.usage == MarkUse::Used, y1 < 0.15, "{seen:?}");
+            used += usize::from(seen.mark.usage == MarkUse::Used);
         }
+        assert!(used > 4 && used < fit.marks.len(), "{used} of {} are used", fit.marks.len());
         assert!((fit.plane.centre - scene.plane().centre).norm() < 0.1);
     }
 

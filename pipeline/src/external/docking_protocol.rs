@@ -24,17 +24,6 @@
 //! followed by a reason. A key that is not known makes an answer unusable. A line is at most
 //! [`super::protocol::MAX_LINE_BYTES`] long.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 use std::path::Path;
 
 use contract::Camera;

@@ -28,17 +28,6 @@
 //! unusable, so that a misspelt one does not pass for a missing one. A line is at most
 //! [`MAX_LINE_BYTES`] long.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 use std::path::Path;
 
 use contract::{

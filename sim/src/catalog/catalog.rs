@@ -1,16 +1,5 @@
 //! A catalogue: stars in ascending order of their numbers, and the hash of where they came from.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 use std::collections::HashMap;
 use std::path::Path;
 

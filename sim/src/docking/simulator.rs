@@ -246,6 +246,7 @@ impl DockingSimulator {
     }
 
     /// From the light in the workspace to the field and its truth.
+    #[allow(clippy::expect_used, reason = "the blur keeps the rows of the field")]
     fn transmit(&self, workspace: &mut DockingWorkspace, moment: &FieldMoment) -> FieldExposure {
         let (eye, pose) = (&self.eyes[moment.camera], &moment.state.pose);
         let sun = moment.lighting.sun.map(|sun| sun.towards);

@@ -219,6 +219,7 @@ mod tests {
         let warm = Sensor::new(&SensorConfig { temperature: warm, ..twelve_bit() }, 65, 48).unwrap();
         let cold = Sensor::new(&twelve_bit(), 65, 48).unwrap();
         assert!((warm.dark_electrons(1.0) / cold.dark_electrons(1.0) - 4.0).abs() < 1e-12);
+        assert!(!warm.hot_pixels().is_empty() && warm.hot_pixels().len() == cold.hot_pixels().len());
         for (warm, cold) in warm.hot_pixels().iter().zip(cold.hot_pixels()) {
             assert!((warm.rate_e_per_s / cold.rate_e_per_s - 4.0).abs() < 1e-12);
         }

@@ -325,6 +325,7 @@ mod tests {
         let track = Track { start: PixelPoint::new(10.0, 10.0), across: (5.0, 0.0), electrons: 1000.0 };
         rays.stamp(&track, &mut stamp);
         let row: Vec<f64> = stamp.rows().next().unwrap().2.to_vec();
+        assert_eq!(row.len(), 6);
         assert!(
             row.iter().zip([100.0, 200.0, 200.0, 200.0, 200.0, 100.0]).all(|(a, b)| (a - b).abs() < 1e-9)
         );

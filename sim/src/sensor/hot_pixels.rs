@@ -121,6 +121,7 @@ mod tests {
         let switching = with.iter().filter(|pixel| pixel.switches).count();
         // Binomial: 3000 ± 46; four of them.
         assert!(switching.abs_diff(3000) < 184, "{switching}");
+        assert_eq!((with.len(), without.len()), (10_000, 10_000));
         assert!(with.iter().zip(&without).all(|(a, b)| HotPixel { switches: false, ..*a } == *b));
     }
 

@@ -18,6 +18,8 @@ const NS_PER_S: i128 = 1_000_000_000;
 const TT_MINUS_TAI_NS: i128 = 32_184_000_000;
 /// J2000.0 (2000-01-01 12:00) as a count from 1900-01-01 00:00 in the same scale.
 const J2000_NS: i128 = 3_155_716_800 * NS_PER_S;
+/// The origin of POSIX time (1970-01-01 00:00) as a count from 1900-01-01 00:00 in the same scale.
+const UNIX_ORIGIN_NS: i128 = 2_208_988_800 * NS_PER_S;
 /// The origin of GPS time (1980-01-06 00:00 UTC) as a count of TAI from 1900-01-01 00:00 TAI.
 const GPS_ORIGIN_TAI_NS: i128 = 2_524_953_619 * NS_PER_S;
 /// Seconds in a Julian century.
@@ -64,23 +66,24 @@ pub(crate) fn parse_utc_of(field: &'static str, text: &str) -> Result<Epoch, Sim
 /// Before 1972, where UTC was another thing, the text is that of TAI − 10 s.
 pub fn format_utc(time: Epoch) -> String {
     let tai_ns = tai_ns(time);
-    let mut offset_ns = 10 * NS_PER_S;
-    let mut inside_leap = false;
-    for leap in leap_seconds() {
-        let midnight_tai_ns = leap_label_ns(&leap) + leap_offset_ns(&leap);
-        if tai_ns >= midnight_tai_ns {
-            offset_ns = leap_offset_ns(&leap);
-        } else {
-            inside_leap = leap_offset_ns(&leap) > offset_ns && tai_ns >= midnight_tai_ns - NS_PER_S;
-            break;
-        }
-    }
+    let (offset_ns, inside_leap) = utc_at(tai_ns);
     let label_ns = tai_ns - offset_ns - if inside_leap { NS_PER_S } else { 0 };
     // Same scale in and out: hifitime only does the calendar.
     let label = Epoch::from_utc_duration(Duration::from_total_nanoseconds(label_ns));
     let (year, month, day, hour, minute, second, nanosecond) = label.to_gregorian_utc();
     let second = second + u8::from(inside_leap);
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{nanosecond:09}Z")
+}
+
+/// Whole milliseconds of UTC since 1970-01-01 in days of 86,400 s, rounded down: the time of POSIX and of JavaScript's dates. A leap second has
+/// the numbers of the second after it.
+///
+/// Before 1972 as in [`format_utc`].
+pub fn unix_ms(time: Epoch) -> i64 {
+    let tai_ns = tai_ns(time);
+    let unix_ns = tai_ns - utc_at(tai_ns).0 - UNIX_ORIGIN_NS;
+    // hifitime's epochs span a hundredth of the range of an i64.
+    unix_ns.div_euclid(1_000_000) as i64
 }
 
 /// TT since J2000.0, s (resolution of the number: 0.2 µs).
@@ -218,6 +221,19 @@ fn tai_minus_utc_ns(label_ns: i128) -> i128 {
         .map_or(10 * NS_PER_S, |leap| leap_offset_ns(&leap))
 }
 
+/// TAI − UTC at a count of TAI, and whether that is inside a leap second.
+fn utc_at(tai_ns: i128) -> (i128, bool) {
+    let mut offset_ns = 10 * NS_PER_S;
+    for leap in leap_seconds() {
+        let midnight_tai_ns = leap_label_ns(&leap) + leap_offset_ns(&leap);
+        if tai_ns < midnight_tai_ns {
+            return (offset_ns, leap_offset_ns(&leap) > offset_ns && tai_ns >= midnight_tai_ns - NS_PER_S);
+        }
+        offset_ns = leap_offset_ns(&leap);
+    }
+    (offset_ns, false)
+}
+
 /// TAI since 1900-01-01 00:00 TAI.
 fn tai_ns(time: Epoch) -> i128 {
     match time.time_scale {
@@ -351,6 +367,21 @@ mod tests {
             parse_utc("2012-04-25T12:18:54.5Z").unwrap(),
             parse_utc("2012-04-25 12:18:54.50 UTC").unwrap()
         );
+    }
+
+    #[test]
+    fn milliseconds_since_1970_are_those_of_posix() {
+        // From `date --utc --date=TEXT +%s`.
+        for (text, ms) in [
+            ("2012-04-23T00:00:00Z", 1_335_139_200_000),
+            ("2012-04-25T12:18:54.123999999Z", 1_335_356_334_123),
+            ("2012-06-30T23:59:59.5Z", 1_341_100_799_500),
+            ("2012-06-30T23:59:60.5Z", 1_341_100_800_500),
+            ("2012-07-01T00:00:00.5Z", 1_341_100_800_500),
+            ("2026-01-01T00:00:00Z", 1_767_225_600_000),
+        ] {
+            assert_eq!(unix_ms(parse_utc(text).unwrap()), ms, "{text}");
+        }
     }
 
     #[test]

@@ -4,8 +4,8 @@ use std::path::Path;
 use super::*;
 use crate::{Drawing, Simulation, Simulator};
 
-// The simulation of the integration tests, which names this crate as its users do.
-#[path = "../../tests/argon/mod.rs"]
+// The simulation of the integration tests.
+#[path = "../../tests/it/argon.rs"]
 mod argon;
 
 thread_local! {

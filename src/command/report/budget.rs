@@ -1,19 +1,15 @@
 //! The runs of an error budget: the frames of a run flown again, once a stage, with the truth in the place of its result.
-
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use files::{Failure, FileError, RunDirectory, WholeFile, toml_file};
+use report::{FarRangeRun, check_budget};
+use run::pipeline_choice::PipelineChoice;
+use run::{Expectation, Flight, Prepared};
+use scenario::{ScenarioSource, Stage};
 
 use crate::command::options::default_jobs;
 use crate::command::output::Output;
-use crate::failure::Failure;
-use crate::files::{FileError, RunDirectory, WholeFile};
-use crate::inject::Stage;
-use crate::pipeline_choice::PipelineChoice;
-use crate::report::{FarRangeRun, check_budget};
-use crate::run::{Expectation, Flight, Prepared};
-use crate::scenario::ScenarioSource;
-use crate::toml_file;
 
 /// Flies what is missing of the error budget of a far-range run, and keeps of each stage `run.toml` and `score.json` in
 /// `budget/STAGE`: its frames are those of the run, and their truth is there already. Gives the directories.
@@ -25,7 +21,13 @@ pub(super) fn fly_budget(directory: &Path, output: &Output) -> Result<Vec<PathBu
             "--budget is all, expected with the report of an honest run alone".to_owned(),
         ));
     }
-    let frames = run.truths[0].frame..run.truths[run.truths.len() - 1].frame + 1;
+    let (Some(first), Some(last)) = (run.truths.first(), run.truths.last()) else {
+        return Err(Failure::Usage(format!(
+            "{}: the run has no frame, expected one or more",
+            directory.display()
+        )));
+    };
+    let frames = first.frame..last.frame + 1;
     let source = ScenarioSource::read(&directory.join("run.toml").to_string_lossy())?;
     let has_regions = run.run_file.scenario.roi.is_some();
     let mut kept = Vec::new();

@@ -1,16 +1,5 @@
 //! Reading a user's catalogue.
 
-#![cfg_attr(
-    not(test),
-    deny(
-        clippy::indexing_slicing,
-        clippy::string_slice,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::unreachable
-    )
-)]
-
 mod csv;
 mod hip2;
 mod hip_main;

@@ -106,7 +106,8 @@ fn the_wings_of_a_moffat_profile_are_right_to_a_part_in_ten_thousand_out_to_150_
         let mut psf = Psf::new(&PsfConfig::Moffat { fwhm_px, beta }).unwrap();
         let mut stamp = Stamp::new();
         psf.stamp(PixelPoint::new(0.2, 0.4), 1.0, 1e-30, (160, 3), &mut stamp);
-        let (_, _, row) = stamp.rows().next().unwrap();
+        let (first, _, row) = stamp.rows().next().unwrap();
+        assert!(first == 0 && row.len() > 150, "it begins at {first} and ends after {} px", row.len());
         for (i, value) in row.iter().enumerate().take(151).skip(5) {
             // A pixel differs from its middle by the second derivative over 24, (2β r⁻²)(2β + 1)/24 along a row: integrate.
             let nodes = || GAUSS.iter().map(|(u, w)| (0.5 * u, 0.5 * w));

@@ -1,0 +1,16 @@
+//! Renders one frame of ARGON and lists what is in it: `cargo run --release --example frame`.
+
+use boresight::run::Prepared;
+use boresight::scenario::ScenarioSource;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let prepared = Prepared::new(&ScenarioSource::read("argon")?)?;
+    let exposure = prepared.simulator().camera()?.expose(8000)?;
+    let frame = &exposure.frame;
+    println!("{} × {} pixels, {} objects:", frame.columns(), frame.rows(), exposure.objects.len());
+    for object in &exposure.objects {
+        let (x, y) = (object.position.x, object.position.y);
+        println!("{:?} at ({x:.2}, {y:.2}) px, {:.0} electrons", object.kind, object.electrons);
+    }
+    Ok(())
+}

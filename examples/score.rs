@@ -1,0 +1,19 @@
+//! Scores the measurements of any pipeline against the ground truth of a run or a rendered dataset:
+//! `cargo run --release --example score -- DIRECTORY MEASUREMENTS.csv`.
+
+use std::path::Path;
+
+use boresight::run;
+use boresight::table::{TableStyle, far_range};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [directory, measurements] = arguments.as_slice() else {
+        return Err("expected two arguments: DIRECTORY MEASUREMENTS.csv".into());
+    };
+    let scored = run::score(Path::new(directory), Path::new(measurements), None)?;
+    println!("{}", far_range(&scored.score, TableStyle::default()));
+    let correct = &scored.score.figures["correct_rate"];
+    println!("correct: {} of {} frames", correct.count, correct.of);
+    Ok(())
+}

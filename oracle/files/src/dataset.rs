@@ -1,0 +1,253 @@
+//! A directory of images to be processed: ours or anybody's.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use contract::{Camera, Frame, Mounting, Readout, Telemetry};
+use hifitime::Epoch;
+use pipeline::far_range::FarRangeConfig;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::error::Place;
+use super::frame_file::read_image;
+use super::telemetry::read_with_lines;
+use super::toml_table::{self, Refused, TomlTable, check_bit_depth};
+use super::{FileError, TelemetryRow, parse_utc};
+
+/// `camera.toml`: what a pipeline knows before the first frame, except the stars themselves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CameraFile {
+    /// Bits of the analogue-digital converter, 1 to 16.
+    pub bit_depth: u8,
+    /// Magnitude V down to which stars of the built-in catalogue are listed for the pipeline when the dataset has no
+    /// `stars.csv`, −2 to 15; without it, 7.
+    #[serde(default = "default_magnitude_limit")]
+    pub magnitude_limit: f64,
+    /// UTC time to which proper motion is applied in the star list, as 2012-04-25T00:00:00Z; without it, the time of
+    /// the first frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub star_epoch_utc: Option<String>,
+    /// Gain, bias, read noise and saturation as calibrated; without it, the built-in pipeline cannot fit centroids.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub readout: Option<Readout>,
+    /// Pixels up to this digital number are 0 in the images, whatever they were, 0 to 65535; without it, none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub zero_suppression_dn: Option<u16>,
+    /// Nominal camera.
+    pub camera: Camera,
+    /// Nominal mounting; without it, the camera's axes are those of the body.
+    #[serde(default)]
+    pub mounting: Mounting,
+    /// Parameters of the built-in pipeline; without it, its defaults.
+    #[serde(default)]
+    pub far_range: FarRangeConfig,
+}
+
+fn default_magnitude_limit() -> f64 {
+    7.0
+}
+
+impl CameraFile {
+    /// Reads and checks the file.
+    ///
+    /// # Errors
+    /// [`FileError::Io`]; [`FileError::Toml`] with line and column for what is not TOML, for a wrong, unknown or missing
+    /// field, and for a value outside its range.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        toml_table::read(path)
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when it exists or cannot be written; [`FileError::Value`] for what could not be read back.
+    pub fn write(&self, path: &Path) -> Result<(), FileError> {
+        toml_table::write(self, path)
+    }
+}
+
+impl TomlTable for CameraFile {
+    fn check(&self) -> Result<(), Refused> {
+        self.camera.check().map_err(|error| Refused::by_contract("camera", &error))?;
+        self.mounting.check().map_err(|error| Refused::by_contract("mounting", &error))?;
+        if let Some(readout) = &self.readout {
+            readout.check().map_err(|error| Refused::by_contract("readout", &error))?;
+        }
+        check_bit_depth(self.bit_depth)?;
+        if !(-2.0..=15.0).contains(&self.magnitude_limit) {
+            return Err(Refused::new("magnitude_limit", self.magnitude_limit, "-2 to 15"));
+        }
+        self.far_range.check().map_err(|error| Refused::by_pipeline("far_range", &error))?;
+        match &self.star_epoch_utc {
+            Some(text) => {
+                parse_utc(text).map(|_| ()).map_err(|expected| Refused::new("star_epoch_utc", text, expected))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Images with their telemetry and their camera, checked to be all there.
+#[derive(Debug, Clone)]
+pub struct Dataset {
+    camera: CameraFile,
+    frames: Vec<DatasetFrame>,
+}
+
+/// One frame of a dataset, not read yet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DatasetFrame {
+    /// Where the image is.
+    path: PathBuf,
+    row: TelemetryRow,
+}
+
+impl Dataset {
+    /// Opens a directory: `camera.toml`, `telemetry.csv`, and the images that the latter names. No image is read yet,
+    /// but every one is looked for, so that a missing one is known before the first is processed.
+    ///
+    /// Images must lie inside the directory, symbolic links resolved: a table from elsewhere cannot make us read
+    /// other files.
+    ///
+    /// # Errors
+    /// [`FileError::MissingImage`] that names the frame whose image is not named, not there or not inside; the errors
+    /// of [`CameraFile::read`] and [`super::read_telemetry`].
+    pub fn open(directory: &Path) -> Result<Self, FileError> {
+        let camera = CameraFile::read(&directory.join("camera.toml"))?;
+        let table = directory.join("telemetry.csv");
+        let rows = read_with_lines(&table)?;
+        let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
+        let locate =
+            |(line, row): (u64, TelemetryRow)| match locate_image(directory, &root, row.file.as_deref()) {
+                Ok(path) => Ok(DatasetFrame { path, row }),
+                Err(reason) => Err(FileError::MissingImage {
+                    path: table.clone(),
+                    line,
+                    frame: row.frame,
+                    file: row.file.unwrap_or_default(),
+                    reason,
+                }),
+            };
+        let frames: Vec<DatasetFrame> = rows.into_iter().map(locate).collect::<Result<_, _>>()?;
+        refuse_unnamed(&table, &frames)?;
+        Ok(Self { camera, frames })
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &CameraFile {
+        &self.camera
+    }
+
+    /// The frames, ascending; never empty.
+    pub fn frames(&self) -> &[DatasetFrame] {
+        &self.frames
+    }
+
+    /// The time to which proper motion is applied in the star list.
+    pub fn star_epoch(&self) -> Option<Epoch> {
+        let given = self.camera.star_epoch_utc.as_deref().and_then(|text| parse_utc(text).ok());
+        given.or_else(|| self.frames.first().map(|frame| frame.row.telemetry.time))
+    }
+
+    /// Reads the image of a frame.
+    ///
+    /// # Errors
+    /// The errors of [`super::read_frame`]; [`FileError::Value`] for an image whose size is not the camera's.
+    pub fn read(&self, frame: &DatasetFrame) -> Result<Frame, FileError> {
+        self.camera.read_image(&frame.path, &frame.row)
+    }
+}
+
+impl CameraFile {
+    /// Reads the image of a frame of this camera.
+    fn read_image(&self, path: &Path, row: &TelemetryRow) -> Result<Frame, FileError> {
+        let image = read_image(path)?;
+        let camera = &self.camera;
+        // First of all: of an image of another size, the regions would be refused, and they are not what is wrong.
+        if (image.columns, image.rows) == (camera.columns, camera.rows) {
+            image.into_frame(path, row.frame, self.bit_depth, row.windows.clone())
+        } else {
+            let size = format!("{} × {}", image.columns, image.rows);
+            let expected = format!("{} × {}, that of camera.toml", camera.columns, camera.rows);
+            Err(FileError::value(path, Place::Header, "image size", size, expected))
+        }
+    }
+
+    /// Reads the image that a row of a directory's `telemetry.csv` names; `None` where the row names none. Other images of the
+    /// directory may be missing.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for an image that is missing or outside the directory; the errors of [`Dataset::read`].
+    pub fn read_listed(&self, directory: &Path, row: &TelemetryRow) -> Result<Option<Frame>, FileError> {
+        let Some(file) = row.file.as_deref() else { return Ok(None) };
+        let path = locate_alone(directory, file, &format!("file of frame {}", row.frame))?;
+        self.read_image(&path, row).map(Some)
+    }
+}
+
+/// The path of one image that a table names, whatever became of the others; `field` is what messages call it.
+pub(super) fn locate_alone(directory: &Path, file: &str, field: &str) -> Result<PathBuf, FileError> {
+    let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
+    locate_image(directory, &root, Some(file)).map_err(|reason| {
+        let expected = format!("an image in the dataset's directory; it is {reason}");
+        FileError::value(&directory.join("telemetry.csv"), Place::Whole, field, file, expected)
+    })
+}
+
+/// Refuses an image that lies beside the others and that no row of the telemetry names: its row is missing.
+fn refuse_unnamed(table: &Path, frames: &[DatasetFrame]) -> Result<(), FileError> {
+    let named: BTreeSet<&Path> = frames.iter().map(|frame| frame.path.as_path()).collect();
+    let extension = |path: &Path| path.extension().map(|e| e.to_ascii_lowercase());
+    let extensions: BTreeSet<_> = named.iter().filter_map(|path| extension(path)).collect();
+    let folders: BTreeSet<&Path> = named.iter().filter_map(|path| path.parent()).collect();
+    for folder in folders {
+        let error = |source| FileError::io(folder, "open", source);
+        for entry in fs::read_dir(folder).map_err(error)? {
+            let path = entry.map_err(error)?.path();
+            if extension(&path).is_some_and(|e| extensions.contains(&e)) && !named.contains(path.as_path()) {
+                let expected = "a row that names it: the frame's telemetry is missing";
+                return Err(FileError::value(table, Place::Header, "file", path.display(), expected));
+            }
+        }
+    }
+    Ok(())
+}
+
+impl DatasetFrame {
+    /// Number of the frame.
+    pub fn number(&self) -> u64 {
+        self.row.frame
+    }
+
+    /// What the spacecraft tells about it.
+    pub fn telemetry(&self) -> &Telemetry {
+        &self.row.telemetry
+    }
+
+    /// Where its image is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// The path of an image that a row of a table names, or what is wrong with it.
+pub(super) fn locate_image(
+    directory: &Path,
+    root: &Path,
+    file: Option<&str>,
+) -> Result<PathBuf, &'static str> {
+    let file = Path::new(file.ok_or("not named")?);
+    if !file.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
+        return Err("outside the dataset's directory");
+    }
+    let path = directory.join(file);
+    match path.canonicalize() {
+        Err(_) => Err("missing"),
+        Ok(real) if !real.starts_with(root) => Err("outside the dataset's directory"),
+        Ok(real) if !real.is_file() => Err("not a file"),
+        Ok(_) => Ok(path),
+    }
+}

@@ -1,0 +1,423 @@
+//! `motion.csv`: what a pipeline says at the end of each portion. Figures 5 and 6 of the docking paper are these rows
+//! over their times.
+
+use std::path::Path;
+
+use contract::docking::{Motion, MotionReport, Pose};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use score::docking::Shown;
+
+use super::super::FileError;
+use super::super::csv_table::Presence::{Optional, Required};
+use super::super::csv_table::{CsvReader, CsvRow, CsvWriter, Layout, Presence, cell, cells};
+use super::covariance::{self, CELLS};
+
+const SHOWN: [&str; 7] = ["rho_m", "u_m_s", "alpha_deg", "beta_deg", "phi1_deg", "phi2_deg", "phi3_deg"];
+const SIGMA: [&str; 7] = [
+    "sigma_rho_m",
+    "sigma_u_m_s",
+    "sigma_alpha_deg",
+    "sigma_beta_deg",
+    "sigma_phi1_deg",
+    "sigma_phi2_deg",
+    "sigma_phi3_deg",
+];
+const STATE: [&str; 9] = [
+    "d1_m",
+    "d2_m",
+    "d3_m",
+    "d1_rate_m_s",
+    "d2_rate_m_s",
+    "d3_rate_m_s",
+    "phi1_rate_deg_s",
+    "phi2_rate_deg_s",
+    "phi3_rate_deg_s",
+];
+const POSITION: [&str; CELLS] = [
+    "cov_d1_d1",
+    "cov_d1_d2",
+    "cov_d1_d3",
+    "cov_d1_d1_rate",
+    "cov_d1_d2_rate",
+    "cov_d1_d3_rate",
+    "cov_d2_d2",
+    "cov_d2_d3",
+    "cov_d2_d1_rate",
+    "cov_d2_d2_rate",
+    "cov_d2_d3_rate",
+    "cov_d3_d3",
+    "cov_d3_d1_rate",
+    "cov_d3_d2_rate",
+    "cov_d3_d3_rate",
+    "cov_d1_rate_d1_rate",
+    "cov_d1_rate_d2_rate",
+    "cov_d1_rate_d3_rate",
+    "cov_d2_rate_d2_rate",
+    "cov_d2_rate_d3_rate",
+    "cov_d3_rate_d3_rate",
+];
+const ATTITUDE: [&str; CELLS] = [
+    "cov_phi1_phi1",
+    "cov_phi1_phi2",
+    "cov_phi1_phi3",
+    "cov_phi1_phi1_rate",
+    "cov_phi1_phi2_rate",
+    "cov_phi1_phi3_rate",
+    "cov_phi2_phi2",
+    "cov_phi2_phi3",
+    "cov_phi2_phi1_rate",
+    "cov_phi2_phi2_rate",
+    "cov_phi2_phi3_rate",
+    "cov_phi3_phi3",
+    "cov_phi3_phi1_rate",
+    "cov_phi3_phi2_rate",
+    "cov_phi3_phi3_rate",
+    "cov_phi1_rate_phi1_rate",
+    "cov_phi1_rate_phi2_rate",
+    "cov_phi1_rate_phi3_rate",
+    "cov_phi2_rate_phi2_rate",
+    "cov_phi2_rate_phi3_rate",
+    "cov_phi3_rate_phi3_rate",
+];
+const CROSS: [&str; 9] = [
+    "cov_d1_phi1",
+    "cov_d1_phi2",
+    "cov_d1_phi3",
+    "cov_d2_phi1",
+    "cov_d2_phi2",
+    "cov_d2_phi3",
+    "cov_d3_phi1",
+    "cov_d3_phi2",
+    "cov_d3_phi3",
+];
+
+#[expect(clippy::indexing_slicing, reason = "a constant: out of bounds it would not compile")]
+const LAYOUT: [(&str, Presence); 78] = {
+    let mut layout = [("field", Required); 78];
+    layout[1] = ("estimator", Optional);
+    layout[2] = ("time_s", Required);
+    layout[3] = ("fields", Optional);
+    let mut i = 0;
+    while i < 7 {
+        layout[4 + i] = (SHOWN[i], Required);
+        layout[11 + i] = (SIGMA[i], Optional);
+        i += 1;
+    }
+    i = 0;
+    while i < 9 {
+        layout[18 + i] = (STATE[i], Optional);
+        layout[69 + i] = (CROSS[i], Optional);
+        i += 1;
+    }
+    i = 0;
+    while i < CELLS {
+        layout[27 + i] = (POSITION[i], Optional);
+        layout[48 + i] = (ATTITUDE[i], Optional);
+        i += 1;
+    }
+    layout
+};
+const COLUMNS: Layout = &LAYOUT;
+
+/// The word of the pipeline's own best estimator; the one without a word.
+const BEST: &str = "best";
+/// The word of the paper's formulas.
+const PAPER: &str = "paper";
+
+/// From radians to degrees, for six values with angles alone.
+fn degrees() -> Vector6<f64> {
+    Vector6::repeat(1.0_f64.to_degrees())
+}
+
+/// Writes the table row by row.
+pub struct MotionWriter(CsvWriter);
+
+impl MotionWriter {
+    /// Creates the table.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when the file exists or cannot be created.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        CsvWriter::create(path, COLUMNS).map(Self)
+    }
+
+    /// Writes the report at a field: a row for each estimator that gave a motion.
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn write(&mut self, field: u64, report: &MotionReport) -> Result<(), FileError> {
+        for (estimator, motion) in [(BEST, &report.best), (PAPER, &report.paper)] {
+            motion.as_ref().map_or(Ok(()), |motion| self.row(field, estimator, motion))?;
+        }
+        Ok(())
+    }
+
+    fn row(&mut self, field: u64, estimator: &str, motion: &Motion) -> Result<(), FileError> {
+        let shown = Shown::of(&motion.pose, &motion.velocity_m_s);
+        let phi_deg = shown.phi_rad.map(f64::to_degrees);
+        let shown = [
+            shown.rho_m,
+            shown.u_m_s,
+            shown.alpha_rad.to_degrees(),
+            shown.beta_rad.to_degrees(),
+            phi_deg.x,
+            phi_deg.y,
+            phi_deg.z,
+        ];
+        let sigmas: Option<[f64; 7]> = Shown::sigmas(motion).map(|mut sigmas| {
+            sigmas.iter_mut().skip(2).for_each(|sigma| *sigma = sigma.to_degrees());
+            sigmas
+        });
+        let (d, v) = (&motion.pose.position_m, &motion.velocity_m_s);
+        let phi_rate = motion.phi_rate_rad_s.map(f64::to_degrees);
+        let state = [d.x, d.y, d.z, v.x, v.y, v.z, phi_rate.x, phi_rate.y, phi_rate.z];
+        // Row by row, where the matrix lies column by column.
+        let cross: [[f64; 3]; 3] = motion.cross_covariance.map(f64::to_degrees).transpose().into();
+        self.0.write(
+            [field.to_string(), estimator.to_owned(), cell(motion.time_s), motion.fields.to_string()]
+                .into_iter()
+                .chain(shown.map(cell))
+                .chain(cells(sigmas))
+                .chain(state.map(cell))
+                .chain(covariance::to_cells(&motion.position_covariance, &Vector6::repeat(1.0)))
+                .chain(covariance::to_cells(&motion.attitude_covariance, &degrees()))
+                .chain(cross.into_iter().flatten().map(cell)),
+        )
+    }
+
+    /// Completes the file.
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn finish(self) -> Result<(), FileError> {
+        self.0.finish()
+    }
+}
+
+/// The report as it comes back from the file, as [`super::outcome_as_filed`].
+pub fn report_as_filed(report: &MotionReport) -> MotionReport {
+    let as_filed = |angle: f64| angle.to_degrees().to_radians();
+    let motion = |motion: &Motion| Motion {
+        pose: Pose { phi_rad: motion.pose.phi_rad.map(as_filed), ..motion.pose },
+        phi_rate_rad_s: motion.phi_rate_rad_s.map(as_filed),
+        position_covariance: covariance::as_filed(&motion.position_covariance, &Vector6::repeat(1.0)),
+        attitude_covariance: covariance::as_filed(&motion.attitude_covariance, &degrees()),
+        cross_covariance: motion.cross_covariance.map(as_filed),
+        ..*motion
+    };
+    MotionReport { best: report.best.as_ref().map(motion), paper: report.paper.as_ref().map(motion) }
+}
+
+/// Reads the table: the report at each field that has one, fields ascending.
+///
+/// Of a row without the columns of the state, the position follows from ρ, α and β, and the velocity is taken along the
+/// line of sight; of one without the covariances, they are such that the standard deviations come out again, and nothing
+/// else is said by them (they are singular).
+///
+/// # Errors
+/// A [`FileError`] that names line and column of the first cell that is not as it should be.
+pub fn read_motion(path: &Path) -> Result<Vec<(u64, MotionReport)>, FileError> {
+    let mut table = CsvReader::open(path, COLUMNS)?;
+    let mut reports: Vec<(u64, MotionReport)> = Vec::new();
+    while let Some(row) = table.next_row()? {
+        let motion = Some(parse(&row)?);
+        let report = match row.text("estimator").trim() {
+            "" | BEST => MotionReport { best: motion, paper: None },
+            PAPER => {
+                let field: u64 = row.count("field")?;
+                if let Some((_, report)) = reports.last_mut().filter(|(last, _)| *last == field) {
+                    if report.paper.is_some() {
+                        return Err(row.error("estimator", "each estimator once a field"));
+                    }
+                    report.paper = motion;
+                    continue;
+                }
+                MotionReport { best: None, paper: motion }
+            }
+            _ => return Err(row.error("estimator", "`best`, or `paper` after it")),
+        };
+        reports.push((row.number_after("field", reports.last().map(|(field, _)| *field))?, report));
+    }
+    Ok(reports)
+}
+
+fn parse(row: &CsvRow<'_>) -> Result<Motion, FileError> {
+    let [rho, u, alpha, beta, phi1, phi2, phi3] = row.numbers(SHOWN)?;
+    if rho <= 0.0 {
+        return Err(row.error(SHOWN[0], "greater than 0"));
+    }
+    let (alpha, beta) = (alpha.to_radians(), beta.to_radians());
+    let sigmas = row.optional_numbers(SIGMA)?;
+    for (sigma, column) in sigmas.iter().flatten().zip(SIGMA) {
+        if *sigma < 0.0 {
+            return Err(row.error(column, "0 or greater"));
+        }
+    }
+    let towards = Vector3::new(
+        libm::cos(alpha) * libm::sin(beta),
+        libm::sin(alpha),
+        libm::cos(alpha) * libm::cos(beta),
+    );
+    let state = row.optional_numbers(STATE)?;
+    let (position_m, velocity_m_s, phi_rate_rad_s) = match state {
+        None => (towards * rho, towards * u, Vector3::zeros()),
+        Some([d1, d2, d3, v1, v2, v3, w1, w2, w3]) => (
+            Vector3::new(d1, d2, d3),
+            Vector3::new(v1, v2, v3),
+            Vector3::new(w1, w2, w3).map(f64::to_radians),
+        ),
+    };
+    if position_m == Vector3::zeros() {
+        return Err(row.error(STATE[2], "a camera that is not inside the target"));
+    }
+    let position = covariance::read(row, POSITION, &Vector6::repeat(1.0))?;
+    let attitude = covariance::read(row, ATTITUDE, &degrees())?;
+    let cross = row.optional_numbers(CROSS)?.unwrap_or_default();
+    let fields = if row.text("fields").trim().is_empty() { 0 } else { row.count("fields")? };
+    let sigmas = sigmas.unwrap_or_default();
+    Ok(Motion {
+        time_s: row.number("time_s")?,
+        pose: Pose { position_m, phi_rad: Vector3::new(phi1, phi2, phi3).map(f64::to_radians) },
+        velocity_m_s,
+        phi_rate_rad_s,
+        position_covariance: position.unwrap_or_else(|| of_sigmas(rho, alpha, beta, &towards, &sigmas)),
+        attitude_covariance: attitude.unwrap_or_else(|| {
+            let variance = |sigma: f64| sigma.to_radians() * sigma.to_radians();
+            let [_, _, _, _, s1, s2, s3] = sigmas;
+            Matrix6::from_diagonal(&Vector6::new(variance(s1), variance(s2), variance(s3), 0.0, 0.0, 0.0))
+        }),
+        cross_covariance: Matrix3::from_row_slice(&cross.map(f64::to_radians)),
+        fields,
+    })
+}
+
+/// A covariance of position and velocity that gives the standard deviations of ρ, u, α and β, uncorrelated.
+fn of_sigmas(rho: f64, alpha: f64, beta: f64, towards: &Vector3<f64>, sigmas: &[f64; 7]) -> Matrix6<f64> {
+    let (sin_a, cos_a) = (libm::sin(alpha), libm::cos(alpha));
+    let (sin_b, cos_b) = (libm::sin(beta), libm::cos(beta));
+    // ∂d/∂ρ, ∂d/∂α, ∂d/∂β, each times its standard deviation.
+    let along = [
+        towards * sigmas[0],
+        Vector3::new(-sin_a * sin_b, cos_a, -sin_a * cos_b) * (rho * sigmas[2].to_radians()),
+        Vector3::new(cos_a * cos_b, 0.0, -cos_a * sin_b) * (rho * sigmas[3].to_radians()),
+    ];
+    let mut covariance = Matrix6::zeros();
+    let position: Matrix3<f64> = along.iter().map(|v| v * v.transpose()).sum();
+    covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&position);
+    let rate = towards * sigmas[1];
+    covariance.fixed_view_mut::<3, 3>(3, 3).copy_from(&(rate * rate.transpose()));
+    covariance
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use tempfile::tempdir;
+
+    use super::*;
+
+    fn read(text: &str) -> Result<Vec<(u64, MotionReport)>, FileError> {
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("motion.csv");
+        fs::write(&path, text).unwrap();
+        read_motion(&path)
+    }
+
+    fn motion(range_m: f64) -> Motion {
+        let root = Matrix6::from_fn(|i, j| if i == j { 0.01 } else { 0.0005 * (i + 2 * j) as f64 });
+        Motion {
+            time_s: 12.34,
+            pose: Pose {
+                position_m: Vector3::new(0.3, -0.2, range_m),
+                phi_rad: Vector3::new(0.01, 0.02, -0.03),
+            },
+            velocity_m_s: Vector3::new(0.01, 0.0, -0.2),
+            phi_rate_rad_s: Vector3::new(0.0, 1e-4, 0.0),
+            position_covariance: root * root.transpose(),
+            attitude_covariance: root.transpose() * root * 0.01,
+            cross_covariance: Matrix3::from_fn(|i, j| 1e-6 * (3 * i + j) as f64),
+            fields: 9,
+        }
+    }
+
+    #[test]
+    fn what_is_written_comes_back_with_both_estimators() {
+        let reports = [
+            (9, MotionReport { best: Some(motion(5.0)), paper: Some(motion(5.1)) }),
+            (19, MotionReport { best: Some(motion(4.9)), paper: None }),
+            (29, MotionReport { best: None, paper: Some(motion(4.8)) }),
+            (39, MotionReport { best: None, paper: Some(motion(4.7)) }),
+        ];
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("motion.csv");
+        let mut writer = MotionWriter::create(&path).unwrap();
+        reports.iter().for_each(|(field, report)| writer.write(*field, report).unwrap());
+        writer.finish().unwrap();
+        let read = read_motion(&path).unwrap();
+        assert_eq!(read.iter().map(|(field, _)| *field).collect::<Vec<_>>(), [9, 19, 29, 39]);
+        assert!(read[1].1.paper.is_none());
+        for ((_, read), (_, written)) in read.iter().zip(&reports) {
+            assert_eq!(*read, report_as_filed(written));
+        }
+        let (met, meant) = (read[0].1.paper.as_ref().unwrap(), motion(5.1));
+        assert_eq!((met.time_s, met.fields, met.velocity_m_s), (12.34, 9, meant.velocity_m_s));
+        assert_eq!(met.pose.position_m, meant.pose.position_m);
+        assert_eq!(met.position_covariance, meant.position_covariance);
+        // Angles change their unit: to a rounding.
+        assert!((met.pose.phi_rad - meant.pose.phi_rad).norm() < 1e-16);
+        assert!((met.attitude_covariance - meant.attitude_covariance).norm() < 1e-18);
+        assert!((met.cross_covariance - meant.cross_covariance).norm() < 1e-18);
+    }
+
+    const HEADER: &str = "field,time_s,rho_m,u_m_s,alpha_deg,beta_deg,phi1_deg,phi2_deg,phi3_deg";
+
+    #[test]
+    fn what_is_shown_is_enough_and_comes_out_again() {
+        let text = format!(
+            "{HEADER},{}\n9,0.2,5,-0.1,3,-4,0.1,0.2,0.3,0.01,0.002,0.1,0.2,0.3,0.4,0.5\n",
+            SIGMA.join(",")
+        );
+        let reports = read(&text).unwrap();
+        let best = reports[0].1.best.as_ref().unwrap();
+        let shown = Shown::of(&best.pose, &best.velocity_m_s);
+        let met = [shown.rho_m, shown.u_m_s, shown.alpha_rad.to_degrees(), shown.beta_rad.to_degrees()];
+        for (met, meant) in met.iter().zip([5.0, -0.1, 3.0, -4.0]) {
+            assert!((met - meant).abs() < 1e-13, "{met} and {meant}");
+        }
+        let sigmas = Shown::sigmas(best).unwrap();
+        for (i, (met, meant)) in sigmas.iter().zip([0.01, 0.002, 0.1, 0.2, 0.3, 0.4, 0.5]).enumerate() {
+            let in_files = if i < 2 { *met } else { met.to_degrees() };
+            assert!((in_files - meant).abs() < 1e-12, "sigma {i}: {in_files} and {meant}");
+        }
+    }
+
+    #[test]
+    fn each_bad_cell_is_named_by_line_and_column() {
+        let header = format!("{HEADER},estimator,d1_m");
+        for (row, column) in [
+            ("9,0.2,0,-0.1,3,-4,0.1,0.2,0.3,best,", "rho_m"),
+            ("9,x,5,-0.1,3,-4,0.1,0.2,0.3,best,", "time_s"),
+            ("9,0.2,5,,3,-4,0.1,0.2,0.3,best,", "u_m_s"),
+            ("9,0.2,5,-0.1,3,-4,0.1,0.2,0.3,worst,", "estimator"),
+            ("9,0.2,5,-0.1,3,-4,0.1,0.2,0.3,best,1", "d2_m"),
+        ] {
+            let message = read(&format!("{header}\n{row}\n")).unwrap_err().to_string();
+            assert!(
+                message.contains("line 2") && message.contains(&format!("`{column}`")),
+                "{row}: {message}"
+            );
+        }
+        let row = |field: u64, estimator: &str| format!("{field},0.2,5,-0.1,3,-4,0.1,0.2,0.3,{estimator},");
+        for (rows, column) in [
+            ([row(9, "paper"), row(9, "paper")], "estimator"),
+            ([row(9, "paper"), row(9, "best")], "field"),
+            ([row(9, "paper"), row(8, "paper")], "field"),
+        ] {
+            let message = read(&format!("{header}\n{}\n", rows.join("\n"))).unwrap_err().to_string();
+            assert!(message.contains("line 3") && message.contains(&format!("`{column}`")), "{message}");
+        }
+        let missing = read("field,time_s\n").unwrap_err().to_string();
+        assert!(missing.contains("column `rho_m` is missing"), "{missing}");
+    }
+}

@@ -1,0 +1,352 @@
+//! Parquet tables of rows that belong to frames, written and read in memory that does not grow with the table.
+
+use std::collections::VecDeque;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use super::error::Place;
+use super::parquet_file::{Batches, ParquetFile};
+use super::parquet_writer::{ParquetWriter, TableOptions};
+use super::table_column::{Cell, Cells, Column, ColumnValues, Nanoseconds, TextCells};
+use super::{FileError, WholeFile};
+
+/// Rows held before they are encoded, and read at a time.
+const BATCH_ROWS: usize = 8192;
+/// Rows whose encoded bytes are held before they are written.
+const ROW_GROUP_ROWS: usize = 131_072;
+
+/// A row of a table that is kept as Parquet.
+pub trait Row: Sized {
+    /// The columns of some rows, units in their names. Always the same names and types, for no rows as well.
+    fn columns(rows: &[Self]) -> Vec<Column>;
+
+    /// The rows of a batch that has those columns.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for a cell that is not as it should be.
+    fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError>;
+
+    /// The frame, or the field, that the row belongs to.
+    fn frame(&self) -> u64;
+
+    /// The column that holds it.
+    const FRAME: &'static str = "frame";
+}
+
+/// Writes a table, in row groups as it goes: memory stays the same however long the table. The file has its name when it is complete.
+pub struct TableWriter<R> {
+    file: WholeFile,
+    writer: ParquetWriter<File>,
+    waiting: Vec<R>,
+}
+
+impl<R: Row> TableWriter<R> {
+    /// Creates the table.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when the file exists or cannot be created.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        let options = TableOptions { row_group_rows: ROW_GROUP_ROWS, ..TableOptions::default() };
+        let file = WholeFile::create_new(path)?;
+        let out = file.file().try_clone().map_err(|source| FileError::io(path, "create", source))?;
+        let writer = ParquetWriter::new(out, path, &R::columns(&[]), options)?;
+        Ok(Self { file, writer, waiting: Vec::new() })
+    }
+
+    /// Adds rows. Frames must come in ascending order; a reader relies on it.
+    ///
+    /// # Errors
+    /// [`FileError::Io`], [`FileError::Format`].
+    pub fn write(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), FileError> {
+        self.waiting.extend(rows);
+        if self.waiting.len() >= BATCH_ROWS { self.encode() } else { Ok(()) }
+    }
+
+    /// Completes the file. Without it there is none.
+    ///
+    /// # Errors
+    /// [`FileError::Io`], [`FileError::Format`].
+    pub fn finish(mut self) -> Result<(), FileError> {
+        self.encode()?;
+        self.writer.finish()?;
+        self.file.commit_new()
+    }
+
+    fn encode(&mut self) -> Result<(), FileError> {
+        let columns = R::columns(&self.waiting);
+        self.waiting.clear();
+        self.writer.write(&columns)
+    }
+}
+
+/// Reads a table, frame by frame: an iterator over (number of the frame, its rows), frames ascending, in memory
+/// that holds one batch.
+///
+/// A frame without rows is not met; [`TableReader::rows_of`] answers it with none.
+pub struct TableReader<R> {
+    path: PathBuf,
+    batches: Batches,
+    rows_read: u64,
+    waiting: VecDeque<R>,
+    last_frame: Option<u64>,
+    failed: bool,
+}
+
+impl<R: Row> TableReader<R> {
+    /// Opens a table and checks that it has every column, of the right type. Other columns are ignored.
+    ///
+    /// # Errors
+    /// [`FileError::Io`]; [`FileError::Format`] for a file that is not Parquet or is cut short;
+    /// [`FileError::MissingColumn`]; [`FileError::Value`] for a column of another type.
+    pub fn open(path: &Path) -> Result<Self, FileError> {
+        let file = ParquetFile::open(path)?;
+        let expected = R::columns(&[]);
+        check_columns(path, &file, &expected)?;
+        let names: Vec<&str> = expected.iter().map(Column::name).collect();
+        let batches = file.batches(&names, BATCH_ROWS)?;
+        Ok(Self {
+            path: path.to_owned(),
+            batches,
+            rows_read: 0,
+            waiting: VecDeque::new(),
+            last_frame: None,
+            failed: false,
+        })
+    }
+
+    /// The rows of one frame, none if it has none. Frames before it are passed over, so calls must ascend.
+    ///
+    /// # Errors
+    /// As the iterator.
+    pub fn rows_of(&mut self, frame: u64) -> Result<Vec<R>, FileError> {
+        while let Some(next) = self.peek_frame()? {
+            match next.cmp(&frame) {
+                std::cmp::Ordering::Less => {
+                    self.take_frame(next)?;
+                }
+                std::cmp::Ordering::Equal => return self.take_frame(frame),
+                std::cmp::Ordering::Greater => break,
+            }
+        }
+        Ok(Vec::new())
+    }
+
+    /// The frame of the next row.
+    fn peek_frame(&mut self) -> Result<Option<u64>, FileError> {
+        while self.waiting.is_empty() {
+            let Some(batch) = self.batches.next().transpose()? else { return Ok(None) };
+            let columns = Columns { path: &self.path, batch: &batch, first_row: self.rows_read };
+            let rows = R::rows(&columns)?;
+            for (i, row) in rows.iter().enumerate() {
+                let frame = row.frame();
+                if let Some(last) = self.last_frame.filter(|&last| frame < last) {
+                    let expected = format!("{last} or more, as rows are ordered by frame");
+                    return Err(columns.error(i, R::FRAME, frame, expected));
+                }
+                self.last_frame = Some(frame);
+            }
+            self.rows_read += rows.len() as u64;
+            self.waiting = rows.into();
+        }
+        Ok(self.waiting.front().map(Row::frame))
+    }
+
+    fn take_frame(&mut self, frame: u64) -> Result<Vec<R>, FileError> {
+        let mut rows = Vec::new();
+        while self.peek_frame()? == Some(frame) {
+            rows.extend(self.waiting.pop_front());
+        }
+        Ok(rows)
+    }
+}
+
+impl<R: Row> Iterator for TableReader<R> {
+    type Item = Result<(u64, Vec<R>), FileError>;
+
+    /// After an error there is nothing more.
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.failed {
+            return None;
+        }
+        let frame = match self.peek_frame() {
+            Ok(None) => return None,
+            Ok(Some(frame)) => self.take_frame(frame).map(|rows| (frame, rows)),
+            Err(error) => Err(error),
+        };
+        self.failed = frame.is_err();
+        Some(frame)
+    }
+}
+
+fn check_columns(path: &Path, file: &ParquetFile, expected: &[Column]) -> Result<(), FileError> {
+    for column in expected {
+        let Some(found) = file.column(column.name()) else {
+            let names = file.columns().iter().map(|found| format!("`{}`", found.name));
+            return Err(FileError::MissingColumn {
+                path: path.to_owned(),
+                column: column.name().to_owned(),
+                found: names.collect::<Vec<_>>().join(", "),
+            });
+        };
+        let wanted = column.values().column_type();
+        let other = match &found.column_type {
+            Ok(found) if *found == wanted => continue,
+            Ok(found) => found.to_string(),
+            Err(name) => name.clone(),
+        };
+        let wanted = format!("type {wanted}");
+        return Err(FileError::value(path, Place::Header, column.name(), other, wanted));
+    }
+    Ok(())
+}
+
+/// The columns of a batch, by name.
+pub struct Columns<'a> {
+    path: &'a Path,
+    batch: &'a [Column],
+    first_row: u64,
+}
+
+impl Columns<'_> {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.batch.first().map_or(0, |column| column.values().len())
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The error of a cell, `row` counted within the batch.
+    pub fn error(
+        &self,
+        row: usize,
+        column: &str,
+        value: impl ToString,
+        expected: impl Into<String>,
+    ) -> FileError {
+        FileError::value(self.path, Place::Row(self.first_row + row as u64), column, value, expected)
+    }
+
+    /// A column of finite numbers.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for the first null, NaN or infinity.
+    pub fn f64(&self, name: &str) -> Result<&[f64], FileError> {
+        let cells: &Cells<f64> = self.every(name)?;
+        self.check_finite(name, cells)?;
+        Ok(cells.values())
+    }
+
+    /// A column of finite numbers or nothing.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for the first NaN or infinity.
+    pub fn optional_f64(&self, name: &str) -> Result<&Cells<f64>, FileError> {
+        let cells = self.cells(name)?;
+        self.check_finite(name, cells)?;
+        Ok(cells)
+    }
+
+    /// A column of 64-bit counts.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for the first null.
+    pub fn u64(&self, name: &str) -> Result<&[u64], FileError> {
+        self.every(name).map(Cells::values)
+    }
+
+    /// A column of 32-bit counts.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for the first null.
+    pub fn u32(&self, name: &str) -> Result<&[u32], FileError> {
+        self.every(name).map(Cells::values)
+    }
+
+    /// A column of 32-bit counts or nothing.
+    ///
+    /// # Errors
+    /// [`FileError::Format`] for a column that is damaged.
+    pub fn optional_u32(&self, name: &str) -> Result<&Cells<u32>, FileError> {
+        self.cells(name)
+    }
+
+    /// A column of truth values.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for the first null.
+    pub fn flags(&self, name: &str) -> Result<&[bool], FileError> {
+        self.every(name).map(Cells::values)
+    }
+
+    /// A column of times.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for the first null.
+    pub fn times(&self, name: &str) -> Result<&[Nanoseconds], FileError> {
+        self.every(name).map(Cells::values)
+    }
+
+    /// A column of texts.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for the first null.
+    pub fn text(&self, name: &str) -> Result<&TextCells, FileError> {
+        let values = self.values(name)?;
+        match values {
+            ColumnValues::Utf8(texts) => self.check_present(name, values).map(|()| texts),
+            _ => Err(self.damaged(name)),
+        }
+    }
+
+    /// The word of a column at a row, read by `parse`.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for a null or a word that `parse` does not know.
+    pub fn word<T>(&self, name: &str, row: usize, parse: impl Fn(&str) -> Option<T>) -> Result<T, FileError> {
+        let word = self.text(name)?.value(row);
+        parse(word).ok_or_else(|| self.error(row, name, word, "one of the words of this column"))
+    }
+
+    /// A column without nulls.
+    fn every<T: Cell>(&self, name: &str) -> Result<&Cells<T>, FileError> {
+        let cells = self.cells(name)?;
+        self.check_present(name, self.values(name)?)?;
+        Ok(cells)
+    }
+
+    /// A column of a type.
+    fn cells<T: Cell>(&self, name: &str) -> Result<&Cells<T>, FileError> {
+        T::cells(self.values(name)?).ok_or_else(|| self.damaged(name))
+    }
+
+    fn values(&self, name: &str) -> Result<&ColumnValues, FileError> {
+        let column = self.batch.iter().find(|column| column.name() == name);
+        column.map(Column::values).ok_or_else(|| self.damaged(name))
+    }
+
+    /// The names and types were checked when the file was opened; a batch with others is a damaged file.
+    fn damaged(&self, name: &str) -> FileError {
+        FileError::format(self.path, "Parquet", format!("column `{name}` is damaged"))
+    }
+
+    fn check_present(&self, name: &str, values: &ColumnValues) -> Result<(), FileError> {
+        match values.first_null() {
+            Some(row) => Err(self.error(row, name, "null", "a value in every row")),
+            None => Ok(()),
+        }
+    }
+
+    fn check_finite(&self, name: &str, cells: &Cells<f64>) -> Result<(), FileError> {
+        // At a null stands 0.
+        match cells.values().iter().position(|value| !value.is_finite()) {
+            Some(row) => {
+                let value = cells.get(row).unwrap_or_default();
+                Err(self.error(row, name, value, "a finite number"))
+            }
+            None => Ok(()),
+        }
+    }
+}

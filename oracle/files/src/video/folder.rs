@@ -1,0 +1,174 @@
+//! A folder of images: fields as its `telemetry.csv` lists them, or whole frames by name.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use contract::Camera;
+use contract::docking::{DockingSetup, Field, FieldTelemetry};
+
+use super::super::FileError;
+use super::super::dataset::{locate_alone, locate_image};
+use super::super::error::Place;
+use super::super::field_telemetry::FieldRow;
+use super::super::frame_file::read_image;
+use super::whole_frame::{Format, WholeFrame};
+
+/// A field of a folder, not read yet.
+pub(super) struct ListedField {
+    path: PathBuf,
+    row: FieldRow,
+    camera: Camera,
+}
+
+/// The fields that a folder's table lists. Every image is looked for; none is read yet.
+pub(super) fn listed(
+    directory: &Path,
+    rows: Vec<(u64, FieldRow)>,
+    setup: &DockingSetup,
+) -> Result<Vec<ListedField>, FileError> {
+    let table = directory.join("telemetry.csv");
+    let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
+    let locate = |(line, row): (u64, FieldRow)| {
+        let camera = camera_of(&table, line, &row, setup)?.clone();
+        match locate_image(directory, &root, row.file.as_deref()) {
+            Ok(path) => Ok(ListedField { path, row, camera }),
+            Err(reason) => Err(FileError::MissingImage {
+                path: table.clone(),
+                line,
+                frame: row.field,
+                file: row.file.unwrap_or_default(),
+                reason,
+            }),
+        }
+    };
+    rows.into_iter().map(locate).collect()
+}
+
+/// Reads the image of a field that a row of a folder's `telemetry.csv` names; `None` where the row names none. Other images of the
+/// folder may be missing.
+///
+/// # Errors
+/// [`FileError::Value`] for a camera that the setup does not have, and for an image that is missing, outside the folder or of another
+/// size; the errors of reading it.
+pub fn read_listed_field(
+    directory: &Path,
+    row: &FieldRow,
+    setup: &DockingSetup,
+) -> Result<Option<Field>, FileError> {
+    let Some(file) = row.file.as_deref() else { return Ok(None) };
+    let path = locate_alone(directory, file, &format!("file of field {}", row.field))?;
+    let Some(camera) = setup.cameras.get(row.telemetry.camera) else {
+        let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
+        let field = format!("camera of field {}", row.field);
+        let table = directory.join("telemetry.csv");
+        return Err(FileError::value(&table, Place::Whole, field, row.telemetry.camera, expected));
+    };
+    let listed = ListedField { path, row: row.clone(), camera: camera.clone() };
+    listed.read(setup).map(|(field, _)| Some(field))
+}
+
+/// The camera of a row, which is one of the setup.
+pub(super) fn camera_of<'a>(
+    table: &Path,
+    line: u64,
+    row: &FieldRow,
+    setup: &'a DockingSetup,
+) -> Result<&'a Camera, FileError> {
+    let camera = row.telemetry.camera;
+    setup.cameras.get(camera).ok_or_else(|| {
+        let expected = format!("0 to {}, one of the cameras", setup.cameras.len().saturating_sub(1));
+        FileError::value(table, Place::Line(line), "camera", camera, expected)
+    })
+}
+
+impl ListedField {
+    /// Reads the image.
+    pub(super) fn read(&self, setup: &DockingSetup) -> Result<(Field, FieldTelemetry), FileError> {
+        let camera = &self.camera;
+        let image = read_image(&self.path)?;
+        let rows = self.row.lines.rows(camera.rows);
+        check_size(&self.path, (image.columns, image.rows), (camera.columns, rows), "lines of the camera")?;
+        let frame = image.into_frame(&self.path, self.row.field, setup.bit_depth, None)?;
+        let field = Field::new(frame, self.row.lines, camera.rows);
+        field
+            .map(|field| (field, self.row.telemetry))
+            .map_err(|source| FileError::contract(&self.path, source))
+    }
+}
+
+/// The images of a folder in the order of their names: whole frames.
+///
+/// Digits in names are compared as numbers, so that `frame10.png` comes after `frame9.png`.
+pub(super) fn by_name(directory: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let error = |source| FileError::io(directory, "open", source);
+    let mut images = Vec::new();
+    for entry in fs::read_dir(directory).map_err(error)? {
+        let path = entry.map_err(error)?.path();
+        let is_image = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+        if is_image && path.is_file() {
+            images.push(path);
+        }
+    }
+    if images.is_empty() {
+        let expected = "telemetry.csv, or images *.png";
+        return Err(FileError::value(directory, Place::Whole, "number of images", 0, expected));
+    }
+    images.sort_by_cached_key(|path| natural_key(path));
+    Ok(images)
+}
+
+/// Reads an image as a whole frame.
+pub(super) fn read_whole(path: &Path, index: u64, format: &Format) -> Result<WholeFrame, FileError> {
+    let image = read_image(path)?;
+    let size = (format.columns, format.rows);
+    check_size(path, (image.columns, image.rows), size, "of the camera; fields need a telemetry.csv")?;
+    let frame = image.into_frame(path, index, format.bit_depth, None)?;
+    Ok(WholeFrame { index, dn: frame.dn().to_vec() })
+}
+
+fn check_size(path: &Path, got: (usize, usize), size: (usize, usize), whose: &str) -> Result<(), FileError> {
+    if got == size {
+        return Ok(());
+    }
+    let expected = format!("{} × {}, the size {whose}", size.0, size.1);
+    Err(FileError::value(path, Place::Header, "image size", format!("{} × {}", got.0, got.1), expected))
+}
+
+/// A part of a name: text, or a number by length and digits (longer is larger once leading zeros are gone).
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum NamePart {
+    Number(usize, String),
+    Text(String),
+}
+
+fn natural_key(path: &Path) -> (Vec<NamePart>, PathBuf) {
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let part = |run: &[char]| {
+        let text: String = run.iter().collect();
+        if run.first().is_some_and(char::is_ascii_digit) {
+            let digits = text.trim_start_matches('0');
+            NamePart::Number(digits.len(), digits.to_owned())
+        } else {
+            NamePart::Text(text)
+        }
+    };
+    let letters: Vec<char> = name.chars().collect();
+    let parts = letters.chunk_by(|a, b| a.is_ascii_digit() == b.is_ascii_digit()).map(part).collect();
+    // Names that differ in leading zeros alone still have one order.
+    (parts, path.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_ordered_by_their_numbers() {
+        let mut names =
+            ["f10.png", "f9.png", "f009.png", "e99999999999999999999999.png", "f1.png"].map(PathBuf::from);
+        names.sort_by_cached_key(|path| natural_key(path));
+        let order =
+            ["e99999999999999999999999.png", "f1.png", "f009.png", "f9.png", "f10.png"].map(PathBuf::from);
+        assert_eq!(names, order);
+    }
+}

@@ -1,0 +1,110 @@
+//! Tables as columns in memory, whole, for whoever hands them on.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use super::FileError;
+use super::csv_table::csv_error;
+use super::error::{Place, open_regular};
+use super::lines::Lines;
+use super::parquet_file::ParquetFile;
+use super::table_column::Column;
+
+/// Rows of a part of a table that is handed on.
+const PART_ROWS: usize = 8192;
+
+/// Columns of our CSV tables that hold whole numbers from 0.
+const WHOLE: [&str; 6] = ["frame", "field", "n_stars", "camera", "id", "fields"];
+/// Those that hold words. All others hold floating-point numbers.
+const WORDS: [&str; 7] = ["status", "attitude", "file", "time_utc", "windows", "lines", "estimator"];
+
+/// A table in memory.
+#[derive(Debug, Clone)]
+pub struct WholeTable {
+    /// The columns without rows.
+    pub header: Vec<Column>,
+    /// The rows, in parts, each with the columns of the header.
+    pub parts: Vec<Vec<Column>>,
+}
+
+/// Reads a Parquet table with all its columns.
+///
+/// # Errors
+/// [`FileError`] for a file that cannot be read, is none or is damaged, or has a column of a type that no table of ours has.
+pub fn read_parquet_table(path: &Path) -> Result<WholeTable, FileError> {
+    let file = ParquetFile::open(path)?;
+    let names: Vec<String> = file.columns().iter().map(|column| column.name.clone()).collect();
+    let batches = file.batches(&names, PART_ROWS)?;
+    let header = batches.header();
+    Ok(WholeTable { header, parts: batches.collect::<Result<_, _>>()? })
+}
+
+/// Reads one of our CSV tables, each column of the type that its name has. An empty cell is null.
+///
+/// # Errors
+/// [`FileError`] for a file that cannot be read, or a cell that is no number where its column holds numbers.
+pub fn read_csv_table(path: &Path) -> Result<Vec<Column>, FileError> {
+    let file = Lines::new(open_regular(path)?);
+    let mut reader = csv::Reader::from_reader(file);
+    let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
+    let rows: Result<Vec<csv::StringRecord>, _> = reader.records().collect();
+    let rows = rows.map_err(|error| csv_error(path, &error))?;
+    let column = |(index, name): (usize, &str)| {
+        let cells = rows.iter().map(|row| row.get(index).filter(|cell| !cell.is_empty()));
+        Ok(if WHOLE.contains(&name) {
+            Column::nullable(name, numbers::<u64>(path, name, cells)?)
+        } else if WORDS.contains(&name) {
+            Column::nullable_texts(name, cells)
+        } else {
+            Column::nullable(name, numbers::<f64>(path, name, cells)?)
+        })
+    };
+    header.iter().enumerate().map(column).collect()
+}
+
+/// The cells of a column that holds numbers.
+fn numbers<'a, T: FromStr>(
+    path: &Path,
+    name: &str,
+    cells: impl Iterator<Item = Option<&'a str>>,
+) -> Result<Vec<Option<T>>, FileError> {
+    let number = |(row, cell): (usize, Option<&str>)| {
+        cell.map(|cell| {
+            let wrong = || FileError::value(path, Place::Row(row as u64), name, cell, "a number or nothing");
+            cell.trim().parse().map_err(|_| wrong())
+        })
+        .transpose()
+    };
+    cells.enumerate().map(number).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::table_column::ColumnValues;
+    use super::*;
+
+    #[test]
+    fn columns_have_the_types_of_their_names_and_every_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("measurements.csv");
+        std::fs::write(&path, "frame,status,x_px\n3,detected,0.1\n9,no_target,\n").unwrap();
+        let columns = read_csv_table(&path).unwrap();
+        let [ColumnValues::UInt64(frames), ColumnValues::Utf8(words), ColumnValues::Float64(x)] =
+            [0, 1, 2].map(|index| columns[index].values())
+        else {
+            panic!("{columns:?}")
+        };
+        assert_eq!((frames.get(1), words.get(0)), (Some(9), Some("detected")));
+        assert_eq!((x.get(0), x.get(1)), (Some(0.1), None));
+        assert!(columns.iter().all(Column::is_nullable), "{columns:?}");
+    }
+
+    #[test]
+    fn a_word_among_numbers_is_refused_by_row_and_column() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("measurements.csv");
+        std::fs::write(&path, "frame,x_px\n3,1\n4,here\n").unwrap();
+        let message = read_csv_table(&path).unwrap_err().to_string();
+        assert!(message.contains("row 1: `x_px` is `here`, expected a number"), "{message}");
+    }
+}

@@ -1,0 +1,92 @@
+//! Made by hand: samples, of frames of one day that are neighbours and all of them right, and reports.
+use indexmap::IndexMap;
+use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
+use toml::Table;
+
+use super::identity::{Identity, Pairing, SourceKind};
+use super::report::{FigureReport, FigureVerdict, GateReport};
+use super::sample::Sample;
+
+pub(super) fn identity() -> Identity {
+    Identity {
+        kind: SourceKind::Run,
+        world: "far_range".to_owned(),
+        name: "made by hand".to_owned(),
+        seed: 1,
+        version: "0.1.0".to_owned(),
+        catalog_sha256: None,
+        inject: None,
+        renderer: None,
+        scenario_sha256: "5".to_owned(),
+        frames_sha256: "f".to_owned(),
+        pipeline: Table::new(),
+        scenario: Table::new(),
+    }
+}
+
+pub(super) fn unit(number: u64, verdict: &str, cause: Option<&str>) -> UnitVerdict {
+    UnitVerdict {
+        number,
+        group: "day 1".to_owned(),
+        verdict: verdict.to_owned(),
+        cause: cause.map(str::to_owned),
+    }
+}
+
+/// A figure of which every unit has at most one value.
+pub(super) fn figure(name: &str, reduction: Reduction, values: &[Option<f64>]) -> FigureTerms {
+    let term = |value: &Option<f64>| value.map_or(Term::default(), |sum| Term { sum, of: 1 });
+    FigureTerms { name: name.to_owned(), reduction, terms: values.iter().map(term).collect() }
+}
+
+/// As many frames as the figures have terms.
+pub(super) fn sample(figures: Vec<FigureTerms>) -> Sample {
+    let count = figures.first().map_or(0, |figure| figure.terms.len() as u64);
+    let units = (0..count).map(|number| unit(number, "correct", None)).collect();
+    Sample { identity: identity(), table: UnitTable { units, figures } }
+}
+
+/// A report of figures with these verdicts, and with the same numbers whatever they are.
+pub(super) fn report(figures: &[(&str, FigureVerdict)]) -> GateReport {
+    let of = |verdict| FigureReport {
+        verdict,
+        better: "more".to_owned(),
+        baseline: Some(0.75),
+        baseline_of: 24,
+        result: Some(0.5),
+        result_of: 24,
+        difference: Some(-0.25),
+        low: Some(-0.375),
+        high: Some(-0.125),
+        worse_by: Some(0.25),
+        tolerance: 0.0,
+        p: 0.015_625,
+        adjusted_p: 0.031_25,
+        better_adjusted_p: 1.0,
+        smallest_visible: None,
+        blocks: 6,
+    };
+    GateReport {
+        verdict: FigureVerdict::Worse,
+        name: identity().name,
+        world: identity().world,
+        reason: "a test".to_owned(),
+        units: "frames".to_owned(),
+        count: 24,
+        pairing: Pairing::Frames,
+        baseline_seed: 1,
+        result_seed: 1,
+        baseline_version: "0.1.0".to_owned(),
+        result_version: "0.1.0".to_owned(),
+        alpha: 0.05,
+        blocks: 6,
+        block_length: 4.0,
+        neighbour_correlation: 0.0,
+        notes: Vec::new(),
+        figures: figures
+            .iter()
+            .map(|(name, verdict)| ((*name).to_owned(), of(*verdict)))
+            .collect::<IndexMap<_, _>>(),
+        flips: None,
+    }
+}

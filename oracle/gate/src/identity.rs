@@ -1,0 +1,303 @@
+//! What was run, and whether two runs can be compared.
+use files::Failure;
+use files::sha256::sha256_hex;
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+/// What a result is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SourceKind {
+    /// A run directory: units are frames or fields.
+    Run,
+    /// A study: units are cases.
+    Study,
+}
+
+impl SourceKind {
+    /// What its units are called, of a world.
+    pub fn units(self, world: &str) -> &'static str {
+        match self {
+            Self::Study => "cases",
+            Self::Run if world == "docking" => "fields",
+            Self::Run => "frames",
+        }
+    }
+}
+
+/// All that figures depend on but the pipeline.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Identity {
+    /// Run or study.
+    pub kind: SourceKind,
+    /// `far_range` or `docking`.
+    pub world: String,
+    /// Name of the scenario or study.
+    pub name: String,
+    /// Its seed.
+    pub seed: u64,
+    /// Version of Boresight that made it.
+    pub version: String,
+    /// SHA-256 of the star catalogue's source, where there are stars.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub catalog_sha256: Option<String>,
+    /// The stage whose result was replaced by the truth; absent in an honest run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inject: Option<String>,
+    /// What drew the scene, where the fast renderer did not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub renderer: Option<String>,
+    /// SHA-256 of the resolved scenario without its title, its seed and the pipeline's own parameters.
+    pub scenario_sha256: String,
+    /// SHA-256 of what is known of every frame besides its pixels: telemetry as a pipeline gets it, regions that were transmitted included,
+    /// and the truth; of a study, of all seeds and drawn values.
+    pub frames_sha256: String,
+    /// The pipeline's own parameters.
+    pub pipeline: Table,
+    /// The resolved scenario without them.
+    pub scenario: Table,
+}
+
+/// How a result and a baseline go together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pairing {
+    /// The frames are the same: each is its own control.
+    Frames,
+    /// The scenario is the same, the noise is not: each block of the one is held against the same stretch of the other.
+    Blocks,
+}
+
+/// A scenario, apart from what says who measures it and with which noise.
+pub(super) struct Split {
+    pub(super) pipeline: Table,
+    pub(super) scenario: Table,
+    pub(super) scenario_sha256: String,
+}
+
+/// Takes title, seed and the parameters of the pipeline of `world` out of a resolved scenario.
+pub(super) fn split(world: &str, mut scenario: Table) -> Result<Split, Failure> {
+    scenario.remove("title");
+    scenario.remove("seed");
+    let pipeline = match scenario.remove(world) {
+        Some(Value::Table(table)) => table,
+        _ => Table::new(),
+    };
+    let text = toml::to_string(&scenario)
+        .map_err(|error| Failure::Usage(format!("the scenario cannot be written: {error}")))?;
+    Ok(Split { pipeline, scenario, scenario_sha256: sha256_hex(&text) })
+}
+
+impl Identity {
+    /// How `result` is to be held against this baseline.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] that names the first thing by which they differ and both its values.
+    pub fn pairing(&self, result: &Self) -> Result<Pairing, Failure> {
+        let cannot = |field: &str, baseline: &dyn std::fmt::Display, result: &dyn std::fmt::Display| {
+            Failure::Usage(format!(
+                "cannot compare: `{field}` is `{baseline}` in the baseline and `{result}` in the result, expected the same"
+            ))
+        };
+        let optional = |text: &Option<String>| text.clone().unwrap_or_else(|| "none".to_owned());
+        if self.kind != result.kind {
+            let word = |kind| if kind == SourceKind::Run { "run" } else { "study" };
+            return Err(cannot("kind", &word(self.kind), &word(result.kind)));
+        }
+        if self.world != result.world {
+            return Err(cannot("world", &self.world, &result.world));
+        }
+        for (field, of_baseline, of_result) in [
+            ("inject", &self.inject, &result.inject),
+            ("renderer", &self.renderer, &result.renderer),
+            ("catalog_sha256", &self.catalog_sha256, &result.catalog_sha256),
+        ] {
+            if of_baseline != of_result {
+                return Err(cannot(field, &optional(of_baseline), &optional(of_result)));
+            }
+        }
+        if self.scenario_sha256 != result.scenario_sha256 {
+            let (at, of_baseline, of_result) = first_difference(
+                &Value::Table(self.scenario.clone()),
+                &Value::Table(result.scenario.clone()),
+            )
+            .unwrap_or_else(|| {
+                let (a, b) = (self.scenario_sha256.clone(), result.scenario_sha256.clone());
+                ("scenario_sha256".to_owned(), a, b)
+            });
+            return Err(cannot(&format!("scenario{at}"), &of_baseline, &of_result));
+        }
+        let same = self.seed == result.seed && self.frames_sha256 == result.frames_sha256;
+        Ok(if same { Pairing::Frames } else { Pairing::Blocks })
+    }
+}
+
+/// Where two values differ first, as `.psf.sigma_px` or `.schedule[2].count`, and what stands there.
+fn first_difference(a: &Value, b: &Value) -> Option<(String, String, String)> {
+    let missing = || "none".to_owned();
+    match (a, b) {
+        (Value::Table(a), Value::Table(b)) => {
+            let mut keys: Vec<&String> =
+                a.keys().chain(b.keys().filter(|key| !a.contains_key(*key))).collect();
+            keys.sort();
+            keys.into_iter().find_map(|key| match (a.get(key), b.get(key)) {
+                (Some(a), Some(b)) => first_difference(a, b).map(|(at, a, b)| (format!(".{key}{at}"), a, b)),
+                (a, b) => {
+                    let shown = |value: Option<&Value>| value.map_or_else(missing, ToString::to_string);
+                    Some((format!(".{key}"), shown(a), shown(b)))
+                }
+            })
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            (0..a.len().max(b.len())).find_map(|i| match (a.get(i), b.get(i)) {
+                (Some(a), Some(b)) => first_difference(a, b).map(|(at, a, b)| (format!("[{i}]{at}"), a, b)),
+                (a, b) => {
+                    let shown = |value: Option<&Value>| value.map_or_else(missing, ToString::to_string);
+                    Some((format!("[{i}]"), shown(a), shown(b)))
+                }
+            })
+        }
+        (a, b) => (a != b).then(|| (String::new(), a.to_string(), b.to_string())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn identity(scenario: &str) -> Identity {
+        let seed = scenario.parse::<Table>().unwrap()["seed"].as_integer().unwrap() as u64;
+        let split = split("far_range", scenario.parse().unwrap()).unwrap();
+        Identity {
+            kind: SourceKind::Run,
+            world: "far_range".to_owned(),
+            name: "test".to_owned(),
+            seed,
+            version: "0.1.0".to_owned(),
+            catalog_sha256: None,
+            inject: None,
+            renderer: None,
+            scenario_sha256: split.scenario_sha256,
+            frames_sha256: "f".to_owned(),
+            pipeline: split.pipeline,
+            scenario: split.scenario,
+        }
+    }
+
+    const SCENARIO: &str = "title = \"a\"\nseed = 1\n[psf]\nsigma_px = 0.8\n[far_range]\nthreshold = 4\n[[schedule]]\ncount = 3\n";
+
+    #[test]
+    fn title_and_pipeline_may_differ_and_the_frames_are_still_the_same() {
+        let other = SCENARIO.replace("\"a\"", "\"b\"").replace("threshold = 4", "threshold = 5");
+        assert_eq!(identity(SCENARIO).pairing(&identity(&other)).unwrap(), Pairing::Frames);
+    }
+
+    #[test]
+    fn another_seed_or_other_frames_leave_the_blocks() {
+        let other = identity(&SCENARIO.replace("seed = 1", "seed = 2"));
+        assert_eq!(identity(SCENARIO).pairing(&other).unwrap(), Pairing::Blocks);
+        let other = Identity { frames_sha256: "g".to_owned(), ..identity(SCENARIO) };
+        assert_eq!(identity(SCENARIO).pairing(&other).unwrap(), Pairing::Blocks);
+    }
+
+    #[test]
+    fn what_differs_is_named_with_both_values() {
+        for (change, parts) in [
+            (("sigma_px = 0.8", "sigma_px = 0.9"), ["scenario.psf.sigma_px", "0.8", "0.9"]),
+            (("sigma_px = 0.8", "kind = 1"), ["scenario.psf.kind", "none", "1"]),
+            (("count = 3", "count = 4"), ["scenario.schedule[0].count", "3", "4"]),
+        ] {
+            let other = identity(&SCENARIO.replace(change.0, change.1));
+            let message = identity(SCENARIO).pairing(&other).unwrap_err().to_string();
+            assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+        }
+        let study = Identity { kind: SourceKind::Study, ..identity(SCENARIO) };
+        let message = identity(SCENARIO).pairing(&study).unwrap_err().to_string();
+        assert!(message.contains("`run` in the baseline and `study` in the result"), "{message}");
+    }
+
+    #[test]
+    fn what_differs_first_is_named_down_to_its_place() {
+        let value = |text: &str| Value::Table(text.parse().unwrap());
+        for (a, b, at, of_a, of_b) in [
+            // Neither has what the other has; by name, not by place.
+            ("b = 1\na = 1", "b = 2\na = 2", ".a", "1", "2"),
+            ("a = 1", "a = 1\nb = 2", ".b", "none", "2"),
+            ("a = 1\nb = 2", "a = 1", ".b", "2", "none"),
+            ("a = [1, 2]", "a = [1, 2, 3]", ".a[2]", "none", "3"),
+            ("a = [1, 2, 3]", "a = [1, 2]", ".a[2]", "3", "none"),
+            ("a = [{ b = 1 }, { b = 2 }]", "a = [{ b = 1 }, { b = 3 }]", ".a[1].b", "2", "3"),
+            ("a = 1", "a = \"1\"", ".a", "1", "\"1\""),
+            ("a.b = 1", "a = 1", ".a", "{ b = 1 }", "1"),
+        ] {
+            let expected = (at.to_owned(), of_a.to_owned(), of_b.to_owned());
+            assert_eq!(first_difference(&value(a), &value(b)), Some(expected), "{a} and {b}");
+        }
+        let table = value("a = [1, { b = 2.5 }]\nc = true");
+        assert_eq!(first_difference(&table, &table), None);
+    }
+
+    #[test]
+    fn what_was_run_must_be_the_same_in_all_but_pipeline_and_noise() {
+        let text = |text: &str| Some(text.to_owned());
+        let base = identity(SCENARIO);
+        for (other, parts) in [
+            (
+                Identity { world: "docking".to_owned(), ..base.clone() },
+                ["`world`", "`far_range` in the baseline", "`docking` in the result"],
+            ),
+            (
+                Identity { inject: text("detection"), ..base.clone() },
+                ["`inject`", "`none` in the baseline", "`detection` in the result"],
+            ),
+            (
+                Identity { renderer: text("mitsuba"), ..base.clone() },
+                ["`renderer`", "`none` in the baseline", "`mitsuba` in the result"],
+            ),
+            (
+                Identity { catalog_sha256: text("ab"), ..base.clone() },
+                ["`catalog_sha256`", "`none` in the baseline", "`ab` in the result"],
+            ),
+            // A digest that nothing in the scenario explains.
+            (
+                Identity { scenario_sha256: "cd".to_owned(), ..base.clone() },
+                [
+                    "scenario_sha256",
+                    &format!("`{}` in the baseline", base.scenario_sha256),
+                    "`cd` in the result",
+                ],
+            ),
+        ] {
+            let message = base.pairing(&other).unwrap_err().to_string();
+            assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+        }
+        let study = Identity { kind: SourceKind::Study, ..base.clone() };
+        let message = study.pairing(&base).unwrap_err().to_string();
+        assert!(message.contains("`study` in the baseline and `run` in the result"), "{message}");
+        let named = Identity { name: "another".to_owned(), version: "0.2.0".to_owned(), ..base.clone() };
+        assert_eq!(base.pairing(&named).unwrap(), Pairing::Frames);
+        // The same frames of another seed are no pairs: what the pipeline draws is not the same.
+        assert_eq!(base.pairing(&Identity { seed: 2, ..base.clone() }).unwrap(), Pairing::Blocks);
+    }
+
+    #[test]
+    fn the_scenario_is_parted_from_its_title_its_seed_and_its_pipeline() {
+        let table: Table = SCENARIO.parse().unwrap();
+        let split = split("far_range", table.clone()).unwrap();
+        assert_eq!(split.pipeline, "threshold = 4".parse().unwrap());
+        let scenario: Table = "[psf]\nsigma_px = 0.8\n[[schedule]]\ncount = 3\n".parse().unwrap();
+        assert_eq!(split.scenario, scenario);
+        assert_eq!(split.scenario_sha256, sha256_hex(toml::to_string(&scenario).unwrap()));
+        // Of the other world's pipeline it is no part.
+        let other = super::split("docking", table).unwrap();
+        assert!(other.pipeline.is_empty() && other.scenario.contains_key("far_range"));
+    }
+
+    #[test]
+    fn units_are_called_by_what_they_are() {
+        assert_eq!(SourceKind::Run.units("far_range"), "frames");
+        assert_eq!(SourceKind::Run.units("docking"), "fields");
+        assert_eq!(["far_range", "docking"].map(|world| SourceKind::Study.units(world)), ["cases"; 2]);
+    }
+}

@@ -1,0 +1,183 @@
+//! Mitsuba 3, the judge of the fast renderer: finds it, runs it, and keeps what it rendered.
+//!
+//! Mitsuba is a program of its own (`pip install mitsuba==3.9.1`). What it is told is made by [`sim::mitsuba`].
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+mod cache;
+mod command;
+mod error;
+mod process;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use cache::{Cache, read_judged};
+use command::MitsubaCommand;
+use contract::Camera;
+use contract::docking::Pose;
+pub use error::MitsubaError;
+use files::FileError;
+use process::{End, last_words};
+use sim::mitsuba::{Layer, SceneFiles, Settings};
+use sim::scene::docking::{DockingScene, Lighting};
+use sim::vector::RadianceImage;
+
+/// The version that is used; another one is refused, because its images could differ.
+pub const VERSION: &str = "3.9.1";
+
+/// The variant that is used: the same bits on every machine of a kind, without a compiler or a graphics card.
+pub const VARIANT: &str = "scalar_rgb";
+
+/// Threads of a render. With one or two Mitsuba can stop for ever while it writes the image; the bits do not depend on
+/// their number.
+const THREADS: &str = "4";
+
+/// Exit status by which Mitsuba refuses a scene.
+const SCENE_REFUSED: i32 = 255;
+
+/// How Mitsuba is to be used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MitsubaOptions {
+    /// Its command, as a shell would split it; `None`: that of `BORESIGHT_MITSUBA`, or `mitsuba`, or `uvx`.
+    pub command: Option<String>,
+    /// Folder of finished images; `None`: the user's cache.
+    pub cache: Option<PathBuf>,
+    /// Longest time that one layer of an image may take, s, greater than 0.
+    pub time_limit_s: f64,
+    /// Rays a pixel, and the part of the image.
+    pub settings: Settings,
+}
+
+impl Default for MitsubaOptions {
+    /// Found by itself, the user's cache, 15 minutes a layer, the whole image with 256 rays a pixel.
+    fn default() -> Self {
+        Self { command: None, cache: None, time_limit_s: 900.0, settings: Settings::default() }
+    }
+}
+
+/// Renders docking scenes with Mitsuba. An image that was rendered before, by any process, is taken from the cache, and
+/// Mitsuba need not be there for it.
+#[derive(Debug)]
+pub struct MitsubaRenderer {
+    options: MitsubaOptions,
+    limit: Duration,
+    cache: Cache,
+    /// Found and of the right version.
+    command: OnceLock<MitsubaCommand>,
+}
+
+impl MitsubaRenderer {
+    /// Opens the cache; Mitsuba is looked for when it is needed.
+    ///
+    /// # Errors
+    /// [`MitsubaError::Simulation`] for a time limit that is none, [`MitsubaError::File`] for a cache that cannot be made.
+    pub fn new(options: MitsubaOptions) -> Result<Self, MitsubaError> {
+        let limit = Duration::try_from_secs_f64(options.time_limit_s).ok().filter(|limit| !limit.is_zero());
+        let limit = limit.ok_or_else(|| sim::SimError::Parameter {
+            field: "time limit of Mitsuba, s",
+            value: options.time_limit_s.to_string(),
+            expected: "greater than 0",
+        })?;
+        let cache = Cache::open(options.cache.as_deref())?;
+        Ok(Self { options, limit, cache, command: OnceLock::new() })
+    }
+
+    /// Mean radiance over each pixel of the camera (or of the crop), as [`sim::vector::Drawer::draw`] gives it.
+    ///
+    /// # Errors
+    /// A [`MitsubaError`]: Mitsuba is missing or another version, it fails or takes too long, its image is none; or a
+    /// scene or a camera that it cannot be told.
+    pub fn radiance(
+        &self,
+        scene: &DockingScene,
+        lighting: &Lighting,
+        pose: &Pose,
+        camera: &Camera,
+    ) -> Result<RadianceImage, MitsubaError> {
+        let crop = self.options.settings.check(camera)?;
+        let mut sum = RadianceImage {
+            columns: crop.columns,
+            rows: crop.rows,
+            radiance: vec![0.0; crop.columns * crop.rows],
+        };
+        for layer in Layer::of(lighting)? {
+            let files = SceneFiles::new(scene, &layer, pose, camera, &self.options.settings)?;
+            let image = self.layer(&files, layer.name())?;
+            for (total, part) in sum.radiance.iter_mut().zip(&image.radiance) {
+                *total += part;
+            }
+        }
+        Ok(sum)
+    }
+
+    fn layer(&self, scene: &SceneFiles, layer: &'static str) -> Result<RadianceImage, MitsubaError> {
+        let place = self.cache.place(scene);
+        // A file that is there and damaged is made anew.
+        if let Ok(image) = read_judged(&place, scene, layer) {
+            return Ok(image);
+        }
+        let workshop = self.cache.workshop()?;
+        let command = self.command(workshop.path())?;
+        let fresh = self.render(command, scene, layer, workshop.path())?;
+        let image = read_judged(&fresh, scene, layer)?;
+        std::fs::rename(&fresh, &place).map_err(|source| FileError::Io {
+            path: place,
+            doing: "create",
+            source,
+        })?;
+        Ok(image)
+    }
+
+    fn command(&self, folder: &Path) -> Result<&MitsubaCommand, MitsubaError> {
+        if let Some(command) = self.command.get() {
+            return Ok(command);
+        }
+        let command = MitsubaCommand::find(self.options.command.as_deref())?;
+        command.check(folder, self.limit)?;
+        Ok(self.command.get_or_init(|| command))
+    }
+
+    fn render(
+        &self,
+        command: &MitsubaCommand,
+        scene: &SceneFiles,
+        layer: &'static str,
+        folder: &Path,
+    ) -> Result<PathBuf, MitsubaError> {
+        let write = |name: &str, bytes: &[u8]| {
+            let path = folder.join(name);
+            std::fs::write(&path, bytes).map_err(|source| FileError::Io { path, doing: "write", source })
+        };
+        write("scene.xml", scene.xml.as_bytes())?;
+        for mesh in &scene.meshes {
+            write(&mesh.file, &mesh.ply)?;
+        }
+        let arguments = ["-m", VARIANT, "-t", THREADS, "-o", "image.exr", "scene.xml"];
+        let (end, log) = command.run(&arguments, folder, self.limit)?;
+        let doing = format!("rendering the layer {layer}");
+        match end {
+            End::Exited(status) if status.success() => Ok(folder.join("image.exr")),
+            End::TimeLimit => Err(MitsubaError::TimeLimit {
+                limit_s: self.options.time_limit_s,
+                doing,
+                words: last_words(&log),
+            }),
+            End::Exited(status) if status.code() == Some(SCENE_REFUSED) => {
+                Err(MitsubaError::Scene { doing, words: last_words(&log) })
+            }
+            End::Exited(status) => {
+                Err(MitsubaError::Failed { status: status.to_string(), doing, words: last_words(&log) })
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Where on the Earth the spacecraft and the Sun are overhead.
+
+use hifitime::{Epoch, Unit};
+use nalgebra::Vector3;
+use sim::docking::DockingSimulator;
+use sim::truth::{Trajectory, clock, ephemeris, geographic};
+
+use super::report::Ground;
+
+/// Inclination of the station's orbit, degrees: that of the International Space Station.
+const STATION_INCLINATION_DEG: f64 = 51.6;
+/// Radius of the station's orbit, km: the height of early 2004, about 370 km. Only the period follows from it.
+const STATION_RADIUS_KM: f64 = 6748.0;
+/// GM of the Earth, km³/s².
+const GM_KM3_S2: f64 = sim::truth::EARTH_GM_KM3_S2;
+
+/// How far the drawn track reaches back and forth, s, and its step.
+const REACH_S: f64 = 3000.0;
+const STEP_S: f64 = 60.0;
+
+/// The motion of a spacecraft over the ground.
+#[derive(Debug, Clone)]
+pub(super) enum GroundTrack {
+    /// That of the scenario's chaser.
+    Chaser(Box<Trajectory>),
+    /// A circular orbit.
+    Circular(Circular),
+}
+
+/// A circular orbit: at `epoch` in the direction `radial`, moving along `ahead`.
+#[derive(Debug, Clone)]
+pub(super) struct Circular {
+    epoch: Epoch,
+    radial: Vector3<f64>,
+    ahead: Vector3<f64>,
+    rate_rad_s: f64,
+}
+
+impl GroundTrack {
+    /// The orbit of a docking scenario, which names none: the circular one of 51.6° and some 370 km on which the Sun stands over
+    /// the station, at the beginning, where the scene has it. The target is at the aft end: y3 points back along the track,
+    /// y2 to the zenith. Of the two nodes that do, the earlier one in right ascension is taken.
+    /// `None` on the night side, whose scene has no Sun, and where no such orbit has it there.
+    pub(super) fn station(simulator: &DockingSimulator) -> Option<Self> {
+        let moment = simulator.moment(0).ok()?;
+        let towards = moment.lighting.sun?.towards.normalize();
+        let sun = sun_direction(moment.time)?;
+        let (sin_i, cos_i) = libm::sincos(STATION_INCLINATION_DEG.to_radians());
+        // Normal of the orbit N = (sin i sin Ω, −sin i cos Ω, cos i), and y1 = −N: N · sun = −s1.
+        let sun_across = -towards.x;
+        let equatorial = (sun.x * sun.x + sun.y * sun.y).sqrt();
+        let sine = (sun_across - cos_i * sun.z) / (sin_i * equatorial);
+        if sine.abs() > 1.0 {
+            return None;
+        }
+        // N · sun = sin i · equatorial · sin(Ω − RA) + cos i · sun_z
+        let raan = libm::atan2(sun.y, sun.x) + libm::asin(sine);
+        let (sin_node, cos_node) = libm::sincos(raan);
+        let normal = Vector3::new(sin_i * sin_node, -sin_i * cos_node, cos_i);
+        let node = Vector3::new(cos_node, sin_node, 0.0);
+        let quarter = normal.cross(&node);
+        // Radial · sun = s2 and ahead · sun = −s3 give the angle by which the spacecraft is ahead of the Sun in the plane.
+        let sun_angle = libm::atan2(sun.dot(&quarter), sun.dot(&node));
+        let (sin_u, cos_u) = libm::sincos(sun_angle + libm::atan2(towards.z, towards.y));
+        let rate_rad_s = (GM_KM3_S2 / (STATION_RADIUS_KM * STATION_RADIUS_KM * STATION_RADIUS_KM)).sqrt();
+        Some(Self::Circular(Circular {
+            epoch: moment.time,
+            radial: node * cos_u + quarter * sin_u,
+            ahead: quarter * cos_u - node * sin_u,
+            rate_rad_s,
+        }))
+    }
+
+    /// The points below the spacecraft and below the Sun; `None` outside the times of the Earth's ephemeris.
+    pub(super) fn at(&self, time: Epoch) -> Option<Ground> {
+        Some(Ground {
+            spacecraft: point(time, &self.position_km(time)),
+            sun: point(time, &sun_direction(time)?),
+        })
+    }
+
+    /// The track from 50 minutes before to 50 minutes after a time: longitude and latitude, degrees.
+    pub(super) fn path(&self, time: Epoch) -> Vec<[f64; 2]> {
+        let steps = (REACH_S / STEP_S) as i32;
+        (-steps..=steps)
+            .map(|step| {
+                let time = time + f64::from(step) * STEP_S * Unit::Second;
+                point(time, &self.position_km(time))
+            })
+            .collect()
+    }
+
+    /// Where it is, from the centre of the Earth, ICRS axes; of a circular orbit only the direction counts.
+    fn position_km(&self, time: Epoch) -> Vector3<f64> {
+        match self {
+            Self::Chaser(trajectory) => trajectory.at(time).chaser.position_km,
+            Self::Circular(orbit) => {
+                let (sin, cos) = libm::sincos(orbit.rate_rad_s * (time - orbit.epoch).to_seconds());
+                (orbit.radial * cos + orbit.ahead * sin) * STATION_RADIUS_KM
+            }
+        }
+    }
+}
+
+/// Unit vector from the centre of the Earth towards the Sun, ICRS axes.
+fn sun_direction(time: Epoch) -> Option<Vector3<f64>> {
+    ephemeris::earth(clock::tdb_j2000_s(time)).map(|earth| earth.sun_geocentric_km().normalize())
+}
+
+fn point(time: Epoch, position_km: &Vector3<f64>) -> [f64; 2] {
+    let (latitude, longitude) = geographic(time, position_km);
+    [longitude.degrees(), latitude.degrees()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use run::docking_renderer::DockingRenderer;
+    use run::docking_run::PreparedDocking;
+    use scenario::ScenarioSource;
+
+    #[test]
+    fn the_sun_stands_over_the_station_where_the_scene_has_it() {
+        let source = ScenarioSource::read("docking").unwrap();
+        let prepared = PreparedDocking::new(&source, DockingRenderer::Fast).unwrap();
+        let simulator = prepared.simulator();
+        let track = GroundTrack::station(simulator).unwrap();
+        let elevation = |time| track.position_km(time).normalize().dot(&sun_direction(time).unwrap());
+        let moment = simulator.moment(0).unwrap();
+        let towards = moment.lighting.sun.unwrap().towards.normalize();
+        // Rounding of some ten products.
+        assert!((elevation(moment.time) - towards.y).abs() < 1e-12);
+        // 370 km up, the Sun is seen down to 19° below the horizontal: the scene is lit to its end, and so is the orbit.
+        let end = simulator.moment(simulator.field_count() - 1).unwrap().time;
+        assert!(elevation(end) > -0.32, "{}", elevation(end));
+        let GroundTrack::Circular(orbit) = &track else { panic!("a circular orbit") };
+        assert!((orbit.ahead.dot(&sun_direction(moment.time).unwrap()) + towards.z).abs() < 1e-12);
+        let normal = orbit.radial.cross(&orbit.ahead);
+        assert!((libm::acos(normal.z).to_degrees() - STATION_INCLINATION_DEG).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,43 @@
+//! The monitor: what an operator sees of an approach, as a page served on loopback.
+//!
+//! One frame after the other is simulated and processed ahead of what the page shows, or read from a run directory
+//! (`feed`); what is known of each is kept (`session`), its picture as long as there is room, and drawn anew after that
+//! (`painter`): frame N alone is the frame N of the run. The server (`server`) gives any frame by its number and keeps
+//! nothing of its clients.
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+mod assets;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod docking_report;
+mod far_range_report;
+mod feed;
+mod ground;
+mod guard;
+mod listener;
+mod overview;
+mod painter;
+mod picture;
+mod plan;
+mod report;
+mod server;
+mod session;
+
+pub use assets::{BUILD_COMMAND, is_page_built};
+pub use feed::{Feed, Measurements};
+pub use server::serve;
+
+/// Most frames of a monitored run: what is known of each is kept, some kilobytes.
+pub const MOST_FRAMES: u64 = 50_000;

@@ -1,0 +1,157 @@
+//! Fields of a docking run, drawn anew one by one, with what was recognised.
+
+use std::path::{Path, PathBuf};
+
+use contract::docking::DockingSetup;
+use contract::{PixelPoint, Window};
+use files::Failure;
+use files::docking::FeatureRow;
+use run::docking_renderer::DockingRenderer;
+use scenario::ScenarioSource;
+use sim::docking::{DockingSimulator, FieldTruth};
+
+use super::{DockingRun, answer_words};
+use crate::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
+use crate::read::rows_of_each;
+use crate::words::{capital, spoken};
+
+/// Smallest side of a picture across columns, px.
+const LEAST_COLUMNS: f64 = 160.0;
+
+/// The simulator of a run, and what the pipeline recognised.
+pub struct FieldSheet {
+    simulator: Result<(DockingSimulator, DockingSetup), String>,
+    features: Option<PathBuf>,
+}
+
+impl FieldSheet {
+    /// The fields of a run directory. Where its scenario cannot be simulated any more, there are no pictures, and
+    /// [`FieldSheet::reason`] says why.
+    ///
+    /// # Errors
+    /// A [`Failure`] when `run.toml` cannot be read.
+    pub fn open(directory: &Path) -> Result<Self, Failure> {
+        let path = directory.join("run.toml");
+        let source = ScenarioSource::read(&path.to_string_lossy())?;
+        let simulator = source.docking_simulator(source.docking("the report of a docking run")?);
+        Ok(Self {
+            simulator: simulator
+                .map(|simulator| {
+                    let setup = simulator.setup();
+                    (simulator, setup)
+                })
+                .map_err(|failure| failure.to_string()),
+            features: Some(directory.join("features.parquet")).filter(|path| path.is_file()),
+        })
+    }
+
+    /// Why there are no pictures.
+    pub fn reason(&self) -> Option<&str> {
+        self.simulator.as_ref().err().map(String::as_str)
+    }
+
+    /// Pictures of some rows of a run, in their order.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a field cannot be drawn, or the features not be read.
+    pub fn pictures(&self, run: &DockingRun, rows: &[usize]) -> Result<Vec<Picture>, Failure> {
+        let Ok((simulator, setup)) = &self.simulator else { return Ok(Vec::new()) };
+        let mut workspace = simulator.workspace()?;
+        let fields: Vec<u64> = rows.iter().map(|&row| run.truths[row].field).collect();
+        let features = rows_of_each::<FeatureRow>(self.features.as_deref(), &fields)?;
+        let mut pictures = Vec::with_capacity(rows.len());
+        for (&row, features) in rows.iter().zip(features) {
+            let (truth, unit) = (&run.truths[row], &run.verdicts[row]);
+            let exposure = DockingRenderer::Fast.expose(simulator, setup, &mut workspace, truth.field)?;
+            let field = exposure.video.digitise(&run.telemetry[row].telemetry.digitiser);
+            let image = field.image();
+            let lines =
+                RowPlace { first: field.lines().camera_row(0) as f64, pitch: field.lines().step() as f64 };
+            let window = window(truth, &features, (image.columns(), image.rows()), lines);
+            let pixels = Pixels { columns: image.columns(), rows: image.rows(), dn: image.dn() };
+            let mut picture = Picture::new(pixels, window, lines, Stretch::Linear)?;
+            picture.title = match (unit.verdict.as_str(), &unit.cause) {
+                ("success", _) => "Measured.".to_owned(),
+                ("range_only", _) => "Range alone.".to_owned(),
+                (verdict, Some(cause)) => format!("{}: {}.", capital(verdict), spoken(cause)),
+                (verdict, None) => format!("{}.", capital(verdict)),
+            };
+            picture.caption = format!(
+                "Field {}, {:.2} s, {}, true ρ {:.3} m, {}.",
+                truth.field,
+                truth.time_s,
+                unit.group,
+                truth.range_m,
+                answer_words(run.outcomes[row].as_ref())
+            );
+            picture.marks.extend(true_marks(truth));
+            picture.marks.extend(features.iter().map(feature_mark));
+            pictures.push(picture);
+        }
+        Ok(pictures)
+    }
+}
+
+/// The window around what was recognised, or around the true target; the whole field where neither is in it.
+fn window(
+    truth: &FieldTruth,
+    features: &[FeatureRow],
+    (columns, rows): (usize, usize),
+    lines: RowPlace,
+) -> Window {
+    let circle = features.iter().find(|row| row.kind == "circle");
+    let recognised = circle.map(|row| (row.position, row.radius_px.unwrap_or(0.0)));
+    let of_truth =
+        truth.disk_centre.map(|centre| ([centre.x, centre.y], truth.circle_radius_px.unwrap_or(0.0)));
+    let whole = Window { x: 0, y: 0, columns, rows };
+    let Some(([x, y], radius)) = recognised.or(of_truth) else { return whole };
+    let row = (y - lines.first) / lines.pitch;
+    if !(x > 0.0 && x < columns as f64 && row > 0.0 && row < rows as f64 && radius.is_finite()) {
+        return whole;
+    }
+    let side = |middle: f64, length: f64, limit: usize| {
+        let length = (length.ceil() as usize).clamp(1, limit);
+        let start = (middle - length as f64 / 2.0).round().max(0.0) as usize;
+        (start.min(limit - length), length)
+    };
+    let width = (4.2 * radius).max(LEAST_COLUMNS);
+    let (x, columns) = side(x, width, columns);
+    let (y, rows) = side(row, 0.75 * width / lines.pitch, rows);
+    Window { x, y, columns, rows }
+}
+
+fn true_marks(truth: &FieldTruth) -> impl Iterator<Item = Mark> {
+    let mark = |at: Option<PixelPoint>, arm: f64, what: &str| {
+        let title = |at: &PixelPoint| format!("{what}, true: ({:.2}, {:.2}) px", at.x, at.y);
+        at.map(|at| Mark { at, shape: Shape::Cross(arm), class: "truth", title: title(&at) })
+    };
+    let circle = truth.disk_centre.zip(truth.circle_radius_px).map(|(at, radius)| Mark {
+        at,
+        shape: Shape::Circle(radius.max(0.5)),
+        class: "truth",
+        title: format!("circle of the marks, true without tilt: radius {radius:.2} px"),
+    });
+    mark(truth.cross_centre, 5.0, "centre of the cross")
+        .into_iter()
+        .chain(mark(truth.disk_centre, 3.0, "centre of the disk"))
+        .chain(circle)
+}
+
+fn feature_mark(row: &FeatureRow) -> Mark {
+    let at = PixelPoint::new(row.position[0], row.position[1]);
+    let place = format!("({:.2}, {:.2}) px", at.x, at.y);
+    let (shape, class, title) = match row.kind.as_str() {
+        "cross" => (Shape::Cross(9.0), "measured", format!("cross, recognised: {place}")),
+        "mark" => {
+            let class = if row.usage == "used" { "measured" } else { "other" };
+            (Shape::Circle(3.0), class, format!("mark {}, {}: {place}", row.index, spoken(&row.usage)))
+        }
+        kind => {
+            let radius = row.radius_px.filter(|radius| radius.is_finite()).unwrap_or(3.0);
+            let class = if kind == "circle" { "measured" } else { "cluster" };
+            let title = format!("{}, recognised: {place}, radius {radius:.2} px", spoken(kind));
+            (Shape::Circle(radius.max(0.5)), class, title)
+        }
+    };
+    Mark { at, shape, class, title }
+}

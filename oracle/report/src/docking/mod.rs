@@ -1,0 +1,213 @@
+//! The report of a docking run: the figures of the docking paper, errors against the truth, fields.
+
+mod field_errors;
+mod field_sheet;
+mod motion;
+mod run;
+
+use contract::docking::{DockingOutcome, DockingSolution};
+use indexmap::IndexMap;
+
+pub use field_sheet::FieldSheet;
+pub use run::{DockingRun, PortionReport};
+
+use super::chart::{BESIDE, Chart, MEASURED, bars, rounded, stacked_bars};
+use super::colours::colour_of;
+use super::figures::{figure_table, least_to_most, percent_cell, shown_percent};
+use super::page::{DataTable, Page, Section};
+use super::plotly::Trace;
+use super::words::spoken;
+use files::Failure;
+use score::docking::DockingGroup;
+use score::{Figure, UnitVerdict};
+
+/// The page of a docking run; `sheet` draws its fields anew.
+///
+/// # Errors
+/// A [`Failure`] when a field cannot be drawn.
+pub fn docking_page(run: &DockingRun, sheet: &FieldSheet) -> Result<Page, Failure> {
+    let (first, last) = (&run.truths[0], &run.truths[run.truths.len() - 1]);
+    let scenario = &run.run_file.scenario;
+    let figure = |name: &str| run.score.figures.get(name).map_or_else(String::new, shown_percent);
+    let mut sections = vec![figures_section(run)];
+    sections.extend(motion::sections(run));
+    sections.push(field_errors::field_errors(run));
+    sections.push(verdicts(run));
+    sections.push(fields(run, sheet)?);
+    Ok(Page {
+        title: scenario.title.clone(),
+        kind: "Docking: a run",
+        version: run.run_file.version.clone(),
+        lead: vec![format!(
+            "{} fields: the pose was measured in {} of those in which it can be asked for; {} of all fields were grossly wrong.",
+            run.score.frames,
+            figure("success_rate"),
+            figure("wrong_rate")
+        )],
+        warnings: Vec::new(),
+        facts: vec![
+            ("Scenario", run.run_file.name.clone()),
+            ("Seed", scenario.seed.to_string()),
+            ("Fields", format!("{} to {}", first.field, last.field)),
+            ("Time", format!("{:.2} to {:.2} s", first.time_s, last.time_s)),
+            ("Range", least_to_most(run.truths.iter().map(|truth| truth.range_m), "m")),
+            ("Reports of motion", run.score.portions.to_string()),
+            ("Renderer", run.score.renderer.clone()),
+            ("Boresight", run.run_file.version.clone()),
+        ],
+        sections,
+        data: serde_json::json!({ "score": run.score }),
+    })
+}
+
+/// Figures by range, and all of them.
+fn figures_section(run: &DockingRun) -> Section {
+    let score = &run.score;
+    let mut table = DataTable::new([
+        "range",
+        "fields",
+        "reports",
+        "success",
+        "of clear ones",
+        "range alone",
+        "wrong",
+        "missed",
+    ])
+    .caption("Percent, with 95 % intervals, by true range and lens.");
+    let rates = ["success_rate", "clear_success_rate", "range_only_rate", "wrong_rate", "miss_rate"];
+    let groups = score
+        .groups
+        .iter()
+        .map(|(name, group)| (name.as_str(), group.frames, group.portions, &group.figures));
+    for (name, frames, portions, figures) in
+        groups.chain([("all", score.frames, score.portions, &score.figures)])
+    {
+        let mut cells = vec![name.to_owned(), frames.to_string(), portions.to_string()];
+        cells.extend(rates.map(|rate| percent_cell(figures.get(rate))));
+        table.push(cells);
+    }
+    Section::new("figures", "Figures").table(table).folded("All figures", figure_table(&score.figures))
+}
+
+/// What became of the fields, by range.
+fn verdicts(run: &DockingRun) -> Section {
+    let score = &run.score;
+    let groups: Vec<String> = score.groups.keys().cloned().collect();
+    let mut data = DataTable::new(
+        ["what", "cause"]
+            .map(str::to_owned)
+            .into_iter()
+            .chain(groups.iter().cloned())
+            .chain(["all".to_owned()]),
+    );
+    let mut traces: Vec<Trace> = Vec::new();
+    let mut add = |what: &str, cause: &str, counts: Vec<u64>, all: u64| {
+        if all == 0 {
+            return;
+        }
+        let mut cells = vec![what.to_owned(), cause.to_owned()];
+        cells.extend(counts.iter().map(u64::to_string));
+        cells.push(all.to_string());
+        data.push(cells);
+        let frames = score.groups.values().map(|group| group.frames.max(1) as f64);
+        let percent = counts.iter().zip(frames).map(|(count, of)| rounded(100.0 * *count as f64 / of, 3));
+        let name = if cause.is_empty() { what.to_owned() } else { format!("{what}: {}", spoken(cause)) };
+        let colour = match what {
+            "success" => MEASURED,
+            "range alone" => BESIDE,
+            _ => colour_of(cause),
+        };
+        let bars = bars(&name, &groups, percent.collect(), colour);
+        traces.push(bars.hover_template("%{x}: %{y} %"));
+    };
+    let counted = |of: &dyn Fn(&DockingGroup) -> u64| score.groups.values().map(of).collect::<Vec<u64>>();
+    for name in ["success_rate", "range_only_rate"] {
+        let count = |figures: &IndexMap<String, Figure>| figures.get(name).map_or(0, |figure| figure.count);
+        let what = if name == "success_rate" { "success" } else { "range alone" };
+        add(what, "", counted(&|group| count(&group.figures)), count(&score.figures));
+    }
+    for (cause, all) in &score.wrong {
+        add("wrong", cause, counted(&|group| group.wrong.get(cause).copied().unwrap_or(0)), *all);
+    }
+    for (cause, all) in &score.misses {
+        add("missed", cause, counted(&|group| group.misses.get(cause).copied().unwrap_or(0)), *all);
+    }
+    Section::new("verdicts", "What became of the fields").chart(Chart::new(
+        "Percent of the fields of a range and lens.",
+        420,
+        data,
+        traces,
+        stacked_bars("", "% of fields"),
+    ))
+}
+
+/// A sheet of fields: a success of every range, every kind of miss and of wrong answer.
+fn fields(run: &DockingRun, sheet: &FieldSheet) -> Result<Section, Failure> {
+    let mut chosen: Vec<usize> = Vec::new();
+    let mut evenly = |count: usize, is: &dyn Fn(&UnitVerdict) -> bool| {
+        let rows: Vec<usize> = (0..run.verdicts.len()).filter(|&row| is(&run.verdicts[row])).collect();
+        let count = count.min(rows.len());
+        chosen.extend((0..count).map(|k| rows[(2 * k + 1) * rows.len() / (2 * count)]));
+    };
+    // Of an approach through few ranges more of each.
+    let successes = if run.score.groups.len() <= 3 { 3 } else { 1 };
+    for group in run.score.groups.keys() {
+        evenly(successes, &|unit| unit.verdict == "success" && unit.group == *group);
+    }
+    evenly(1, &|unit| unit.verdict == "range_only");
+    for (verdict, causes) in [("wrong", &run.score.wrong), ("missed", &run.score.misses)] {
+        for cause in causes.keys() {
+            evenly(1, &|unit| unit.verdict == verdict && unit.cause.as_deref() == Some(cause));
+        }
+    }
+    let mut section = Section::new("fields", "Fields").text(
+        "Of every range one success or more, then of every kind of wrong answer and of miss the field in the middle of all of that kind, drawn \
+         anew from run.toml. Orange: what was recognised (cross, circle of the marks, marks that were used); yellow: outlines of \
+         station and docking unit; violet: marks that were rejected or missing; green: true centres of cross and disk.",
+    );
+    if run.score.renderer != "fast" {
+        section = section.text(format!(
+            "The fields of the run were drawn by {}, these by the fast renderer: the same scene, other shades.",
+            run.score.renderer
+        ));
+    }
+    Ok(match sheet.reason() {
+        Some(reason) => section.text(format!("There are no pictures: {reason}")),
+        None => section.pictures(sheet.pictures(run, &chosen)?),
+    })
+}
+
+/// What a field's answer was, in words.
+fn answer_words(outcome: Option<&DockingOutcome>) -> String {
+    match outcome.map(|outcome| &outcome.solution) {
+        None => "no answer".to_owned(),
+        Some(DockingSolution::Measured(measured)) => {
+            format!("ρ measured {:.3} m", measured.best.pose.position_m.norm())
+        }
+        Some(DockingSolution::RangeOnly { range_m, .. }) => format!("range alone {range_m:.2} m"),
+        Some(DockingSolution::NoSolution(reason)) => format!("the pipeline says: {reason}"),
+    }
+}
+
+/// How many of some values an axis leaves out.
+fn outside(range: [f64; 2], values: impl Iterator<Item = f64>) -> usize {
+    values.filter(|value| *value < range[0] || *value > range[1]).count()
+}
+
+/// What a caption says of errors that the axes leave out.
+fn told_outside(count: usize, of: usize) -> String {
+    match count {
+        0 => format!("All {of} errors lie inside of the axes."),
+        _ => format!("{count} of {of} errors lie outside of the axes; zoom out (double click) for them."),
+    }
+}
+
+/// Limits of an axis that shows all but the wildest hundredth of some values.
+fn limits(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let mut sorted: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(last) = sorted.len().checked_sub(1) else { return [-1.0, 1.0] };
+    let (low, high) = (sorted[last / 200], sorted[last - last / 200]);
+    let room = (0.08 * (high - low)).max(1e-9);
+    [low - room, high + room]
+}

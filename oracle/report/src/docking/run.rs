@@ -1,0 +1,104 @@
+//! What a docking run left in its directory.
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+use std::path::Path;
+
+use contract::docking::{DockingOutcome, Motion};
+use files::docking::{read_field_measurements, read_motion};
+use files::{Failure, FieldRow, TableReader, read_field_telemetry};
+use run::docking_run::judge_docking;
+use scenario::DockingScenario;
+use scenario::run_file::RunFile;
+use score::UnitVerdict;
+use score::docking::DockingScore;
+use sim::docking::FieldTruth;
+
+use crate::read::{missing, read_json};
+
+/// What a docking run left in its directory.
+pub struct DockingRun {
+    /// `run.toml`.
+    pub run_file: RunFile<DockingScenario>,
+    /// `score.json`.
+    pub score: DockingScore,
+    /// A verdict a field, from truth and measurements.
+    pub verdicts: Vec<UnitVerdict>,
+    /// `truth/fields.parquet`, in the order of the verdicts.
+    pub truths: Vec<FieldTruth>,
+    /// `measurements.csv`, of the same fields; `None` where there is no row.
+    pub outcomes: Vec<Option<DockingOutcome>>,
+    /// `telemetry.csv`, of the same fields.
+    pub telemetry: Vec<FieldRow>,
+    /// What was said at the end of portions, with the place of the field that ended it.
+    pub reports: Vec<PortionReport>,
+}
+
+/// What was said at the end of a portion.
+pub struct PortionReport {
+    /// Place of the field that ended it.
+    pub row: usize,
+    /// By the best estimator.
+    pub best: Option<Motion>,
+    /// By the paper's formulas.
+    pub paper: Option<Motion>,
+}
+
+impl DockingRun {
+    /// Reads a run directory.
+    ///
+    /// # Errors
+    /// A [`Failure`] that names the file which is missing, cannot be read, or is not of the same fields as the others.
+    pub fn read(directory: &Path) -> Result<Self, Failure> {
+        for name in ["score.json", "measurements.csv", "telemetry.csv", "setup.toml", "truth/fields.parquet"]
+        {
+            if !directory.join(name).is_file() {
+                return Err(missing(directory, name));
+            }
+        }
+        let run_file = RunFile::<DockingScenario>::read(&directory.join("run.toml"))?;
+        let score: DockingScore = read_json(&directory.join("score.json"), "score")?;
+        let measurements = directory.join("measurements.csv");
+        let motion = Some(directory.join("motion.csv")).filter(|path| path.is_file());
+        let verdicts = judge_docking(directory, &measurements, motion.as_deref())?.units().units;
+        let mut truths = Vec::with_capacity(verdicts.len());
+        for field in TableReader::<FieldTruth>::open(&directory.join("truth/fields.parquet"))? {
+            truths.extend(field?.1);
+        }
+        if truths.is_empty() || score.frames != truths.len() as u64 || verdicts.len() != truths.len() {
+            return Err(Failure::Usage(format!(
+                "{}: `frames` is {}, expected the {} of truth/fields.parquet, at least 1",
+                directory.join("score.json").display(),
+                score.frames,
+                truths.len()
+            )));
+        }
+        let mut answers = read_field_measurements(&measurements)?.into_iter().peekable();
+        let mut rows = read_field_telemetry(&directory.join("telemetry.csv"))?.into_iter().peekable();
+        let mut said =
+            motion.as_deref().map(read_motion).transpose()?.unwrap_or_default().into_iter().peekable();
+        let (mut outcomes, mut telemetry, mut reports) = (Vec::new(), Vec::new(), Vec::new());
+        for (row, truth) in truths.iter().enumerate() {
+            outcomes.push(answers.next_if(|(field, _)| *field == truth.field).map(|(_, outcome)| outcome));
+            telemetry.push(rows.next_if(|row| row.field == truth.field).ok_or_else(|| {
+                Failure::Usage(format!(
+                    "{}: there is no row of field {}, expected one for every field of the truth",
+                    directory.join("telemetry.csv").display(),
+                    truth.field
+                ))
+            })?);
+            if let Some((_, report)) = said.next_if(|(field, _)| *field == truth.field) {
+                reports.push(PortionReport { row, best: report.best, paper: report.paper });
+            }
+        }
+        Ok(Self { run_file, score, verdicts, truths, outcomes, telemetry, reports })
+    }
+}

@@ -1,0 +1,293 @@
+//! Frames of a far-range run, rendered anew one by one: frame N alone is frame N of the run.
+
+use std::path::Path;
+
+use contract::{Cluster, Label, Outcome, PixelPoint, Window};
+use files::{Failure, FrameCluster};
+use scenario::ScenarioSource;
+use score::{FrameVerdict, Verdict};
+use sim::truth::{ObjectKind, ObjectTruth, Visibility};
+use sim::{Exposure, Simulator};
+
+use super::run::{FarRangeRun, shown_time};
+use crate::figures::least_to_most;
+use crate::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch, window_around};
+use crate::read::rows_of_each;
+use crate::words::spoken;
+
+/// The simulator of a run, and what the pipeline told of its clusters.
+pub struct FrameSheet {
+    simulator: Result<Simulator, String>,
+    clusters: Option<std::path::PathBuf>,
+}
+
+impl FrameSheet {
+    /// The frames of a run directory. Where its scenario cannot be simulated any more (a file that it names is gone), there are no
+    /// pictures, and [`FrameSheet::reason`] says why.
+    ///
+    /// # Errors
+    /// A [`Failure`] when `run.toml` cannot be read.
+    pub fn open(directory: &Path) -> Result<Self, Failure> {
+        let path = directory.join("run.toml");
+        let source = ScenarioSource::read(&path.to_string_lossy())?;
+        let simulator = source.simulator(source.far_range("the report of a far-range run")?);
+        Ok(Self {
+            simulator: simulator.map_err(|failure| failure.to_string()),
+            clusters: Some(directory.join("clusters.parquet")).filter(|path| path.is_file()),
+        })
+    }
+
+    /// Why there are no pictures.
+    pub fn reason(&self) -> Option<&str> {
+        self.simulator.as_ref().err().map(String::as_str)
+    }
+
+    /// Pictures of some rows of a run, in their order.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a frame cannot be rendered, or the clusters not be read.
+    pub fn pictures(&self, run: &FarRangeRun, rows: &[usize]) -> Result<Vec<Picture>, Failure> {
+        let Ok(simulator) = &self.simulator else { return Ok(Vec::new()) };
+        let mut camera = simulator.camera()?;
+        let clusters = self.clusters_of(run, rows)?;
+        let picture = |(&row, clusters): (&usize, Vec<Cluster>)| {
+            let exposure = camera.expose(run.truths[row].frame)?;
+            let mut picture = framed(&exposure, run.outcomes[row].as_ref(), &clusters)?;
+            picture.title = title(&run.verdicts[row]);
+            picture.caption = caption(run, row, &exposure);
+            Ok(picture)
+        };
+        rows.iter().zip(clusters).map(picture).collect()
+    }
+
+    /// A row of a run as a picture of the whole detector.
+    ///
+    /// # Errors
+    /// As [`FrameSheet::pictures`].
+    pub fn whole(&self, run: &FarRangeRun, row: usize) -> Result<Option<Picture>, Failure> {
+        let Ok(simulator) = &self.simulator else { return Ok(None) };
+        let exposure = simulator.camera()?.expose(run.truths[row].frame)?;
+        let clusters = self.clusters_of(run, &[row])?.remove(0);
+        let mut picture = picture_of(&exposure, &[], 0.0)?;
+        draw_over(&mut picture, &exposure, run.outcomes[row].as_ref(), &clusters);
+        picture.title = title(&run.verdicts[row]);
+        picture.caption = caption(run, row, &exposure);
+        Ok(Some(picture))
+    }
+
+    /// Some rows of a run over one another: of every pixel the brightest.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a frame cannot be rendered.
+    pub fn overlaid(&self, run: &FarRangeRun, rows: &[usize]) -> Result<Option<Picture>, Failure> {
+        let (Ok(simulator), Some(&first), Some(&last)) = (&self.simulator, rows.first(), rows.last()) else {
+            return Ok(None);
+        };
+        let mut camera = simulator.camera()?;
+        let (mut brightest, mut marks): (Vec<u16>, Vec<Mark>) = (Vec::new(), Vec::new());
+        for &row in rows {
+            let exposure = camera.expose(run.truths[row].frame)?;
+            brightest.resize(exposure.frame.dn().len(), 0);
+            for (brightest, dn) in brightest.iter_mut().zip(exposure.frame.dn()) {
+                *brightest = (*brightest).max(*dn);
+            }
+            // Small ones: those of its wings would hide its track.
+            let small = |target| Mark { shape: Shape::Circle(4.0), ..true_mark(target) };
+            marks.extend(target(&exposure).map(small));
+        }
+        let size = &run.run_file.scenario.camera;
+        let (columns, rows_px) = (size.columns, size.rows);
+        let whole = Window { x: 0, y: 0, columns, rows: rows_px };
+        let pixels = Pixels { columns, rows: rows_px, dn: &brightest };
+        let mut picture = Picture::new(pixels, whole, RowPlace::WHOLE, Stretch::Stars)?;
+        picture.title = format!("{} images over one another.", rows.len());
+        picture.caption = format!(
+            "Frames {} to {}, {} to {} (UTC), {}.",
+            run.truths[first].frame,
+            run.truths[last].frame,
+            shown_time(&run.truths[first]),
+            shown_time(&run.truths[last]),
+            least_to_most(run.truths[first..=last].iter().map(|truth| truth.range_km), "km")
+        );
+        picture.marks = marks;
+        Ok(Some(picture))
+    }
+
+    /// The first of some rows whose target lost such a share of its light to its region, as a close picture.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a frame cannot be rendered.
+    pub fn first_region(
+        &self,
+        run: &FarRangeRun,
+        rows: impl Iterator<Item = usize>,
+        is_wanted: impl Fn(f64) -> bool,
+    ) -> Result<Option<Picture>, Failure> {
+        let Ok(simulator) = &self.simulator else { return Ok(None) };
+        let mut camera = simulator.camera()?;
+        for row in rows {
+            let exposure = camera.expose(run.truths[row].frame)?;
+            let Some(target) = target(&exposure).filter(|target| is_wanted(target.cut)) else { continue };
+            let (x, y) =
+                (target.position.x.round().max(0.0) as usize, target.position.y.round().max(0.0) as usize);
+            let windows = exposure.frame.windows().unwrap_or_default();
+            let Some(region) = windows.iter().find(|w| w.contains(x, y)) else { continue };
+            let corner =
+                |dx: usize, dy: usize| PixelPoint::new((region.x + dx) as f64, (region.y + dy) as f64);
+            let around = [corner(0, 0), corner(region.columns - 1, region.rows - 1), target.position];
+            let mut picture = picture_of(&exposure, &around, 6.0)?;
+            picture.title = if target.cut < 0.02 { "Whole.".to_owned() } else { "Truncated.".to_owned() };
+            picture.caption = format!(
+                "Frame {}, {}, {:.2} km: {:.0} % of the target's electrons are lost.",
+                exposure.truth.frame,
+                exposure.truth.group,
+                exposure.truth.range_km,
+                100.0 * target.cut
+            );
+            picture.marks = regions(&exposure);
+            picture.marks.push(true_mark(target));
+            picture.marks.extend(answer_mark(run.outcomes[row].as_ref()));
+            // Above the answer, and shorter: where both agree both are seen.
+            picture.marks.push(Mark { shape: Shape::Cross(2.5), ..true_mark(target) });
+            return Ok(Some(picture));
+        }
+        Ok(None)
+    }
+
+    /// The clusters of some rows, in their order.
+    fn clusters_of(&self, run: &FarRangeRun, rows: &[usize]) -> Result<Vec<Vec<Cluster>>, Failure> {
+        let frames: Vec<u64> = rows.iter().map(|&row| run.truths[row].frame).collect();
+        let found = rows_of_each::<FrameCluster>(self.clusters.as_deref(), &frames)?;
+        let clusters = |rows: Vec<FrameCluster>| rows.into_iter().map(|row| row.cluster).collect();
+        Ok(found.into_iter().map(clusters).collect())
+    }
+}
+
+/// What became of a frame, in words.
+fn title(verdict: &FrameVerdict) -> String {
+    match verdict.verdict {
+        Verdict::Correct { .. } => "Right.".to_owned(),
+        Verdict::Missed { cause } => format!("Missed: {}.", spoken(cause.code())),
+        Verdict::Wrong { cause, taken, .. } => {
+            format!("Wrong: {}; taken: {}.", spoken(cause.code()), spoken(taken.code()))
+        }
+    }
+}
+
+/// Which frame it is.
+fn caption(run: &FarRangeRun, row: usize, exposure: &Exposure) -> String {
+    let verdict = &run.verdicts[row];
+    format!(
+        "Frame {}, {}, {:.2} km, exposure {:.4} s{}.",
+        verdict.frame,
+        verdict.group,
+        exposure.truth.range_km,
+        exposure.truth.exposure_s,
+        distance(run.outcomes[row].as_ref(), exposure)
+    )
+}
+
+/// How far an answer is from the target.
+fn distance(outcome: Option<&Outcome>, exposure: &Exposure) -> String {
+    let measured = outcome.and_then(Outcome::measurement);
+    match measured.zip(target(exposure)) {
+        Some((measured, target)) => {
+            format!(", answer {:.2} px from the target", measured.position.distance(target.position))
+        }
+        None => String::new(),
+    }
+}
+
+fn target(exposure: &Exposure) -> Option<&ObjectTruth> {
+    exposure.objects.iter().find(|object| object.kind == ObjectKind::Target)
+}
+
+/// A frame about the target and the answer, with everything that is known of it drawn over it.
+fn framed(exposure: &Exposure, outcome: Option<&Outcome>, clusters: &[Cluster]) -> Result<Picture, Failure> {
+    let measured = outcome.and_then(Outcome::measurement).map(|measured| measured.position);
+    let points: Vec<PixelPoint> =
+        target(exposure).map(|target| target.position).into_iter().chain(measured).collect();
+    let mut picture = picture_of(exposure, &points, 36.0)?;
+    draw_over(&mut picture, exposure, outcome, clusters);
+    Ok(picture)
+}
+
+/// Draws everything that is known of a frame over a picture of it.
+fn draw_over(picture: &mut Picture, exposure: &Exposure, outcome: Option<&Outcome>, clusters: &[Cluster]) {
+    let window = picture.window;
+    let is_shown = |at: PixelPoint| {
+        let inside =
+            |at: f64, from: usize, count: usize| at > from as f64 - 1.0 && at < (from + count) as f64;
+        inside(at.x, window.x, window.columns) && inside(at.y, window.y, window.rows)
+    };
+    picture.marks = regions(exposure);
+    let clusters = clusters.iter().filter(|cluster| is_shown(cluster.position));
+    picture.marks.extend(clusters.map(cluster_mark));
+    let others = exposure.objects.iter().filter(|object| {
+        object.kind != ObjectKind::Target
+            && is_shown(object.position)
+            && Visibility::of_snr(object.snr) == Visibility::Detectable
+    });
+    picture.marks.extend(others.map(other_mark));
+    picture.marks.extend(target(exposure).map(true_mark));
+    picture.marks.extend(answer_mark(outcome));
+}
+
+fn picture_of(exposure: &Exposure, points: &[PixelPoint], margin_px: f64) -> Result<Picture, Failure> {
+    let frame = &exposure.frame;
+    let (columns, rows) = (frame.columns(), frame.rows());
+    let window = window_around(points, margin_px, columns, rows);
+    Picture::new(Pixels { columns, rows, dn: frame.dn() }, window, RowPlace::WHOLE, Stretch::Stars)
+}
+
+fn regions(exposure: &Exposure) -> Vec<Mark> {
+    let windows = exposure.frame.windows().unwrap_or_default();
+    windows.iter().map(|window| Mark::region(window, "transmitted region")).collect()
+}
+
+fn true_mark(target: &ObjectTruth) -> Mark {
+    Mark {
+        at: target.position,
+        shape: Shape::Circle(target.radius_px.max(4.0) + 2.0),
+        class: "truth",
+        title: format!(
+            "target, true: ({:.2}, {:.2}) px, {:.0} electrons, SNR {:.1}, {:.0} % cut",
+            target.position.x,
+            target.position.y,
+            target.electrons,
+            target.snr,
+            100.0 * target.cut
+        ),
+    }
+}
+
+fn answer_mark(outcome: Option<&Outcome>) -> Option<Mark> {
+    let at = outcome?.measurement()?.position;
+    let title = format!("answer: ({:.2}, {:.2}) px", at.x, at.y);
+    Some(Mark { at, shape: Shape::Cross(6.0), class: "measured", title })
+}
+
+fn other_mark(object: &ObjectTruth) -> Mark {
+    let is_star = object.kind == ObjectKind::Star;
+    let magnitude = object.magnitude.map_or_else(String::new, |magnitude| format!(", V {magnitude:.1}"));
+    Mark {
+        at: object.position,
+        shape: Shape::Circle(object.radius_px.clamp(2.5, 12.0)),
+        class: if is_star { "star" } else { "other" },
+        title: format!("{} {}{magnitude}, SNR {:.1}", spoken(object.kind.code()), object.id, object.snr),
+    }
+}
+
+fn cluster_mark(cluster: &Cluster) -> Mark {
+    let half = 4.0;
+    let taken = match cluster.label {
+        Label::Star(id) => format!("star {id}"),
+        label => label.code().to_owned(),
+    };
+    Mark {
+        at: PixelPoint::new(cluster.position.x - half, cluster.position.y - half),
+        shape: Shape::Rectangle { width: 2.0 * half, height: 2.0 * half },
+        class: "cluster",
+        title: format!("cluster of {} px, taken for: {taken}", cluster.pixels),
+    }
+}

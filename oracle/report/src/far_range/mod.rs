@@ -1,0 +1,183 @@
+//! The report of a far-range run: the figures of the far-range paper by name, its Table 2, causes, frames.
+
+mod approach;
+mod attitude;
+mod budget;
+mod frame_sheet;
+mod image;
+mod run;
+mod series;
+
+use indexmap::IndexMap;
+
+pub use budget::{InjectedRun, kept_budget};
+pub use frame_sheet::FrameSheet;
+pub use run::FarRangeRun;
+
+use self::run::shown_time;
+use super::chart::{Chart, bars, rounded, stacked_bars};
+use super::colours::colour_of;
+use super::figures::{figure_table, least_to_most, percent_cell, shown_percent};
+use super::page::{DataTable, Page, Section};
+use super::plotly::Trace;
+use super::words::spoken;
+use files::Failure;
+use scenario::is_argon;
+use score::{ARGON_TABLE_2, GroupScore};
+
+/// The page of a far-range run; `sheet` renders its frames anew.
+///
+/// # Errors
+/// A [`Failure`] when a frame cannot be drawn, or the truth is of no moment that there is.
+pub fn far_range_page(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Page, Failure> {
+    let scenario = &run.run_file.scenario;
+    let (first, last) = (&run.truths[0], &run.truths[run.truths.len() - 1]);
+    let mut warnings = Vec::new();
+    if let Some(stage) = run.run_file.inject {
+        warnings.push(format!(
+            "The truth was injected for {stage}: this is no result of the pipeline, but of all its other stages."
+        ));
+    }
+    let fact = |name, value: String| (name, value);
+    let shown = |name: &str| run.score.figures.get(name).map_or_else(String::new, shown_percent);
+    let lead = format!(
+        "{} frames: the target was found in {} of them, {} of them rightly and {} wrongly.",
+        run.score.frames,
+        shown("hit_rate"),
+        shown("correct_rate"),
+        shown("wrong_rate")
+    );
+    let mut sections = vec![
+        figures_section(run),
+        image::sample(run, sheet)?,
+        image::track(run),
+        approach::relative_position(run)?,
+        series::errors(run),
+        image::regions(run, sheet)?,
+        series::stars(run),
+        attitude::mounting(run),
+        attitude::aberration(run)?,
+        causes(run),
+        budget::budget(run),
+        image::frames(run, sheet)?,
+    ];
+    sections.retain(|section| !section.blocks.is_empty());
+    Ok(Page {
+        title: scenario.title.clone(),
+        kind: "Far range: a run",
+        version: run.run_file.version.clone(),
+        lead: vec![lead],
+        warnings,
+        facts: vec![
+            fact("Scenario", run.run_file.name.clone()),
+            fact("Seed", scenario.seed.to_string()),
+            fact("Frames", format!("{} to {}", first.frame, last.frame)),
+            fact("From (UTC)", shown_time(first)),
+            fact("To (UTC)", shown_time(last)),
+            fact("Range", least_to_most(run.truths.iter().map(|truth| truth.range_km), "km")),
+            fact("Camera", format!("{} × {} px", scenario.camera.columns, scenario.camera.rows)),
+            fact("Boresight", run.run_file.version.clone()),
+        ],
+        sections,
+        data: serde_json::json!({ "score": run.score }),
+    })
+}
+
+/// Table 2, beside the paper's where the frames are those of the paper, and all figures.
+fn figures_section(run: &FarRangeRun) -> Section {
+    let score = &run.score;
+    let published = is_argon(&run.run_file.scenario).then_some(&ARGON_TABLE_2);
+    let groups: Vec<&String> = score.groups.keys().collect();
+    let is_whole = published.is_some_and(|table| score.frames == u64::from(table.images[5]));
+    let mut head = vec![String::new()];
+    head.extend(groups.iter().map(|group| (*group).clone()));
+    head.push("all".to_owned());
+    let mut table = DataTable::new(head).caption(
+        "Percent, with 95 % intervals; rates of the errors are of the frames with a detected target.",
+    );
+    let columns = || {
+        score
+            .groups
+            .values()
+            .map(|group| (group.frames, &group.figures))
+            .chain([(score.frames, &score.figures)])
+    };
+    let row = |name: &str, cells: Vec<String>| [name.to_owned()].into_iter().chain(cells).collect::<Vec<_>>();
+    table.push(row("images", columns().map(|(frames, _)| frames.to_string()).collect()));
+    let labels =
+        ["hit rate", "RA error < 0.024°", "RA error < 0.048°", "Dec error < 0.024°", "Dec error < 0.048°"];
+    for ((name, rates), label) in ARGON_TABLE_2.rates().into_iter().zip(labels) {
+        let ours = columns().map(|(_, figures)| percent_cell(figures.get(name)));
+        table.push(row(label, ours.collect()));
+        if published.is_some() {
+            // A group is the paper's day of the same name; all is the paper's only where every frame was flown.
+            let day = |group: &&String| {
+                let number = group.strip_prefix("day ").and_then(|number| number.parse::<usize>().ok());
+                number.filter(|number| (1..=5).contains(number)).map(|number| rates[number - 1])
+            };
+            let cells = groups.iter().map(day).chain([is_whole.then_some(rates[5])]);
+            let cells = cells.map(|rate| rate.map_or_else(|| "–".to_owned(), |rate| format!("{rate:.2}")));
+            table.push(row("— published", cells.collect()));
+        }
+    }
+    let title = if published.is_some() { "Table 2, beside the published one" } else { "Table 2" };
+    let mut section = Section::new("table-2", title);
+    if published.is_some() {
+        section = section.text(
+            "Published: Benninghoff, Tzschichholz, Boge and Gaias, the ARGON experiment of PRISMA, 23–27 April 2012, their Table 2; its figures are of whole days.",
+        );
+    }
+    if let Some(distance) = published.and_then(|table| table.distance(score)) {
+        section = section.text(format!(
+            "The 30 cells differ from the published ones by {:.1} points in the mean, {:.1} at worst.",
+            distance.mean_points, distance.worst_points
+        ));
+    }
+    section.table(table).folded("All figures", figure_table(&score.figures))
+}
+
+/// Misses and wrong answers by cause.
+fn causes(run: &FarRangeRun) -> Section {
+    let score = &run.score;
+    let groups: Vec<&String> = score.groups.keys().collect();
+    let mut section = Section::new("causes", "Causes of misses and of wrong answers");
+    type Counts = fn(&GroupScore) -> &IndexMap<String, u64>;
+    let kinds: [(&str, &IndexMap<String, u64>, Counts); 2] = [
+        ("Misses", &score.misses, |group| &group.misses),
+        ("Wrong answers", &score.wrong, |group| &group.wrong),
+    ];
+    for (title, all, of) in kinds {
+        if all.is_empty() {
+            section = section.text(format!("{title}: none."));
+            continue;
+        }
+        let mut head = vec!["cause".to_owned()];
+        head.extend(groups.iter().map(|group| (*group).clone()));
+        head.push("all".to_owned());
+        let mut data = DataTable::new(head);
+        let mut traces: Vec<Trace> = Vec::new();
+        for (cause, total) in all {
+            let counts: Vec<u64> =
+                score.groups.values().map(|group| of(group).get(cause).copied().unwrap_or(0)).collect();
+            let mut cells = vec![cause.clone()];
+            cells.extend(counts.iter().map(u64::to_string));
+            cells.push(total.to_string());
+            data.push(cells);
+            let percent = counts
+                .iter()
+                .zip(score.groups.values())
+                .map(|(count, group)| rounded(100.0 * *count as f64 / group.frames.max(1) as f64, 3));
+            let names: Vec<String> = groups.iter().map(|group| (*group).clone()).collect();
+            let bars = bars(&spoken(cause), &names, percent.collect(), colour_of(cause));
+            traces.push(bars.hover_template("%{x}: %{y} %"));
+        }
+        section = section.chart(Chart::new(
+            format!("{title} by cause, percent of the frames of a group."),
+            340,
+            data,
+            traces,
+            stacked_bars("", "% of frames"),
+        ));
+    }
+    section
+}

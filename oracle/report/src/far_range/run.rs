@@ -1,0 +1,196 @@
+//! What a far-range run left in its directory, and its frames as series.
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+use std::path::Path;
+
+use contract::Outcome;
+use files::{Failure, TableReader, TelemetryRow, format_utc, read_measurements, read_telemetry};
+use hifitime::{Epoch, Unit};
+use scenario::FarRangeScenario;
+use scenario::run_file::RunFile;
+use score::{FrameVerdict, Score};
+use sim::truth::{FrameTruth, clock};
+
+use super::InjectedRun;
+use crate::page::DataTable;
+use crate::plotly::Axis;
+use crate::read::{missing, read_json};
+use crate::thin::{bins, summary};
+
+/// Rows of the table behind a long series.
+const TABLE_BINS: usize = 60;
+
+/// What a far-range run left in its directory.
+pub struct FarRangeRun {
+    /// `run.toml`.
+    pub run_file: RunFile<FarRangeScenario>,
+    /// `score.json`.
+    pub score: Score,
+    /// A verdict a frame, from truth and measurements.
+    pub verdicts: Vec<FrameVerdict>,
+    /// `truth/frames.parquet`, in the order of the verdicts.
+    pub truths: Vec<FrameTruth>,
+    /// `measurements.csv`, of the same frames; `None` where there is no row.
+    pub outcomes: Vec<Option<Outcome>>,
+    /// `telemetry.csv`, of the same frames.
+    pub telemetry: Vec<TelemetryRow>,
+    /// Runs of the same frames with the truth for a stage each; empty where there is no error budget.
+    pub budget: Vec<InjectedRun>,
+}
+
+impl FarRangeRun {
+    /// Reads a run directory.
+    ///
+    /// # Errors
+    /// A [`Failure`] that names the file which is missing, cannot be read, or is not of the same frames as the others.
+    pub fn read(directory: &Path) -> Result<Self, Failure> {
+        check_files(directory)?;
+        let clusters = Some(directory.join("clusters.parquet")).filter(|path| path.is_file());
+        let scored = run::score(directory, &directory.join("measurements.csv"), clusters.as_deref())?;
+        Self::with_verdicts(directory, scored.verdicts)
+    }
+
+    /// Reads the directory of a run whose verdicts are at hand: the table of objects, by far the longest, is then left alone.
+    ///
+    /// # Errors
+    /// As [`FarRangeRun::read`].
+    pub fn with_verdicts(directory: &Path, verdicts: Vec<FrameVerdict>) -> Result<Self, Failure> {
+        check_files(directory)?;
+        let run_file = RunFile::<FarRangeScenario>::read(&directory.join("run.toml"))?;
+        let score: Score = read_json(&directory.join("score.json"), "score")?;
+        let measurements = directory.join("measurements.csv");
+        let mut truths = Vec::with_capacity(verdicts.len());
+        for frame in TableReader::<FrameTruth>::open(&directory.join("truth/frames.parquet"))? {
+            truths.extend(frame?.1);
+        }
+        let mut answers = read_measurements(&measurements)?.into_iter().peekable();
+        let mut rows = read_telemetry(&directory.join("telemetry.csv"))?.into_iter().peekable();
+        let mut telemetry = Vec::with_capacity(verdicts.len());
+        let mut outcomes = Vec::with_capacity(verdicts.len());
+        for truth in &truths {
+            outcomes.push(answers.next_if(|(frame, _)| *frame == truth.frame).map(|(_, outcome)| outcome));
+            telemetry.push(rows.next_if(|row| row.frame == truth.frame).ok_or_else(|| {
+                Failure::Usage(format!(
+                    "{}: there is no row of frame {}, expected one for every frame of the truth",
+                    directory.join("telemetry.csv").display(),
+                    truth.frame
+                ))
+            })?);
+        }
+        if verdicts.is_empty() || score.frames != verdicts.len() as u64 || truths.len() != verdicts.len() {
+            return Err(Failure::Usage(format!(
+                "{}: `frames` is {}, expected the {} of truth/frames.parquet, at least 1",
+                directory.join("score.json").display(),
+                score.frames,
+                truths.len()
+            )));
+        }
+        Ok(Self { run_file, score, verdicts, truths, outcomes, telemetry, budget: Vec::new() })
+    }
+
+    /// Times of some frames, as an axis of time takes them.
+    #[expect(
+        clippy::indexing_slicing,
+        reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+    )]
+    pub(super) fn times(&self, rows: &[usize]) -> Vec<f64> {
+        rows.iter().map(|&row| axis_time(self.truths[row].time)).collect()
+    }
+}
+
+/// Refuses a directory without the files of a run.
+fn check_files(directory: &Path) -> Result<(), Failure> {
+    let names =
+        ["score.json", "measurements.csv", "telemetry.csv", "truth/frames.parquet", "truth/objects.parquet"];
+    match names.into_iter().find(|name| !directory.join(name).is_file()) {
+        Some(name) => Err(missing(directory, name)),
+        None => Ok(()),
+    }
+}
+
+/// A line through some rows of a run, in order, that breaks where another group begins: days are apart.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+)]
+pub(super) fn broken(run: &FarRangeRun, rows: impl Iterator<Item = (usize, f64)>) -> (Vec<f64>, Vec<f64>) {
+    let (mut times, mut values) = (Vec::new(), Vec::new());
+    let mut last: Option<usize> = None;
+    for (row, value) in rows {
+        if last.is_some_and(|last| run.verdicts[last].group != run.verdicts[row].group) {
+            times.push(axis_time(run.truths[row].time));
+            values.push(f64::NAN);
+        }
+        times.push(axis_time(run.truths[row].time));
+        values.push(value);
+        last = Some(row);
+    }
+    (times, values)
+}
+
+/// The time of a frame to the second, for people.
+pub(super) fn shown_time(truth: &FrameTruth) -> String {
+    cut_time(truth, 19)
+}
+
+/// The time of a frame to the millisecond, for people.
+pub(super) fn shown_time_ms(truth: &FrameTruth) -> String {
+    cut_time(truth, 23)
+}
+
+fn cut_time(truth: &FrameTruth, length: usize) -> String {
+    format_utc(truth.time).get(..length).unwrap_or_default().replace('T', " ")
+}
+
+/// An instant on an axis of time, to the millisecond.
+pub(super) fn axis_time(time: Epoch) -> f64 {
+    clock::unix_ms(time) as f64
+}
+
+/// The axis of time of a run: the same in all of its charts, so that they can be held one below another.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+)]
+pub(super) fn time_axis(run: &FarRangeRun) -> Axis {
+    let (first, last) = (run.truths[0].time, run.truths[run.truths.len() - 1].time);
+    let room = ((last - first) * 0.02).max(1.0 * Unit::Second);
+    Axis::titled("time, UTC").of_time().range([first - room, last + room].map(axis_time))
+}
+
+/// A column of a table behind a chart: its name, its value in a row, and decimals.
+pub(super) type BinColumn<'a> = (&'a str, &'a dyn Fn(usize) -> f64, usize);
+
+/// A summary of long series, stretch by stretch: number, smallest, mean and largest of each.
+#[expect(
+    clippy::indexing_slicing,
+    reason = "rows are the run's, which has a truth and a verdict for each and one at least"
+)]
+pub(super) fn by_bins(run: &FarRangeRun, columns: &[BinColumn<'_>]) -> DataTable {
+    let mut head = vec!["from (UTC)".to_owned(), "frames".to_owned()];
+    for (name, _, _) in columns {
+        head.extend(["number", "smallest", "mean", "largest"].map(|what| format!("{name}: {what}")));
+    }
+    let mut table = DataTable::new(head).caption(
+        "A line is a stretch of frames; measurements.csv and truth/frames.parquet have every frame.",
+    );
+    for bin in bins(run.truths.len(), TABLE_BINS) {
+        let first = &run.truths[bin.start];
+        let mut cells = vec![shown_time(first), format!("{}–{}", first.frame, run.truths[bin.end - 1].frame)];
+        for (_, value, decimals) in columns {
+            cells.extend(summary(bin.clone().map(value), *decimals));
+        }
+        table.push(cells);
+    }
+    table
+}

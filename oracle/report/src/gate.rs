@@ -1,0 +1,291 @@
+//! The report of a gate: what changed, and the frames that flipped.
+
+use std::path::Path;
+
+use files::Failure;
+use gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
+use score::{Kind, sense};
+
+use super::chart::{Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
+use super::docking::{DockingRun, FieldSheet};
+use super::far_range::{FarRangeRun, FrameSheet};
+use super::figures::{cell, significant};
+use super::page::{DataTable, Page, Section};
+use super::picture::Picture;
+use super::plotly::{Layout, Trace};
+use super::words::{capital, figure_label, spoken};
+
+/// Flipped frames that are shown as pictures, at most.
+const MOST_PICTURES: usize = 12;
+/// Flipped frames that are listed, at most.
+const MOST_ROWS: usize = 200;
+
+/// Something that flips happened to, as pictures.
+pub struct FlippedFrames {
+    /// Pictures of them.
+    pictures: Vec<Picture>,
+    /// Why there are none, where there should be.
+    reason: Option<String>,
+}
+
+impl FlippedFrames {
+    /// Renders flipped frames of a result anew, from its directory: of every change from one verdict and cause to another the first
+    /// frame, and then more of those that were lost. A study has none: its frames are those of many scenarios.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the result cannot be read or a frame not be rendered.
+    pub fn render(report: &GateReport, result: &Path) -> Result<Self, Failure> {
+        let none = Self { pictures: Vec::new(), reason: None };
+        let Some(flips) = &report.flips else { return Ok(none) };
+        if report.units == "cases" || flips.units.is_empty() {
+            return Ok(none);
+        }
+        let chosen = chosen(&flips.units);
+        let (mut pictures, reason) = if report.units == "frames" {
+            let run = FarRangeRun::read(result)?;
+            let rows =
+                rows_of(&chosen, |number| run.truths.binary_search_by_key(&number, |truth| truth.frame).ok());
+            let sheet = FrameSheet::open(result)?;
+            (sheet.pictures(&run, &rows)?, sheet.reason().map(str::to_owned))
+        } else {
+            let run = DockingRun::read(result)?;
+            let rows =
+                rows_of(&chosen, |number| run.truths.binary_search_by_key(&number, |truth| truth.field).ok());
+            let sheet = FieldSheet::open(result)?;
+            (sheet.pictures(&run, &rows)?, sheet.reason().map(str::to_owned))
+        };
+        for (picture, flip) in pictures.iter_mut().zip(&chosen) {
+            picture.title = format!("{}: {}.", kind_words(flip.kind), change(flip));
+        }
+        Ok(Self { pictures, reason })
+    }
+}
+
+fn rows_of(flips: &[&Flip], row: impl Fn(u64) -> Option<usize>) -> Vec<usize> {
+    flips.iter().filter_map(|flip| row(flip.number)).collect()
+}
+
+/// Of every change the first unit, lost ones first, then more of the lost.
+fn chosen(flips: &[Flip]) -> Vec<&Flip> {
+    let order = [FlipKind::Lost, FlipKind::Won, FlipKind::Other];
+    let mut chosen: Vec<&Flip> = Vec::new();
+    for kind in order {
+        for flip in flips.iter().filter(|flip| flip.kind == kind) {
+            if chosen.len() < MOST_PICTURES && !chosen.iter().any(|other| change(other) == change(flip)) {
+                chosen.push(flip);
+            }
+        }
+    }
+    for flip in flips.iter().filter(|flip| flip.kind == FlipKind::Lost) {
+        if chosen.len() < MOST_PICTURES && !chosen.iter().any(|other| other.number == flip.number) {
+            chosen.push(flip);
+        }
+    }
+    chosen
+}
+
+fn kind_words(kind: FlipKind) -> &'static str {
+    match kind {
+        FlipKind::Lost => "Lost",
+        FlipKind::Won => "Won",
+        FlipKind::Other => "Changed",
+    }
+}
+
+/// From which verdict to which.
+fn change(flip: &Flip) -> String {
+    let words = |verdict: &str, cause: &Option<String>| match cause {
+        Some(cause) => format!("{} ({})", spoken(verdict), spoken(cause)),
+        None => spoken(verdict),
+    };
+    format!("{} → {}", words(&flip.baseline, &flip.baseline_cause), words(&flip.result, &flip.result_cause))
+}
+
+/// The page of a gate.
+pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
+    let worse: Vec<&str> = report.worse().collect();
+    let lead = if worse.is_empty() {
+        format!("No figure is worse than in the baseline, of {} compared.", report.figures.len())
+    } else {
+        format!("Worse than in the baseline: {}.", worse.join(", "))
+    };
+    let mut figures = report.figures.clone();
+    figures.sort_by(|_, a, _, b| a.adjusted_p.total_cmp(&b.adjusted_p));
+    let pairing = match report.pairing {
+        Pairing::Frames => "the same frames",
+        Pairing::Blocks => "blocks of time, another seed",
+    };
+    Page {
+        title: format!("{}: {}", report.name, report.verdict.words()),
+        kind: "Gate: a result against a baseline",
+        version: report.result_version.clone(),
+        lead: vec![lead, format!("The baseline is one because: {}", report.reason)],
+        warnings: report.notes.clone(),
+        facts: vec![
+            ("Compared", format!("{} {}", report.count, report.units)),
+            ("Pairs", pairing.to_owned()),
+            ("Blocks", format!("{} of about {:.0} {}", report.blocks, report.block_length, report.units)),
+            ("Alpha", significant(report.alpha)),
+            ("Seeds", format!("{} and {}", report.baseline_seed, report.result_seed)),
+            ("Versions", format!("{} and {}", report.baseline_version, report.result_version)),
+        ],
+        sections: vec![effects(report), changed(report, frames)],
+        data: data(report),
+    }
+}
+
+/// The report without its list of units, which may be as long as the run.
+fn data(report: &GateReport) -> serde_json::Value {
+    let counts = report.flips.as_ref();
+    serde_json::json!({
+        "verdict": report.verdict,
+        "figures": report.figures,
+        "flips": counts.map(|flips| serde_json::json!({ "lost": flips.lost, "won": flips.won, "other": flips.other })),
+    })
+}
+
+/// Differences with their intervals.
+fn effects(report: &GateReport) -> Section {
+    let mut table = DataTable::new([
+        "figure",
+        "verdict",
+        "baseline",
+        "result",
+        "difference",
+        "low",
+        "high",
+        "tolerance",
+        "adjusted p",
+        "smallest visible",
+        "blocks",
+    ])
+    .caption(
+        "Result minus baseline, with 95 % intervals; rates in percent, their differences in points; p of a worsening, adjusted for all figures \
+         together.",
+    )
+    .narrow();
+    for (name, figure) in &report.figures {
+        let is_rate = sense(name).kind == Kind::Rate;
+        let number = |value: Option<f64>| match value {
+            Some(value) if is_rate => format!("{:.2}", 100.0 * value),
+            value => cell(value),
+        };
+        table.push([
+            name.clone(),
+            figure.verdict.words().to_owned(),
+            number(figure.baseline),
+            number(figure.result),
+            number(figure.difference),
+            number(figure.low),
+            number(figure.high),
+            number(Some(figure.tolerance)),
+            significant(figure.adjusted_p),
+            number(figure.smallest_visible),
+            figure.blocks.to_string(),
+        ]);
+    }
+    let (rates, amounts): (Vec<Compared<'_>>, Vec<Compared<'_>>) = report
+        .figures
+        .iter()
+        .filter(|(_, figure)| figure.difference.is_some())
+        .partition(|(name, _)| sense(name).kind == Kind::Rate);
+    let mut section = Section::new("effects", "What changed");
+    if !rates.is_empty() {
+        let (traces, layout) = differences(&rates, |_| 0.01, "difference, points");
+        let caption = "Rates: result minus baseline with 95 % intervals, in percentage points, and what is tolerated. The table says \
+                       which way is better.";
+        section = section.chart(Chart::new(caption, 440, table.clone(), traces, layout));
+    }
+    // What has units of its own stands on one axis in units of its tolerance.
+    let amounts: Vec<_> = amounts.into_iter().filter(|(_, figure)| figure.tolerance > 0.0).collect();
+    if !amounts.is_empty() {
+        let (traces, layout) = differences(&amounts, |figure| figure.tolerance, "difference ÷ tolerance");
+        let caption = "The other figures: result minus baseline with 95 % intervals, in units of each figure's tolerance.";
+        section = section.chart(Chart::new(caption, 440, table.clone(), traces, layout));
+    }
+    section.table(table)
+}
+
+/// A figure's name without its unit, which the axis of differences has not.
+fn plain_label(name: &str) -> String {
+    let label = figure_label(name);
+    label.split_once(", ").map_or(label.clone(), |(words, _)| words.to_owned())
+}
+
+/// A figure of the gate by its name.
+type Compared<'a> = (&'a String, &'a FigureReport);
+
+/// Differences of some figures with their intervals and their tolerances, each divided by its unit.
+fn differences(shown: &[Compared<'_>], unit: fn(&FigureReport) -> f64, axis: &str) -> (Vec<Trace>, Layout) {
+    let of = |is: &dyn Fn(FigureVerdict) -> bool, name: &str, colour| {
+        let chosen: Vec<_> = shown.iter().filter(|(_, figure)| is(figure.verdict)).collect();
+        let scaled = |value: fn(&FigureReport) -> Option<f64>| -> Vec<f64> {
+            let of = |f: &FigureReport| value(f).or(f.difference).unwrap_or(f64::NAN) / unit(f);
+            chosen.iter().map(|(_, figure)| rounded(of(figure), 4)).collect()
+        };
+        let (y, low, high) = (scaled(|f| f.difference), scaled(|f| f.low), scaled(|f| f.high));
+        let names: Vec<String> = chosen.iter().map(|(name, _)| plain_label(name)).collect();
+        intervals(name, names, y, &low, &high, colour)
+    };
+    let names: Vec<String> = shown.iter().map(|(name, _)| plain_label(name)).collect();
+    let limit = |side: f64, name: &str| {
+        let at = shown.iter().map(|(_, figure)| side * figure.tolerance / unit(figure)).collect();
+        let trace = line(name, names.clone(), at, REFERENCE).opacity(0.6);
+        if side > 0.0 { trace } else { trace.not_in_legend() }
+    };
+    let traces = vec![
+        limit(1.0, "tolerance"),
+        limit(-1.0, "−tolerance"),
+        of(&|verdict| verdict.is_worse(), "worse", WRONG),
+        of(&|verdict| verdict == FigureVerdict::Better, "better", super::chart::TRUTH),
+        of(&|verdict| !verdict.is_worse() && verdict != FigureVerdict::Better, "no worse", MEASURED),
+    ];
+    (traces, axes("", axis))
+}
+
+/// Units that flipped.
+fn changed(report: &GateReport, frames: FlippedFrames) -> Section {
+    let section = Section::new("flips", format!("{} that flipped", capital(&report.units)));
+    let Some(flips) = &report.flips else {
+        return section.text("The frames are not the same: only blocks of them are compared, and none can be said to have flipped.");
+    };
+    let section = section.text(format!(
+        "{} were right and are not any more, {} are right and were not, {} changed otherwise.",
+        flips.lost, flips.won, flips.other
+    ));
+    if flips.units.is_empty() {
+        return section;
+    }
+    let section = match frames.reason {
+        Some(reason) => section.text(format!("There are no pictures: {reason}")),
+        None if frames.pictures.is_empty() => section,
+        None => section
+            .text(
+                "Of every change a frame, drawn anew from the result's run.toml, with the result's answer. Green: the truth; orange: the \
+                 answer; yellow: clusters or outlines, with what the pipeline took them for.",
+            )
+            .pictures(frames.pictures),
+    };
+    let mut table = DataTable::new(["number", "group", "how", "from", "cause", "to", "cause"]);
+    for flip in flips.units.iter().take(MOST_ROWS) {
+        let cause = |cause: &Option<String>| cause.clone().unwrap_or_default();
+        table.push([
+            flip.number.to_string(),
+            flip.group.clone(),
+            kind_words(flip.kind).to_lowercase(),
+            flip.baseline.clone(),
+            cause(&flip.baseline_cause),
+            flip.result.clone(),
+            cause(&flip.result_cause),
+        ]);
+    }
+    let section = if flips.units.len() > MOST_ROWS {
+        section.text(format!(
+            "The first {MOST_ROWS} of {}; `boresight gate --json` lists all.",
+            flips.units.len()
+        ))
+    } else {
+        section
+    };
+    section.folded("All that flipped", table)
+}

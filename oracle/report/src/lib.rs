@@ -1,0 +1,127 @@
+//! The report: one HTML file for people, of what a directory of results holds.
+//!
+//! A page ([`Page`]) is computed from what was read, and is the same for the same files: nothing of it comes from a clock or from anywhere
+//! else. Charts are drawn by plotly.js, which the page contains ([`Chart`]), with the numbers in a table behind each; pictures ([`Picture`]) are of frames
+//! that the simulator renders anew, one by one ([`FrameSheet`]). It asks nothing of any network.
+//!
+//! - [`far_range_page`], [`docking_page`]: a run; [`study_page`]: a study; [`visibility_page`]: the answer to requirements; [`gate_page`]: what a
+//!   gate found.
+//! - [`report_of`]: whatever a directory holds; [`write_page`] puts it into a file.
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
+mod chart;
+#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
+mod colours;
+#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
+mod docking;
+#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
+mod far_range;
+mod figures;
+mod gate;
+mod page;
+#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
+mod picture;
+mod plotly;
+mod plotly_js;
+mod read;
+#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
+mod sky_map;
+#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
+mod study;
+mod thin;
+mod visibility;
+mod words;
+
+use std::path::{Path, PathBuf};
+
+pub use chart::Chart;
+pub use docking::{DockingRun, FieldSheet, PortionReport, docking_page};
+pub use far_range::{FarRangeRun, FrameSheet, InjectedRun, far_range_page, kept_budget};
+pub use gate::{FlippedFrames, gate_page};
+pub use page::{Block, DataTable, Page, Section};
+pub use picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
+pub use read::ResultKind;
+pub use study::{StudyResult, study_page};
+pub use visibility::{read_visibility, visibility_page};
+
+use self::read::world_of;
+use files::Failure;
+use files::{Checksums, WholeFile};
+use scenario::World;
+use score::FrameVerdict;
+
+/// The report of a directory of results, with the error budget that is kept there.
+///
+/// # Errors
+/// A [`Failure`] that names the file which is missing or cannot be read.
+pub fn report_of(directory: &Path) -> Result<Page, Failure> {
+    let page = match ResultKind::of(directory)? {
+        ResultKind::Run => match world_of(directory)? {
+            World::FarRange => {
+                let mut run = FarRangeRun::read(directory)?;
+                run.budget = InjectedRun::read_all(&kept_budget(directory), &run)?;
+                far_range_page(&run, &FrameSheet::open(directory)?)?
+            }
+            World::Docking => docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?)?,
+        },
+        ResultKind::Study => study_page(&StudyResult::read(directory)?),
+        ResultKind::Visibility => visibility_page(&read_visibility(directory)?),
+    };
+    Checksums::check(directory, |_| true)?;
+    Ok(page)
+}
+
+/// Refuses an error budget of what has none.
+///
+/// # Errors
+/// A [`Failure`] for a directory that is not of a far-range run.
+pub fn check_budget(directory: &Path) -> Result<(), Failure> {
+    if ResultKind::of(directory)? != ResultKind::Run || world_of(directory)? != World::FarRange {
+        return Err(Failure::Usage(format!(
+            "--budget is given, expected with a run of the far range alone: {} is none",
+            directory.display()
+        )));
+    }
+    Ok(())
+}
+
+/// The report of a far-range run with its error budget: `budget` are directories of runs of the same frames, each with the truth in the
+/// place of one stage's result.
+///
+/// # Errors
+/// As [`report_of`]; a [`Failure`] for a directory that is not of the same frames, or is an honest run.
+pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
+    check_budget(directory)?;
+    let mut run = FarRangeRun::read(directory)?;
+    run.budget = InjectedRun::read_all(budget, &run)?;
+    far_range_page(&run, &FrameSheet::open(directory)?)
+}
+
+/// The report of a far-range run whose verdicts are at hand.
+///
+/// # Errors
+/// As [`report_of`].
+pub fn far_range_report(directory: &Path, verdicts: Vec<FrameVerdict>) -> Result<Page, Failure> {
+    far_range_page(&FarRangeRun::with_verdicts(directory, verdicts)?, &FrameSheet::open(directory)?)
+}
+
+/// Writes a page, at once or not at all; a report that was there is replaced. Returns its length, bytes.
+///
+/// # Errors
+/// A [`Failure`] when the page cannot be put together or the file not be written.
+pub fn write_page(page: &Page, path: &Path) -> Result<u64, Failure> {
+    let html = page.html()?;
+    WholeFile::with_text(path, &html)?.replace()?;
+    Ok(html.len() as u64)
+}

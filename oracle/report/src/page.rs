@@ -1,0 +1,218 @@
+//! The page: sections of text, tables, charts and pictures, as one HTML file that asks nothing of any network.
+
+use askama::Template;
+use files::Failure;
+use serde_json::Value;
+
+use super::chart::Chart;
+use super::picture::{Picture, Shape};
+use super::plotly_js::PLOTLY_JS;
+
+/// A report, before it is text.
+#[derive(Debug, Clone)]
+pub struct Page {
+    /// What the page is about.
+    pub title: String,
+    /// What kind of result it shows.
+    pub kind: &'static str,
+    /// Version of Boresight that made the result.
+    pub version: String,
+    /// First sentences.
+    pub lead: Vec<String>,
+    /// What a reader must know before believing anything below.
+    pub warnings: Vec<String>,
+    /// What was run, by name.
+    pub facts: Vec<(&'static str, String)>,
+    /// The sections, in their order.
+    pub sections: Vec<Section>,
+    /// The figures as they stand in the result's own file, for programs that read the page.
+    pub data: Value,
+}
+
+/// A section with a heading.
+#[derive(Debug, Clone)]
+pub struct Section {
+    /// Its anchor.
+    pub id: &'static str,
+    /// Its heading.
+    pub title: String,
+    /// What it holds.
+    pub blocks: Vec<Block>,
+}
+
+impl Section {
+    /// A section that holds nothing yet.
+    pub fn new(id: &'static str, title: impl Into<String>) -> Self {
+        Self { id, title: title.into(), blocks: Vec::new() }
+    }
+
+    /// With a paragraph at its end.
+    pub fn text(mut self, text: impl Into<String>) -> Self {
+        self.blocks.push(Block::Text(text.into()));
+        self
+    }
+
+    /// With a table at its end.
+    pub fn table(mut self, table: DataTable) -> Self {
+        self.blocks.push(Block::Table(table));
+        self
+    }
+
+    /// With a chart at its end.
+    pub fn chart(mut self, chart: Chart) -> Self {
+        self.blocks.push(Block::Chart(Box::new(chart)));
+        self
+    }
+
+    /// With small charts at its end, two side by side.
+    pub fn charts(mut self, charts: Vec<Chart>) -> Self {
+        self.blocks.push(Block::Charts(charts));
+        self
+    }
+
+    /// With a table at its end that is folded away under some words.
+    pub fn folded(mut self, words: impl Into<String>, table: DataTable) -> Self {
+        self.blocks.push(Block::Folded(words.into(), table));
+        self
+    }
+
+    /// With pictures at its end, side by side.
+    pub fn pictures(mut self, pictures: Vec<Picture>) -> Self {
+        self.blocks.push(Block::Pictures(pictures));
+        self
+    }
+}
+
+/// One thing in a section.
+#[derive(Debug, Clone)]
+pub enum Block {
+    /// A paragraph.
+    Text(String),
+    /// A table.
+    Table(DataTable),
+    /// A chart with the table behind it.
+    Chart(Box<Chart>),
+    /// Small charts, two side by side where there is room.
+    Charts(Vec<Chart>),
+    /// A table that is folded away until a reader opens it, and the words that it is folded under.
+    Folded(String, DataTable),
+    /// Pictures side by side.
+    Pictures(Vec<Picture>),
+}
+
+/// A table of words and numbers, written out.
+#[derive(Debug, Clone, Default)]
+pub struct DataTable {
+    /// A line above it; empty for none.
+    pub caption: String,
+    /// Names of the columns.
+    pub head: Vec<String>,
+    /// The rows, each as long as the head.
+    pub rows: Vec<Vec<String>>,
+    /// Whether its cells are sentences rather than numbers.
+    pub is_wordy: bool,
+    /// Whether cells may be broken, as of many columns which a page has no room for otherwise.
+    pub is_narrow: bool,
+}
+
+impl DataTable {
+    /// A table without rows.
+    pub fn new<S: Into<String>>(head: impl IntoIterator<Item = S>) -> Self {
+        Self { head: head.into_iter().map(Into::into).collect(), ..Self::default() }
+    }
+
+    /// With a line above it.
+    pub fn caption(mut self, caption: impl Into<String>) -> Self {
+        self.caption = caption.into();
+        self
+    }
+
+    /// Of sentences rather than numbers.
+    pub fn wordy(mut self) -> Self {
+        self.is_wordy = true;
+        self
+    }
+
+    /// Of many columns.
+    pub fn narrow(mut self) -> Self {
+        self.is_narrow = true;
+        self
+    }
+
+    /// With one more row.
+    pub fn row<S: Into<String>>(mut self, cells: impl IntoIterator<Item = S>) -> Self {
+        self.push(cells);
+        self
+    }
+
+    /// Adds a row.
+    pub fn push<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
+        self.rows.push(cells.into_iter().map(Into::into).collect());
+    }
+}
+
+#[derive(Template)]
+#[template(path = "report.html")]
+struct PageTemplate<'a> {
+    page: &'a Page,
+    style: &'static str,
+    script: &'static str,
+    plotly: &'static str,
+    data: String,
+}
+
+impl Page {
+    /// The page as HTML. All text of it is escaped; the same page gives the same bytes.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when the page cannot be put together.
+    pub fn html(&self) -> Result<String, Failure> {
+        let template = PageTemplate {
+            page: self,
+            style: include_str!("page/report.css"),
+            script: include_str!("page/report.js"),
+            plotly: PLOTLY_JS,
+            data: script_safe(&self.data.to_string()),
+        };
+        template
+            .render()
+            .map_err(|error| Failure::Usage(format!("the report cannot be put together: {error}")))
+    }
+}
+
+/// JSON that can stand between script tags: the same document, without a `<` in it.
+pub(super) fn script_safe(json: &str) -> String {
+    json.replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn page(title: &str) -> Page {
+        Page {
+            title: title.to_owned(),
+            kind: "test",
+            version: "0".to_owned(),
+            lead: vec![title.to_owned()],
+            warnings: Vec::new(),
+            facts: vec![("name", title.to_owned())],
+            sections: vec![
+                Section::new("one", title).text(title).table(DataTable::new([title]).row([title])),
+            ],
+            data: serde_json::json!({ "title": title }),
+        }
+    }
+
+    #[test]
+    fn hostile_text_is_escaped_wherever_it_stands() {
+        let html = page("</script><script>alert(1)</script>&\"'").html().unwrap();
+        assert!(!html.contains("<script>alert(1)"), "a script of somebody else's");
+        assert!(html.contains("alert(1)"), "the text itself is shown");
+    }
+
+    #[test]
+    fn the_same_page_gives_the_same_bytes() {
+        assert_eq!(page("a").html().unwrap(), page("a").html().unwrap());
+    }
+}

@@ -1,0 +1,98 @@
+//! Which kind of directory it is, and files that several kinds have.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use files::{Failure, FileError, Row, TableReader, toml_file};
+use scenario::{World, world};
+use serde::de::DeserializeOwned;
+
+/// Longest JSON file that is read, bytes.
+const LONGEST_JSON: u64 = 1 << 28;
+
+/// What a directory holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ResultKind {
+    /// A run: `run.toml`.
+    Run,
+    /// A study: `summary.json`.
+    Study,
+    /// The answer to requirements: `visibility.json`.
+    Visibility,
+}
+
+impl ResultKind {
+    /// What `directory` holds, by its files.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a directory that holds none of them.
+    pub fn of(directory: &Path) -> Result<Self, Failure> {
+        let has = |name: &str| directory.join(name).is_file();
+        if has("run.toml") {
+            Ok(Self::Run)
+        } else if has("visibility.json") {
+            Ok(Self::Visibility)
+        } else if has("summary.json") {
+            Ok(Self::Study)
+        } else if has("study.json") || has("study.toml") {
+            Err(Failure::Usage(format!(
+                "{}: there is no `summary.json`, expected a study that is complete: `boresight study run` again does what is missing",
+                directory.display()
+            )))
+        } else if directory.is_dir() {
+            Err(Failure::Usage(format!(
+                "{}: there is neither `run.toml` nor `summary.json` nor `visibility.json`, expected the directory of a run, of a study \
+                 or of `boresight visibility --out`",
+                directory.display()
+            )))
+        } else {
+            Err(Failure::Usage(format!("{}: expected a directory of results", directory.display())))
+        }
+    }
+}
+
+/// The world of a run, by its `run.toml`.
+pub(super) fn world_of(directory: &Path) -> Result<World, Failure> {
+    let path = directory.join("run.toml");
+    let text = toml_file::read_text(&path).map_err(|source| FileError::Io {
+        path: path.clone(),
+        doing: "read",
+        source,
+    })?;
+    world(&path, &text, "scenario.world")
+}
+
+/// A file of a run that is not there.
+pub(super) fn missing(directory: &Path, name: &str) -> Failure {
+    Failure::Usage(format!(
+        "{}: is missing, expected the directory of a run: of a rendered dataset there is nothing to report yet",
+        directory.join(name).display()
+    ))
+}
+
+/// The rows of some frames of a table, each frame's apart and in the order asked for, in one pass; none where there is no table.
+pub(super) fn rows_of_each<R: Row + Clone>(
+    path: Option<&Path>,
+    frames: &[u64],
+) -> Result<Vec<Vec<R>>, Failure> {
+    let mut found = BTreeMap::new();
+    if let Some(path) = path {
+        let mut table = TableReader::<R>::open(path)?;
+        for &frame in &BTreeSet::from_iter(frames) {
+            found.insert(frame, table.rows_of(*frame)?);
+        }
+    }
+    Ok(frames.iter().map(|frame| found.get(frame).cloned().unwrap_or_default()).collect())
+}
+
+/// Reads a JSON document.
+pub(super) fn read_json<T: DeserializeOwned>(path: &Path, format: &'static str) -> Result<T, Failure> {
+    let text = sim::regular_file::read_text(path, LONGEST_JSON).map_err(|source| FileError::Io {
+        path: path.to_owned(),
+        doing: "read",
+        source,
+    })?;
+    serde_json::from_str(&text).map_err(|error| {
+        FileError::Format { path: path.to_owned(), format, reason: error.to_string() }.into()
+    })
+}

@@ -1,0 +1,399 @@
+//! The report of a study: figures with intervals, what they hang on, the worst cases.
+
+use std::path::Path;
+
+use files::{Failure, FileError};
+use score::{Better, Kind, sense};
+use study::{CaseTable, Estimate, FigureSummary, Summary};
+
+use super::chart::{
+    BESIDE, Chart, MEASURED, axes, cloud, intervals, intervals_across, plain, points, rounded,
+};
+use super::figures::significant;
+use super::page::{DataTable, Page, Section};
+use super::plotly::{Axis, ColourScale, Layout, Trace};
+use super::read::read_json;
+use super::thin::{bins, drawn, summary as summed};
+use super::words::{capital, figure_label, spoken};
+
+/// Cases that a chart shows one by one in the table behind it; of more, a summary.
+const TABLE_BINS: usize = 60;
+/// Drawn values that have a chart of their own, at most.
+const MOST_SCATTERS: usize = 24;
+
+/// What a study left in its directory.
+pub struct StudyResult {
+    /// `summary.json`.
+    pub summary: Summary,
+    /// `cases.parquet`.
+    pub table: CaseTable,
+}
+
+impl StudyResult {
+    /// Reads the directory of a study.
+    ///
+    /// # Errors
+    /// A [`Failure`] that names the file which is missing or cannot be read.
+    pub fn read(directory: &Path) -> Result<Self, Failure> {
+        let summary: Summary = read_json(&directory.join("summary.json"), "study summary")?;
+        let path = directory.join("cases.parquet");
+        if !path.is_file() {
+            return Err(Failure::Usage(format!(
+                "{}: is missing, expected beside summary.json: `boresight study merge` writes both",
+                path.display()
+            )));
+        }
+        let (table, _) = CaseTable::columns_of(&path)?.read(&path)?;
+        if table.rows.len() as u64 != summary.cases {
+            let reason = format!("it has {} rows, summary.json {} cases", table.rows.len(), summary.cases);
+            return Err(FileError::format(&path, "cases", reason).into());
+        }
+        Ok(Self { summary, table })
+    }
+}
+
+/// The page of a study.
+pub fn study_page(study: &StudyResult) -> Page {
+    let summary = &study.summary;
+    let worst_by = &summary.worst_by;
+    let lead = match summary.figures.get(worst_by).and_then(|figure| figure.all) {
+        Some(all) => format!(
+            "{} cases; {worst_by}, by which the worst are the worst, is {}.",
+            summary.cases,
+            shown(worst_by, &all)
+        ),
+        None => format!("{} cases.", summary.cases),
+    };
+    let mut sections = vec![figures(study)];
+    if !summary.sweep.is_empty() {
+        sections.push(sweep(study));
+    }
+    sections.push(sensitivities(study));
+    if !summary.indices.is_empty() {
+        sections.push(indices(study));
+    }
+    sections.push(scatter(study));
+    sections.push(worst(study));
+    Page {
+        title: if summary.title.is_empty() {
+            format!("Study {}", summary.study)
+        } else {
+            summary.title.clone()
+        },
+        kind: "Study",
+        version: summary.version.clone(),
+        lead: vec![lead],
+        warnings: Vec::new(),
+        facts: vec![
+            ("Study", summary.study.clone()),
+            ("Cases", format!("{} of {} at most", summary.cases, summary.of)),
+            ("Stopped by a figure", if summary.is_narrow_enough { "yes" } else { "no" }.to_owned()),
+            ("Drawn values", study.table.drawn.len().to_string()),
+            ("Figures", summary.figures.len().to_string()),
+            ("Hash", summary.hash.chars().take(12).collect()),
+            ("Boresight", summary.version.clone()),
+        ],
+        sections,
+        data: serde_json::json!({ "summary": summary }),
+    }
+}
+
+/// What a figure is drawn and written in: rates in percent, others as they are.
+fn scale(name: &str) -> f64 {
+    if sense(name).kind == Kind::Rate { 100.0 } else { 1.0 }
+}
+
+/// A number of a figure.
+fn number(name: &str, value: f64) -> String {
+    if sense(name).kind == Kind::Rate { format!("{:.2}\u{a0}%", 100.0 * value) } else { significant(value) }
+}
+
+/// A value with its interval, which a narrow column may have on a line of its own.
+fn shown(name: &str, estimate: &Estimate) -> String {
+    let bound = |value: f64| number(name, value).replace("\u{a0}%", "");
+    let interval = estimate.low.zip(estimate.high);
+    let interval = interval.map(|(low, high)| format!(" ({}\u{a0}to\u{a0}{})", bound(low), bound(high)));
+    format!("{}{}", number(name, estimate.value), interval.unwrap_or_default())
+}
+
+/// Every figure: over all cases, and its quantiles over them.
+fn figures(study: &StudyResult) -> Section {
+    let summary = &study.summary;
+    let mut table = DataTable::new(["figure", "cases", "all", "5 % of cases below", "median", "95 % of cases below"]).caption(
+        "With 95 % intervals. All: of a rate all frames of all cases together, of another figure the mean of the cases.",
+    ).narrow();
+    for (name, figure) in &summary.figures {
+        let estimate = |estimate: &Option<Estimate>| {
+            estimate.as_ref().map_or_else(|| "–".to_owned(), |e| shown(name, e))
+        };
+        table.push([
+            name.clone(),
+            figure.cases.to_string(),
+            estimate(&figure.all),
+            estimate(&figure.p05),
+            estimate(&figure.median),
+            estimate(&figure.p95),
+        ]);
+    }
+    let is_rate = |(name, _): &(&String, &FigureSummary)| sense(name).kind == Kind::Rate;
+    let rates = summary.figures.iter().filter(is_rate);
+    let rates: Vec<(&String, Estimate, &FigureSummary)> =
+        rates.filter_map(|(name, figure)| Some((name, figure.all?, figure))).collect();
+    let section = Section::new("figures", "Figures");
+    if rates.is_empty() {
+        return section.table(table);
+    }
+    // Upwards as the axis goes, so that the first is on top.
+    let column = |pick: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
+        rates.iter().rev().map(|(_, all, figure)| rounded(100.0 * pick(all, figure), 4)).collect()
+    };
+    let names: Vec<String> =
+        rates.iter().rev().map(|(name, _, _)| figure_label(name).replace(", %", "")).collect();
+    let quantile = |estimate: Option<Estimate>| estimate.map_or(f64::NAN, |estimate| estimate.value);
+    let traces = vec![
+        intervals_across(
+            "cases: median, 5 and 95 %",
+            column(&|_, figure| quantile(figure.median)),
+            &column(&|_, figure| quantile(figure.p05)),
+            &column(&|_, figure| quantile(figure.p95)),
+            names.clone(),
+            BESIDE,
+        ),
+        intervals_across(
+            "all frames, 95 % interval",
+            column(&|all, _| all.value),
+            &column(&|all, _| all.low.unwrap_or(all.value)),
+            &column(&|all, _| all.high.unwrap_or(all.value)),
+            names,
+            MEASURED,
+        ),
+    ];
+    let layout = Layout::new(Axis::titled("%"), Axis::new());
+    let mut data = DataTable::new(["rate", "all", "low", "high"]);
+    for (name, all, _) in &rates {
+        let bound = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
+        data.push([(*name).clone(), number(name, all.value), bound(all.low), bound(all.high)]);
+    }
+    let height = 110 + 30 * rates.len() as u32;
+    let caption = "Rates over all frames, and how far the cases spread about them.";
+    section.chart(Chart::new(caption, height, data, traces, layout)).table(table)
+}
+
+/// The worst figure at each point of the sweep.
+fn sweep(study: &StudyResult) -> Section {
+    let summary = &study.summary;
+    let name = &summary.worst_by;
+    let label = |at: &indexmap::IndexMap<String, String>| {
+        at.iter().map(|(path, value)| format!("{path} = {value}")).collect::<Vec<_>>().join(", ")
+    };
+    let mut data = DataTable::new(["point", "cases", name.as_str()]);
+    let (mut x, mut y, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for point in &summary.sweep {
+        let estimate = point.figures.get(name).and_then(|figure| figure.all);
+        let text = estimate.as_ref().map_or_else(|| "–".to_owned(), |estimate| shown(name, estimate));
+        data.push([label(&point.at), point.cases.to_string(), text]);
+        if let Some(estimate) = estimate {
+            x.push(plain(&label(&point.at)));
+            y.push(rounded(scale(name) * estimate.value, 9));
+            low.push(scale(name) * estimate.low.unwrap_or(estimate.value));
+            high.push(scale(name) * estimate.high.unwrap_or(estimate.value));
+        }
+    }
+    let traces = vec![intervals(name, x, y, &low, &high, MEASURED)];
+    Section::new("sweep", "Sweep").chart(Chart::new(
+        format!("{name} at every point of the sweep, with 95 % intervals."),
+        420,
+        data,
+        traces,
+        axes("", &plain(&figure_label(name))),
+    ))
+}
+
+/// How figures go with what was drawn.
+fn sensitivities(study: &StudyResult) -> Section {
+    let correlations = &study.summary.correlations;
+    let section = Section::new("sensitivities", "Sensitivities");
+    if correlations.is_empty() {
+        return section
+            .text("There is nothing to correlate: too few cases, or nothing drawn that is a number.");
+    }
+    let mut figures: Vec<&String> = Vec::new();
+    let mut parameters: Vec<&String> = Vec::new();
+    for correlation in correlations {
+        if !figures.contains(&&correlation.figure) {
+            figures.push(&correlation.figure);
+        }
+        if !parameters.contains(&&correlation.parameter) {
+            parameters.push(&correlation.parameter);
+        }
+    }
+    parameters.sort();
+    let of = |figure: &str, parameter: &str| {
+        let same = correlations.iter().find(|c| c.figure == figure && c.parameter == parameter);
+        same.map_or(f64::NAN, |c| rounded(c.correlation, 3))
+    };
+    let z: Vec<Vec<f64>> = figures
+        .iter()
+        .rev()
+        .map(|figure| parameters.iter().map(|parameter| of(figure, parameter)).collect())
+        .collect();
+    let names: Vec<String> = parameters.iter().map(|name| plain(name)).collect();
+    let labels: Vec<String> = figures.iter().rev().map(|name| plain(&figure_label(name))).collect();
+    let map = Trace::heat_map(names, labels, &z)
+        .colour_range([-1.0, 1.0])
+        .colour_scale(ColourScale::BlueToRed)
+        .hover_template("%{y}<br>with %{x}: %{z}<extra></extra>");
+    let mut data = DataTable::new(["figure", "drawn value", "correlation", "low", "high", "cases"]);
+    for c in correlations {
+        data.push([
+            c.figure.clone(),
+            c.parameter.clone(),
+            format!("{:.3}", c.correlation),
+            format!("{:.3}", c.low),
+            format!("{:.3}", c.high),
+            c.cases.to_string(),
+        ]);
+    }
+    section.chart(Chart::new(
+        "Spearman's rank correlation of figures with what was drawn: 1, the figure grows whenever the value does; −1, it falls. The \
+         table has the 95 % intervals.",
+        140 + 24 * figures.len() as u32,
+        data,
+        vec![map],
+        Layout::new(Axis::new(), Axis::new()),
+    ))
+}
+
+/// Sobol indices of the figure that the worst cases are the worst by; all in the table.
+fn indices(study: &StudyResult) -> Section {
+    let summary = &study.summary;
+    let mut data = DataTable::new(["figure", "drawn value", "first", "low", "high", "total", "low", "high"]);
+    for index in &summary.indices {
+        let numbers = [
+            index.first,
+            index.first_interval[0],
+            index.first_interval[1],
+            index.total,
+            index.total_interval[0],
+            index.total_interval[1],
+        ];
+        let mut cells = vec![index.figure.clone(), index.parameter.clone()];
+        cells.extend(numbers.map(|number| format!("{number:.3}")));
+        data.push(cells);
+    }
+    let own: Vec<_> = summary.indices.iter().filter(|index| index.figure == summary.worst_by).collect();
+    let trace = |name: &str, value: fn(&study::SobolIndex) -> (f64, [f64; 2]), colour| {
+        let names: Vec<String> = own.iter().map(|index| plain(&index.parameter)).collect();
+        let values: Vec<(f64, [f64; 2])> = own.iter().map(|index| value(index)).collect();
+        let low: Vec<f64> = values.iter().map(|(_, interval)| interval[0]).collect();
+        let high: Vec<f64> = values.iter().map(|(_, interval)| interval[1]).collect();
+        intervals(
+            name,
+            names,
+            values.iter().map(|(value, _)| rounded(*value, 4)).collect(),
+            &low,
+            &high,
+            colour,
+        )
+    };
+    let traces = vec![
+        trace("first order", |index| (index.first, index.first_interval), MEASURED),
+        trace("total", |index| (index.total, index.total_interval), BESIDE),
+    ];
+    Section::new("indices", "Sobol indices").chart(Chart::new(
+        format!(
+            "Of {}: the part of its variance that is a value's alone, and with all in which it takes part.",
+            summary.worst_by
+        ),
+        400,
+        data,
+        traces,
+        axes("", "part of the variance"),
+    ))
+}
+
+/// The worst figure against every drawn value.
+fn scatter(study: &StudyResult) -> Section {
+    let (summary, table) = (&study.summary, &study.table);
+    let name = &summary.worst_by;
+    let section = Section::new("scatter", format!("{} against what was drawn", capital(&spoken(name))));
+    let Some(values) = table.figure(name) else { return section.text("No case has the figure.") };
+    let mut charts = Vec::new();
+    for parameter in table.drawn.keys() {
+        let Some(numbers) = table.numbers(parameter) else { continue };
+        let rows: Vec<usize> = (0..numbers.len()).filter(|&row| values[row].value.is_some()).collect();
+        let value = |row: usize| scale(name) * values[row].value.unwrap_or(f64::NAN);
+        let traces = cloud(name, &rows, Some(&value), MEASURED, |rows| {
+            let x: Vec<f64> = rows.iter().map(|&row| numbers[row]).collect();
+            let y = rows.iter().map(|&row| rounded(value(row), 9)).collect();
+            let cases: Vec<u64> = rows.iter().map(|&row| table.rows[row].case).collect();
+            let hover = "case %{customdata}<br>%{x}<br>%{y}<extra></extra>";
+            points("", x, y, MEASURED).custom_data(cases).hover_template(hover)
+        });
+        let is_drawn_whole = traces.len() == 1;
+        let mut sorted = rows.clone();
+        sorted.sort_by(|&a, &b| numbers[a].total_cmp(&numbers[b]).then(a.cmp(&b)));
+        let mut data = DataTable::new(["from", "to", "cases", "smallest", "mean", "largest"])
+            .caption("By stretches of the drawn value; cases.parquet has every case.");
+        for bin in bins(sorted.len(), TABLE_BINS.min(12)) {
+            let (first, last) = (sorted[bin.start], sorted[bin.end - 1]);
+            let mut cells = vec![significant(numbers[first]), significant(numbers[last])];
+            cells.extend(summed(bin.map(|i| value(sorted[i])), 4));
+            data.push(cells);
+        }
+        charts.push(Chart::new(
+            format!(
+                "{} against {parameter}, a point a case. {}",
+                figure_label(name),
+                drawn(&[(rows.len(), "cases")], true)
+            ),
+            260,
+            data,
+            traces,
+            axes(&plain(parameter), &plain(&figure_label(name))).legend(!is_drawn_whole),
+        ));
+    }
+    let left_out = charts.len().saturating_sub(MOST_SCATTERS);
+    charts.truncate(MOST_SCATTERS);
+    let section = if left_out > 0 {
+        section.text(format!(
+            "Of so many drawn values the first {MOST_SCATTERS} are shown; cases.parquet has all."
+        ))
+    } else {
+        section
+    };
+    if charts.is_empty() {
+        section.text("Nothing that was drawn is a number.")
+    } else {
+        section.charts(charts)
+    }
+}
+
+/// The worst cases, with the commands that run them again.
+fn worst(study: &StudyResult) -> Section {
+    let summary = &study.summary;
+    let way = match sense(&summary.worst_by).better {
+        Better::More => "the smallest",
+        Better::Less => "the largest",
+        Better::Near(_) => "the farthest from what is best",
+    };
+    let section = Section::new("worst", "Worst cases");
+    if summary.worst.is_empty() {
+        return section.text("No case has the figure by which they would be the worst.");
+    }
+    let drawn: Vec<&String> = summary.worst[0].drawn.keys().collect();
+    let mut head = vec!["case".to_owned(), summary.worst_by.clone()];
+    head.extend(drawn.iter().map(|name| (*name).clone()));
+    head.push("runs it again".to_owned());
+    let mut table = DataTable::new(head).wordy();
+    for case in &summary.worst {
+        let mut cells = vec![case.case.to_string(), number(&summary.worst_by, case.value)];
+        cells.extend(drawn.iter().map(|name| match case.drawn.get(*name) {
+            Some(text) => text.parse::<f64>().map_or_else(|_| text.clone(), significant),
+            None => String::new(),
+        }));
+        cells.push(case.replay.clone());
+        table.push(cells);
+    }
+    section.text(format!("Those whose {} is {way}.", summary.worst_by)).table(table)
+}

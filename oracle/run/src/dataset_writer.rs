@@ -1,0 +1,130 @@
+//! What a run and a rendered dataset have in common on disk: everything but measurements and score.
+
+use contract::{Direction, Frame};
+use files::{
+    CameraFile, Failure, FileError, FrameHeader, ImageFormat, RunDirectory, StarRow, TableWriter, TanSip,
+    TelemetryRow, TelemetryWriter, format_utc, write_frame, write_stars,
+};
+use hifitime::Epoch;
+use scenario::FarRangeScenario;
+use scenario::run_file::RunFile;
+use sim::truth::{FrameTruth, ObjectTruth, Observer};
+use sim::{Exposure, Simulator};
+
+/// Writes `run.toml`, `camera.toml`, `stars.csv`, then frame by frame `telemetry.csv` and the truth tables.
+pub struct DatasetWriter {
+    telemetry: TelemetryWriter,
+    frames: TableWriter<FrameTruth>,
+    objects: TableWriter<ObjectTruth>,
+    images: Option<ImageFormat>,
+}
+
+impl DatasetWriter {
+    /// Writes what does not depend on frames, and begins the tables.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a file cannot be written.
+    pub fn create(
+        directory: &RunDirectory,
+        run_file: &RunFile,
+        stars: &[StarRow],
+        star_epoch: Epoch,
+        images: Option<ImageFormat>,
+    ) -> Result<Self, Failure> {
+        run_file.write(&directory.run())?;
+        let scenario = &run_file.scenario;
+        let camera = CameraFile {
+            bit_depth: scenario.sensor.bit_depth,
+            magnitude_limit: scenario.star_list.magnitude_limit,
+            star_epoch_utc: Some(format_utc(star_epoch)),
+            readout: Some(scenario.readout()),
+            zero_suppression_dn: scenario.zero_suppression_dn,
+            camera: scenario.camera.clone(),
+            mounting: scenario.mounting.nominal,
+            far_range: scenario.far_range.clone(),
+        };
+        camera.write(&directory.camera())?;
+        write_stars(&directory.stars(), stars)?;
+        Ok(Self {
+            telemetry: TelemetryWriter::create(&directory.telemetry())?,
+            frames: TableWriter::create(&directory.truth_frames())?,
+            objects: TableWriter::create(&directory.truth_objects())?,
+            images,
+        })
+    }
+
+    /// Adds a frame to the tables, and gives back its image, which is not in them: if images are kept, it was saved by
+    /// [`save_image`].
+    ///
+    /// # Errors
+    /// [`FileError`] when a table cannot be written.
+    pub fn add(&mut self, exposure: Exposure) -> Result<Frame, FileError> {
+        let number = exposure.frame.number();
+        self.telemetry.write(&TelemetryRow {
+            frame: number,
+            file: self.images.map(|format| RunDirectory::frame_name(number, format)),
+            telemetry: exposure.telemetry,
+            windows: exposure.frame.windows().map(<[_]>::to_vec),
+        })?;
+        self.frames.write([exposure.truth])?;
+        self.objects.write(exposure.objects)?;
+        Ok(exposure.frame)
+    }
+
+    /// Completes the tables, that of the telemetry last: it makes a dataset of the directory.
+    ///
+    /// # Errors
+    /// [`FileError`] when a table cannot be written.
+    pub fn finish(self) -> Result<(), FileError> {
+        self.frames.finish()?;
+        self.objects.finish()?;
+        self.telemetry.finish()
+    }
+}
+
+/// Saves the image of an exposure, FITS with world coordinates made from the truth.
+///
+/// # Errors
+/// [`Failure`] when the file cannot be written, or the camera has no world coordinates to be fitted.
+pub fn save_image(
+    directory: &RunDirectory,
+    format: ImageFormat,
+    simulator: &Simulator,
+    run_file: &RunFile,
+    exposure: &Exposure,
+) -> Result<(), Failure> {
+    let truth = &exposure.truth;
+    let observer = Observer::new(truth.time, truth.position_km, truth.velocity_km_s)?;
+    let wcs = match format {
+        ImageFormat::Fits => Some(world_coordinates(simulator, &run_file.scenario, truth, &observer)?),
+        ImageFormat::Png | ImageFormat::Exr => None,
+    };
+    let header = FrameHeader {
+        time: truth.time,
+        exposure_s: truth.exposure_s,
+        gain_e_per_dn: Some(run_file.scenario.sensor.gain_e_per_dn),
+        seed: run_file.scenario.seed,
+        version: run_file.version.clone(),
+        configuration_hash: run_file.hash.clone(),
+        observer_velocity_km_s: Some(observer.barycentric_velocity_km_s()),
+        wcs,
+    };
+    write_frame(&directory.frame(exposure.frame.number(), format), format, &exposure.frame, &header)?;
+    Ok(())
+}
+
+/// World coordinates of a frame: from astrometric directions (ICRS) to pixels, aberration folded in.
+fn world_coordinates(
+    simulator: &Simulator,
+    scenario: &FarRangeScenario,
+    truth: &FrameTruth,
+    observer: &Observer,
+) -> Result<TanSip, Failure> {
+    let camera = &scenario.camera;
+    let principal = contract::PixelPoint::new(camera.principal_x_px, camera.principal_y_px);
+    let boresight = truth.camera_from_icrs.inverse() * Direction::z();
+    TanSip::fit(camera.columns, camera.rows, principal, boresight, |astrometric| {
+        simulator.projection().project(&(truth.camera_from_icrs * observer.apparent_of(*astrometric)))
+    })
+    .map_err(|error| Failure::Usage(format!("frame {}: {error}", truth.frame)))
+}

@@ -1,0 +1,222 @@
+//! What a docking run or dataset writes: images, telemetry and truth, and a pipeline's answers.
+
+use std::io;
+use std::path::Path;
+
+use contract::docking::{DockingOutcome, DockingSetup, Field, FieldTelemetry};
+use files::docking::{
+    FeatureRow, FieldMeasurementWriter, MotionWriter, SetupFile, outcome_as_filed, report_as_filed,
+};
+use files::{
+    AviCoding, AviWriter, Failure, FieldRow, FieldTelemetryWriter, FileError, ImageFormat, RunDirectory,
+    TableWriter, Y4mWriter, write_field,
+};
+use scenario::DockingScenario;
+use scenario::run_file::RunFile;
+use sim::docking::FieldTruth;
+
+use crate::far_range_run::FirstFailure;
+
+/// Quality of Motion-JPEG: its error is below the noise of a field.
+const JPEG_QUALITY: u8 = 95;
+
+/// How images of fields are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FieldImages {
+    /// One grey PNG a field.
+    Png,
+    /// One uncompressed AVI of whole frames, two fields each.
+    Avi,
+    /// The same in Motion-JPEG: a tenth of the size, with small losses.
+    MotionJpeg,
+    /// One Y4M of whole frames, two fields each.
+    Y4m,
+}
+
+impl FieldImages {
+    /// Most fields that one file holds, of images of this size; `None` where there is no limit.
+    pub fn most_fields(self, setup: &DockingSetup) -> Option<u64> {
+        let camera = setup.cameras.first()?;
+        let frames = AviCoding::Grey.most_frames((camera.columns, camera.rows))?;
+        (self == Self::Avi).then_some(2 * frames)
+    }
+
+    /// Where the images are, in a run directory.
+    pub fn place(self) -> &'static str {
+        match self {
+            Self::Png => "frames/",
+            Self::Avi | Self::MotionJpeg => "fields.avi",
+            Self::Y4m => "fields.y4m",
+        }
+    }
+}
+
+impl std::str::FromStr for FieldImages {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "png" => Ok(Self::Png),
+            "avi" => Ok(Self::Avi),
+            "mjpeg" => Ok(Self::MotionJpeg),
+            "y4m" => Ok(Self::Y4m),
+            _ => Err(format!("`{text}` is no format of docking fields; expected png, avi, mjpeg or y4m")),
+        }
+    }
+}
+
+/// A file of video.
+enum Video {
+    Avi(Box<AviWriter>),
+    Y4m(Box<Y4mWriter>),
+}
+
+impl Video {
+    /// That of a run directory; `None` where images are kept one by one, or not at all.
+    fn create(
+        directory: &RunDirectory,
+        images: Option<FieldImages>,
+        setup: &DockingSetup,
+        rate_hz: f64,
+    ) -> Result<Option<Self>, FileError> {
+        let Some((images, camera)) = images.zip(setup.cameras.first()) else { return Ok(None) };
+        let (path, size) = (directory.path().join(images.place()), (camera.columns, camera.rows));
+        let avi =
+            |coding| AviWriter::create(&path, coding, size, rate_hz).map(|avi| Self::Avi(Box::new(avi)));
+        match images {
+            FieldImages::Png => return Ok(None),
+            FieldImages::Avi => avi(AviCoding::Grey),
+            FieldImages::MotionJpeg => avi(AviCoding::MotionJpeg { quality: JPEG_QUALITY }),
+            FieldImages::Y4m => Y4mWriter::create(&path, size, rate_hz).map(|y4m| Self::Y4m(Box::new(y4m))),
+        }
+        .map(Some)
+    }
+
+    fn write(&mut self, field: &Field) -> Result<(), FileError> {
+        match self {
+            Self::Avi(avi) => avi.write(field),
+            Self::Y4m(y4m) => y4m.write(field),
+        }
+    }
+
+    fn finish(self) -> Result<(), FileError> {
+        match self {
+            Self::Avi(avi) => avi.finish(),
+            Self::Y4m(y4m) => y4m.finish(),
+        }
+    }
+}
+
+/// What a run and a rendered dataset have in common on disk: everything but answers and score.
+pub(crate) struct FieldDataset<'a> {
+    directory: &'a RunDirectory,
+    telemetry: FieldTelemetryWriter,
+    truth: TableWriter<FieldTruth>,
+    is_png: bool,
+    video: Option<Video>,
+}
+
+impl<'a> FieldDataset<'a> {
+    pub(crate) fn create(
+        run_file: &RunFile<DockingScenario>,
+        setup: &DockingSetup,
+        directory: &'a RunDirectory,
+        images: Option<FieldImages>,
+    ) -> Result<Self, Failure> {
+        run_file.write(&directory.run())?;
+        let scenario = &run_file.scenario;
+        SetupFile::new(setup, &scenario.docking).write(&directory.setup())?;
+        Ok(Self {
+            directory,
+            telemetry: FieldTelemetryWriter::create(&directory.telemetry())?,
+            truth: TableWriter::create(&directory.truth_fields())?,
+            is_png: images == Some(FieldImages::Png),
+            video: Video::create(directory, images, setup, scenario.television.frame_rate_hz)?,
+        })
+    }
+
+    pub(crate) fn add(
+        &mut self,
+        field: &Field,
+        telemetry: FieldTelemetry,
+        truth: FieldTruth,
+    ) -> Result<(), FileError> {
+        let number = field.number();
+        let is_png = self.is_png;
+        if is_png {
+            write_field(&self.directory.frame(number, ImageFormat::Png), field)?;
+        }
+        if let Some(video) = &mut self.video {
+            video.write(field)?;
+        }
+        self.telemetry.write(&FieldRow {
+            field: number,
+            file: is_png.then(|| RunDirectory::frame_name(number, ImageFormat::Png)),
+            lines: field.lines(),
+            telemetry,
+        })?;
+        self.truth.write([truth])
+    }
+
+    /// Completes the files, the telemetry last: it makes a dataset of the directory.
+    pub(crate) fn finish(self) -> Result<(), Failure> {
+        self.truth.finish()?;
+        self.video.map_or(Ok(()), Video::finish)?;
+        self.telemetry.finish()?;
+        Ok(())
+    }
+}
+
+/// The files of a pipeline's answers, or a stream of them.
+pub(crate) struct Answers {
+    measurements: FieldMeasurementWriter,
+    /// What is said at the end of portions, and what was recognised; not in a stream.
+    more: Option<(MotionWriter, TableWriter<FeatureRow>)>,
+    first_failure: Option<FirstFailure>,
+}
+
+impl Answers {
+    pub(crate) fn create(measurements: &Path, motion: &Path, features: &Path) -> Result<Self, FileError> {
+        Ok(Self {
+            measurements: FieldMeasurementWriter::create(measurements)?,
+            more: Some((MotionWriter::create(motion)?, TableWriter::create(features)?)),
+            first_failure: None,
+        })
+    }
+
+    /// The measurements alone to standard output, each as soon as it is there.
+    pub(crate) fn stream() -> Result<Self, FileError> {
+        let measurements = FieldMeasurementWriter::stream("standard output", io::stdout())?;
+        Ok(Self { measurements, more: None, first_failure: None })
+    }
+
+    /// Writes an answer; what it gives back is the answer as it stands in the files.
+    pub(crate) fn add(&mut self, field: u64, outcome: &DockingOutcome) -> Result<DockingOutcome, FileError> {
+        self.first_failure = self.first_failure.take().or_else(|| FirstFailure::of_field(field, outcome));
+        self.measurements.write(field, outcome)?;
+        if let Some((motion, features)) = &mut self.more {
+            if let Some(report) = &outcome.motion {
+                motion.write(field, report)?;
+            }
+            features.write(FeatureRow::of(field, &outcome.features))?;
+        }
+        Ok(answer_as_filed(outcome))
+    }
+
+    pub(crate) fn finish(self) -> Result<Option<FirstFailure>, FileError> {
+        // The measurements last: without them, nobody misses the others.
+        if let Some((motion, features)) = self.more {
+            motion.finish()?;
+            features.finish()?;
+        }
+        self.measurements.finish()?;
+        Ok(self.first_failure)
+    }
+}
+
+/// An answer as it stands in the files.
+pub(crate) fn answer_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
+    let mut answered = outcome_as_filed(outcome);
+    answered.motion = outcome.motion.as_ref().map(report_as_filed);
+    answered
+}

@@ -1,0 +1,252 @@
+//! Frames in order, made on several threads.
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, mpsc};
+
+use files::Failure;
+use sim::{SimulatedCamera, Simulator};
+
+/// Frames that a thread may be ahead of what is taken, at most: enough to keep threads busy.
+const FRAMES_PER_JOB: u64 = 32;
+/// Bytes of pixels in them, at most, though never less than two frames: few enough that memory stays flat.
+const BYTES_PER_JOB: u64 = 32 << 20;
+
+/// Frames of each thread that are made or wait to be taken, by the bytes that the pixels of one take.
+fn frames_per_job(frame_bytes: u64) -> u64 {
+    (BYTES_PER_JOB / frame_bytes.max(1)).clamp(2, FRAMES_PER_JOB)
+}
+
+/// Makes something of each of `frames` on `jobs` threads, each with a camera of its own, and hands it to `take` in
+/// order. What is made does not depend on the number of threads.
+///
+/// # Errors
+/// The first failure in the order of the frames; nothing after it is taken.
+pub fn fly<T: Send>(
+    simulator: &Simulator,
+    frames: Range<u64>,
+    jobs: usize,
+    make: impl Fn(&mut SimulatedCamera<'_>, u64) -> Result<T, Failure> + Sync,
+    take: impl FnMut(T) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let (columns, rows) = simulator.projection().detector();
+    let frame_bytes = (columns * rows * size_of::<u16>()) as u64;
+    in_order(frames, jobs, frame_bytes, || Ok(simulator.camera()?), make, take)
+}
+
+/// Makes something of each of `frames` on `jobs` threads, each with a workspace of its own, and hands it to `take` in
+/// order, on the caller's thread. The pixels of one take `frame_bytes`, by which it is decided how many may wait.
+///
+/// No thread waits for another but where `take` is that many frames behind.
+///
+/// # Errors
+/// The first failure in the order of the frames; nothing after it is taken.
+pub fn in_order<W, T: Send>(
+    frames: Range<u64>,
+    jobs: usize,
+    frame_bytes: u64,
+    workspace: impl Fn() -> Result<W, Failure> + Sync,
+    make: impl Fn(&mut W, u64) -> Result<T, Failure> + Sync,
+    mut take: impl FnMut(T) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    if jobs <= 1 {
+        let mut workspace = workspace()?;
+        return frames.into_iter().try_for_each(|frame| take(make(&mut workspace, frame)?));
+    }
+    let ahead = frames_per_job(frame_bytes).saturating_mul(jobs as u64);
+    let queue =
+        Queue { progress: Mutex::new(Progress { left: frames.clone(), ahead }), moved: Condvar::new() };
+    let work = |made: mpsc::Sender<(u64, Result<T, Failure>)>| {
+        let _end = EndOf(&queue);
+        let mut own = None;
+        let mut make_one = |frame| match &mut own {
+            Some(own) => make(own, frame),
+            None => make(own.insert(workspace()?), frame),
+        };
+        while let Some(frame) = queue.next() {
+            if made.send((frame, make_one(frame))).is_err() {
+                return; // Something failed, and nobody listens any more.
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        let _end = EndOf(&queue);
+        let (made, waiting) = mpsc::channel();
+        for _ in frames.clone().take(jobs) {
+            let (made, work) = (made.clone(), &work);
+            std::thread::Builder::new()
+                .spawn_scoped(scope, move || work(made))
+                .map_err(|error| Failure::Usage(format!("{jobs} threads cannot be started: {error}")))?;
+        }
+        drop(made);
+        let mut early = BTreeMap::new();
+        for frame in frames {
+            let result = loop {
+                if let Some(result) = early.remove(&frame) {
+                    break result;
+                }
+                // All threads are at their end and the frame is not there: one has panicked, which the scope passes on.
+                let Ok((number, result)) = waiting.recv() else { return Ok(()) };
+                early.insert(number, result);
+            };
+            take(result?)?;
+            queue.one_taken();
+        }
+        Ok(())
+    })
+}
+
+/// The frames that threads take their next ones from.
+struct Queue {
+    progress: Mutex<Progress>,
+    /// Told when there may be more to do, or no more at all.
+    moved: Condvar,
+}
+
+/// How far the frames are.
+struct Progress {
+    /// Those that nobody makes yet.
+    left: Range<u64>,
+    /// How many of them may be begun before another one is taken.
+    ahead: u64,
+}
+
+impl Queue {
+    /// The next frame to be made, as soon as it may be; `None` when there is none left.
+    fn next(&self) -> Option<u64> {
+        let mut progress = self.progress();
+        while !progress.left.is_empty() && progress.ahead == 0 {
+            progress = self.moved.wait(progress).unwrap_or_else(PoisonError::into_inner);
+        }
+        let frame = progress.left.next()?;
+        progress.ahead -= 1;
+        Some(frame)
+    }
+
+    /// Lets one frame more be begun.
+    fn one_taken(&self) {
+        self.progress().ahead += 1;
+        self.moved.notify_one();
+    }
+
+    fn progress(&self) -> MutexGuard<'_, Progress> {
+        self.progress.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Leaves no frame to be made when it is dropped: when something failed or panicked, no thread waits for what will not come.
+struct EndOf<'a>(&'a Queue);
+
+impl Drop for EndOf<'_> {
+    fn drop(&mut self) {
+        let mut progress = self.0.progress();
+        progress.left.start = progress.left.end;
+        self.0.moved.notify_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_few_frames_may_wait_and_fewer_when_they_are_large() {
+        let mb = |bytes: f64| frames_per_job((bytes * (1 << 20) as f64) as u64);
+        assert_eq!([mb(0.0), mb(0.8), mb(2.0), mb(16.0), mb(500.0)], [32, 32, 16, 2, 2]);
+    }
+
+    /// Frames, each made after a time of its own.
+    fn numbers(
+        frames: Range<u64>,
+        jobs: usize,
+        frame_bytes: u64,
+        make: impl Fn(u64) -> Result<u64, Failure> + Sync,
+        take: impl FnMut(u64) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let make = |made: &mut u64, frame| {
+            *made += 1;
+            std::thread::sleep(std::time::Duration::from_micros(frame * 7919 % 300));
+            make(frame)
+        };
+        in_order(frames, jobs, frame_bytes, || Ok(0), make, take)
+    }
+
+    fn failure(text: &str) -> Failure {
+        Failure::Usage(text.to_owned())
+    }
+
+    #[test]
+    fn frames_are_taken_in_order_on_any_number_of_threads() {
+        for jobs in [1, 2, 7] {
+            for frames in [0..0, 5..6, 3..200] {
+                let mut taken = Vec::new();
+                let take = |frame| {
+                    taken.push(frame);
+                    Ok(())
+                };
+                numbers(frames.clone(), jobs, 0, Ok, take).unwrap();
+                assert!(taken.into_iter().eq(frames), "{jobs} threads");
+            }
+        }
+    }
+
+    #[test]
+    fn no_more_frames_are_made_ahead_than_may_wait() {
+        use std::sync::atomic::{AtomicU64, Ordering};
+        let begun = AtomicU64::new(0);
+        let make = |frame| {
+            begun.fetch_add(1, Ordering::SeqCst);
+            Ok(frame)
+        };
+        // Two frames of 16 MB a thread.
+        let take = |frame| {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+            let begun = begun.load(Ordering::SeqCst);
+            assert!(begun <= frame + 6, "{begun} begun, {frame} taken");
+            Ok(())
+        };
+        numbers(0..60, 3, 16 << 20, make, take).unwrap();
+        assert_eq!(begun.load(Ordering::SeqCst), 60);
+    }
+
+    #[test]
+    fn the_first_failure_ends_it_and_nothing_after_it_is_taken() {
+        for jobs in [1, 3] {
+            let mut taken = 0;
+            let make =
+                |frame: u64| if frame % 50 == 49 { Err(failure(&frame.to_string())) } else { Ok(frame) };
+            let take = |_| {
+                taken += 1;
+                Ok(())
+            };
+            let told = numbers(0..1000, jobs, 0, make, take).unwrap_err().to_string();
+            assert_eq!((told.as_str(), taken), ("49", 49));
+            let take = |frame| if frame == 20 { Err(failure("taken")) } else { Ok(()) };
+            assert_eq!(numbers(0..1000, jobs, 0, make, take).unwrap_err().to_string(), "taken");
+        }
+    }
+
+    #[test]
+    fn a_workspace_that_cannot_be_made_is_told() {
+        for jobs in [1, 3] {
+            let make = |(): &mut (), frame| Ok(frame);
+            let told = in_order(0..100, jobs, 0, || Err(failure("no camera")), make, |_: u64| Ok(()));
+            assert_eq!(told.unwrap_err().to_string(), "no camera");
+        }
+    }
+
+    #[test]
+    fn a_panic_is_passed_on_and_nobody_waits_for_its_frame() {
+        for jobs in [1, 3] {
+            let run = || {
+                numbers(
+                    0..1000,
+                    jobs,
+                    0,
+                    |frame| if frame == 70 { panic!("70") } else { Ok(frame) },
+                    |_| Ok(()),
+                )
+            };
+            assert!(std::panic::catch_unwind(run).is_err());
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! An error budget: the truth in the place of one stage's result, to see what that stage costs.
+use contract::{Direction, Icrs, ListedStar, Outcome, PixelPoint, Setup};
+use files::Failure;
+use pipeline::far_range::{FarRange, FarRangeConfig, Identity, Overrides};
+use scenario::Stage;
+use score::belonging_to;
+use sim::Exposure;
+use sim::truth::{ObjectKind, Observer};
+
+/// The built-in pipeline with the truth in the place of one stage's result.
+#[derive(Debug)]
+pub struct InjectedPipeline {
+    stage: Stage,
+    pipeline: FarRange,
+}
+
+impl InjectedPipeline {
+    /// A pipeline that has seen no frame.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when the configuration or the setup does not allow the pipeline.
+    pub fn new(stage: Stage, config: &FarRangeConfig, setup: &Setup) -> Result<Self, Failure> {
+        let pipeline =
+            FarRange::new(config.clone(), setup).map_err(|error| Failure::Usage(error.to_string()))?;
+        Ok(Self { stage, pipeline })
+    }
+
+    /// Answers a frame, with its truth at hand for the one stage.
+    ///
+    /// # Errors
+    /// [`Failure::Simulation`] for a chaser where none can be.
+    pub fn answer(&mut self, exposure: &Exposure) -> Result<Outcome, Failure> {
+        let (frame, truth) = (&exposure.frame, &exposure.truth);
+        let observer = Observer::new(truth.time, truth.position_km, truth.velocity_km_s)?;
+        // A place beside the detector would be no detection: there the cluster keeps its own.
+        let centroid = |centre: PixelPoint| {
+            belonging_to(centre, &exposure.objects)
+                .map(|object| object.position)
+                .filter(|place| place.is_on_detector(frame.columns(), frame.rows()))
+        };
+        let identity = |centre: PixelPoint| match belonging_to(centre, &exposure.objects) {
+            Some(object) if object.kind == ObjectKind::Star => Identity::Star(object.id),
+            Some(object) if object.kind == ObjectKind::HotPixel => Identity::Hotspot,
+            _ => Identity::Neither,
+        };
+        let apparent = |star: &ListedStar| -> Direction<Icrs> { observer.apparent_of(star.direction) };
+        let own = Overrides::default();
+        let overrides = match self.stage {
+            Stage::Centroids => Overrides { centroid: Some(&centroid), ..own },
+            Stage::Identities => Overrides { identity: Some(&identity), ..own },
+            Stage::Attitude => Overrides { camera_from_icrs: Some(truth.camera_from_icrs), ..own },
+            Stage::Aberration => Overrides { apparent: Some(&apparent), ..own },
+            // The frames themselves are other ones.
+            Stage::Roi => own,
+        };
+        Ok(self.pipeline.process_with(frame, &exposure.telemetry, &overrides))
+    }
+}

@@ -1,0 +1,84 @@
+//! Camera models to start from: the tables `[camera]` and `[sensor]` of a scenario.
+
+use super::BuiltIn;
+
+/// Every built-in camera, by name: text to be pasted into a scenario, each value with its source.
+pub const CAMERAS: &[BuiltIn] = &[
+    BuiltIn {
+        name: "cmos-star-tracker",
+        text: include_str!("../../../scenarios/cameras/cmos-star-tracker.toml"),
+    },
+    BuiltIn { name: "tv-docking", text: include_str!("../../../scenarios/cameras/tv-docking.toml") },
+    BuiltIn { name: "uasc-far-range", text: include_str!("../../../scenarios/cameras/uasc-far-range.toml") },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contract::Camera;
+    use serde::Deserialize;
+    use sim::randomness::Seed;
+    use sim::sensor::{FlatLaws, Opening, Sensor, SensorConfig};
+
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Fragment {
+        camera: Camera,
+        sensor: SensorConfig,
+    }
+
+    fn fragments() -> impl Iterator<Item = (&'static str, Fragment)> {
+        CAMERAS.iter().map(|camera| (camera.name, toml::from_str(camera.text).unwrap()))
+    }
+
+    #[test]
+    fn every_camera_is_one_that_a_scenario_takes() {
+        assert!(fragments().count() >= 3);
+        for (name, fragment) in fragments() {
+            fragment.camera.check().unwrap();
+            fragment.sensor.check().unwrap_or_else(|error| panic!("{name}: {error}"));
+        }
+    }
+
+    /// Two dark frames of each camera have the mean and the noise that its figures give, seen through a converter of half
+    /// an electron a digital number, so that rounding hides nothing.
+    #[test]
+    fn dark_frames_have_the_figures_of_their_camera() {
+        let seed = Seed { seed: 5, case: 0 };
+        let exposure_s = 1.0;
+        for (name, Fragment { mut sensor, .. }) in fragments() {
+            sensor.hot_pixels.count = 0;
+            (sensor.bit_depth, sensor.gain_e_per_dn, sensor.bias_dn) = (16, 0.5, 1000.0);
+            let (columns, rows) = (400, 400);
+            let device = Sensor::new(&sensor, columns, rows).unwrap();
+            let (mut image, mut laws) = (device.new_expected(), FlatLaws::new());
+            let frames: Vec<Vec<f64>> = (0..2)
+                .map(|frame| {
+                    let mut raw = device.new_raw();
+                    image.clear(0.0);
+                    let charge = device.collect(&mut image, &Opening { seed, middle_s: 0.0, exposure_s });
+                    device.read_out(&charge, &seed, frame, &mut laws, &mut raw).unwrap();
+                    raw.dn().iter().map(|dn| f64::from(*dn)).collect()
+                })
+                .collect();
+            let n = (columns * rows) as f64;
+            let mean_dn = frames[0].iter().sum::<f64>() / n;
+            let (gain, dark_e) = (sensor.gain_e_per_dn, sensor.dark_current_e_per_s * exposure_s);
+            let row_e = sensor.line_noise.row_e;
+            // What does not average out over the pixels: the noise of 400 rows, the offsets of 400 columns.
+            let lines_e = libm::hypot(row_e, sensor.fixed_pattern.column_offset_e) / 20.0;
+            let error_e = (mean_dn - sensor.bias_dn) * gain - dark_e;
+            // The pattern of the dark current averages out over 160,000 pixels.
+            let dark_error_e = dark_e * sensor.fixed_pattern.dsnu_fraction / 400.0;
+            assert!(error_e.abs() < 5.0 * (lines_e + dark_error_e) + 0.3, "{name}: {error_e} e⁻");
+            let variance =
+                frames[0].iter().zip(&frames[1]).map(|(a, b)| 0.5 * (a - b) * (a - b)).sum::<f64>() / n;
+            let read_e = sensor.read_noise_e;
+            let noise_e2 = dark_e + read_e * read_e + row_e * row_e;
+            let expected = noise_e2 / (gain * gain) + 1.0 / 12.0;
+            // 160,000 differences know a variance to 0.35 %, those of 400 rows to 7 %.
+            let tolerance = 5.0 * (0.0035 + 0.07 * row_e * row_e / noise_e2);
+            assert!((variance / expected - 1.0).abs() < tolerance, "{name}: {variance} and {expected} DN²");
+        }
+    }
+}

@@ -1,0 +1,490 @@
+//! From frames to figures.
+
+use std::sync::Arc;
+
+use contract::{Angle, AttitudeSource, CameraFrame, Direction, Outcome, PixelPoint};
+use indexmap::IndexMap;
+use sim::truth::{FrameTruth, ObjectTruth};
+use thiserror::Error;
+
+use super::angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
+use super::cause::{Cause, Detector};
+use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
+use super::report::{Figure, GroupScore, Score, names};
+use super::verdict::{FrameVerdict, Taken, Verdict, judge};
+
+/// The true camera's inverse projection: the direction whose image is at a point, `None` where there is none.
+pub type Unproject<'a> = &'a dyn Fn(PixelPoint) -> Option<Direction<CameraFrame>>;
+
+/// What the score needs besides the frames.
+#[derive(Clone)]
+pub struct ScoreContext<'a> {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Its seed.
+    pub seed: u64,
+    /// Version of Boresight.
+    pub version: String,
+    /// The stage whose result was replaced by the truth, if one was.
+    pub inject: Option<String>,
+    /// Columns of the detector.
+    pub columns: usize,
+    /// Rows of the detector.
+    pub rows: usize,
+    /// Inverse projection of the true camera.
+    pub unproject: Unproject<'a>,
+}
+
+/// A score and the verdicts that it counts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scored {
+    /// The figures.
+    pub score: Score,
+    /// One verdict a frame, in order.
+    pub verdicts: Vec<FrameVerdict>,
+}
+
+/// A truth that cannot be scored.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum ScoreError {
+    /// A frame that does not come after the one before: it would be counted twice, or out of time.
+    #[error("frame {frame} follows frame {previous}, expected frames in ascending order, each once")]
+    Order {
+        /// The frame before.
+        previous: u64,
+        /// The frame met.
+        frame: u64,
+    },
+    /// An object of another frame.
+    #[error("an object of frame {object} is given with frame {frame}")]
+    ForeignObject {
+        /// The frame scored.
+        frame: u64,
+        /// The frame of the object.
+        object: u64,
+    },
+}
+
+/// Scores the frames of a far-range run one after the other.
+///
+/// ```
+/// use boresight_score::{ScoreContext, Scorer};
+/// let unproject = |_| Some(contract::Direction::z());
+/// let context = ScoreContext {
+///     scenario: "argon".to_owned(),
+///     seed: 1,
+///     version: "0.1.0".to_owned(),
+///     inject: None,
+///     columns: 752,
+///     rows: 580,
+///     unproject: &unproject,
+/// };
+/// let scored = Scorer::new(context).finish();
+/// assert_eq!(scored.score.figures["hit_rate"].value, None); // of no frame: nothing, and no NaN
+/// ```
+pub struct Scorer<'a> {
+    context: ScoreContext<'a>,
+    verdicts: Vec<FrameVerdict>,
+}
+
+impl<'a> Scorer<'a> {
+    /// A scorer that has seen no frame.
+    pub fn new(context: ScoreContext<'a>) -> Self {
+        Self { context, verdicts: Vec::new() }
+    }
+
+    /// Judges the next frame. `objects` are those of this frame, target included; `outcome` is `None` when the
+    /// measurements have no row for it.
+    ///
+    /// # Errors
+    /// [`ScoreError::Order`] unless the number is larger than the one before, [`ScoreError::ForeignObject`] when an
+    /// object belongs to another frame. The frame is then not counted.
+    pub fn add(
+        &mut self,
+        truth: &FrameTruth,
+        objects: &[ObjectTruth],
+        outcome: Option<&Outcome>,
+    ) -> Result<&FrameVerdict, ScoreError> {
+        let frame = truth.frame;
+        if let Some(last) = self.verdicts.last()
+            && last.frame >= frame
+        {
+            return Err(ScoreError::Order { previous: last.frame, frame });
+        }
+        if let Some(foreign) = objects.iter().find(|object| object.frame != frame) {
+            return Err(ScoreError::ForeignObject { frame, object: foreign.frame });
+        }
+        let detector = Detector { columns: self.context.columns, rows: self.context.rows };
+        let group = match self.verdicts.last() {
+            Some(last) if *last.group == *truth.group => Arc::clone(&last.group),
+            _ => Arc::from(truth.group.as_str()),
+        };
+        let verdict = FrameVerdict {
+            frame,
+            group,
+            verdict: judge(truth, objects, outcome, detector, self.context.unproject),
+            n_stars: outcome.and_then(|outcome| outcome.n_stars),
+            attitude_source: outcome.and_then(|outcome| outcome.attitude_source),
+        };
+        Ok(self.verdicts.push_mut(verdict))
+    }
+
+    /// The figures over all frames. Each group is one sequence for the statistics, even where another one
+    /// interrupts it.
+    pub fn finish(self) -> Scored {
+        let mut groups: IndexMap<&str, Vec<&FrameVerdict>> = IndexMap::new();
+        for verdict in &self.verdicts {
+            groups.entry(&verdict.group).or_default().push(verdict);
+        }
+        let sequences: Vec<&[&FrameVerdict]> = groups.values().map(Vec::as_slice).collect();
+        let all = group_score(&sequences);
+        let groups =
+            groups.iter().map(|(group, sequence)| ((*group).to_owned(), group_score(&[sequence]))).collect();
+        let score = Score {
+            scenario: self.context.scenario,
+            seed: self.context.seed,
+            version: self.context.version,
+            inject: self.context.inject,
+            frames: all.frames,
+            figures: all.figures,
+            groups,
+            misses: all.misses,
+            wrong: all.wrong,
+            wrong_taken: all.wrong_taken,
+        };
+        Scored { score, verdicts: self.verdicts }
+    }
+}
+
+/// Names of the figures of every score, in their order.
+pub fn figure_names() -> Vec<String> {
+    figures(&[]).into_keys().collect()
+}
+
+/// The score of some sequences of frames taken together.
+fn group_score(sequences: &[&[&FrameVerdict]]) -> GroupScore {
+    let frames = || sequences.iter().copied().flatten();
+    let causes = |of: &dyn Fn(&Verdict) -> Option<Cause>| {
+        let codes = Cause::ALL.map(Cause::code);
+        counts(&codes, frames().filter_map(|frame| of(&frame.verdict)).map(Cause::code))
+    };
+    GroupScore {
+        frames: frames().count() as u64,
+        figures: figures(sequences),
+        misses: causes(&|verdict| match verdict {
+            Verdict::Missed { cause } => Some(*cause),
+            _ => None,
+        }),
+        wrong: causes(&|verdict| match verdict {
+            Verdict::Wrong { cause, .. } => Some(*cause),
+            _ => None,
+        }),
+        wrong_taken: counts(
+            &[
+                Taken::Star(0),
+                Taken::Planet(0),
+                Taken::Moon,
+                Taken::HotPixel(0),
+                Taken::CosmicRay(0),
+                Taken::Nothing,
+            ]
+            .map(Taken::code),
+            frames().filter_map(|frame| match frame.verdict {
+                Verdict::Wrong { taken, .. } => Some(taken.code()),
+                _ => None,
+            }),
+        ),
+    }
+}
+
+/// How often each word occurs, in the order of `words`; those that do not occur are left out.
+pub(super) fn counts(
+    words: &[&str],
+    occurrences: impl Iterator<Item = &'static str>,
+) -> IndexMap<String, u64> {
+    let mut counts: IndexMap<String, u64> = words.iter().map(|word| ((*word).to_owned(), 0)).collect();
+    for word in occurrences {
+        *counts.entry(word.to_owned()).or_default() += 1;
+    }
+    counts.retain(|_, count| *count > 0);
+    counts
+}
+
+fn figures(sequences: &[&[&FrameVerdict]]) -> IndexMap<String, Figure> {
+    definitions().iter().map(|figure| (figure.name.clone(), figure.figure(sequences))).collect()
+}
+
+/// The figures of a far-range score, in their order.
+fn definitions() -> Vec<Definition<'static, FrameVerdict>> {
+    let of_all = |name: &str, holds: fn(&FrameVerdict) -> bool| {
+        Definition::rate(name, move |frame: &FrameVerdict| Some(holds(frame)))
+    };
+    let of_detected = |name: &str, component: fn(LineOfSightError) -> Angle, limit: Angle| {
+        Definition::rate(name, move |frame: &FrameVerdict| {
+            frame.verdict.error().map(|error| component(error).abs() < limit)
+        })
+    };
+    let of_correct = |name: &str, reduction: Reduction, component: fn(LineOfSightError) -> Angle| {
+        Definition::of(name, reduction, move |frame: &FrameVerdict| match frame.verdict {
+            Verdict::Correct { error } => Some(component(error).degrees()),
+            _ => None,
+        })
+    };
+    let ra = |error: LineOfSightError| error.ra;
+    let dec = |error: LineOfSightError| error.dec;
+    let stars = |frame: &FrameVerdict| frame.n_stars.map(f64::from);
+    vec![
+        of_all(names::HIT_RATE, |frame| frame.verdict.is_detected()),
+        of_detected(names::RA_WITHIN_1PX, ra, ONE_PIXEL),
+        of_detected(names::RA_WITHIN_2PX, ra, TWO_PIXELS),
+        of_detected(names::DEC_WITHIN_1PX, dec, ONE_PIXEL),
+        of_detected(names::DEC_WITHIN_2PX, dec, TWO_PIXELS),
+        of_all(names::CORRECT_RATE, |frame| matches!(frame.verdict, Verdict::Correct { .. })),
+        of_all(names::WRONG_RATE, |frame| matches!(frame.verdict, Verdict::Wrong { .. })),
+        of_all(names::MISS_RATE, |frame| matches!(frame.verdict, Verdict::Missed { .. })),
+        of_correct(names::RA_RMS_DEG, Reduction::Rms, ra),
+        of_correct(names::DEC_RMS_DEG, Reduction::Rms, dec),
+        of_correct(names::RA_MEAN_DEG, Reduction::Mean, ra),
+        of_correct(names::DEC_MEAN_DEG, Reduction::Mean, dec),
+        of_correct(names::RA_MEDIAN_DEG, Reduction::Median, ra),
+        of_correct(names::DEC_MEDIAN_DEG, Reduction::Median, dec),
+        Definition::of(names::STARS_MEAN, Reduction::Mean, stars),
+        of_all(names::ATTITUDE_FROM_STARS_RATE, |frame| frame.attitude_source == Some(AttitudeSource::Stars)),
+    ]
+}
+
+impl Scored {
+    /// Every frame by itself, with what it adds to each figure.
+    pub fn units(&self) -> UnitTable {
+        UnitTable::of_frames(&self.verdicts)
+    }
+}
+
+impl UnitTable {
+    /// The frames of a far-range run, from their verdicts.
+    pub fn of_frames(frames: &[FrameVerdict]) -> Self {
+        let unit = |frame: &FrameVerdict| {
+            let row = frame.row();
+            UnitVerdict {
+                number: frame.frame,
+                group: frame.group.to_string(),
+                verdict: row.verdict.to_owned(),
+                cause: row.cause.map(str::to_owned),
+            }
+        };
+        Self {
+            units: frames.iter().map(unit).collect(),
+            figures: definitions().iter().map(|figure| FigureTerms::new(figure, frames)).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::{CENTRE, COLUMNS, PIXEL, ROWS, detected_at, frame, target_with, unproject};
+    use contract::NoSolution;
+
+    fn scorer() -> Scorer<'static> {
+        Scorer::new(ScoreContext {
+            scenario: "hand-made".to_owned(),
+            seed: 42,
+            version: "0.1.0".to_owned(),
+            inject: None,
+            columns: COLUMNS,
+            rows: ROWS,
+            unproject: &unproject,
+        })
+    }
+
+    fn right_of_target(px: f64) -> Outcome {
+        detected_at(PixelPoint::new(CENTRE.x + px, CENTRE.y))
+    }
+
+    fn score(outcomes: &[Option<Outcome>]) -> Score {
+        let mut scorer = scorer();
+        for (number, outcome) in outcomes.iter().enumerate() {
+            let mut truth = frame(number as u64);
+            truth.group = format!("day {}", 1 + number / 10);
+            let objects = [ObjectTruth { frame: truth.frame, ..target_with(1000.0) }];
+            scorer.add(&truth, &objects, outcome.as_ref()).unwrap();
+        }
+        scorer.finish().score
+    }
+
+    /// Ten frames a day: 6 correct (4 of them within a pixel), 1 wrong, 2 without a target, 1 without a row.
+    fn day() -> Vec<Option<Outcome>> {
+        let none = || Some(Outcome::none(NoSolution::NoTarget));
+        let at = |px| Some(right_of_target(px));
+        vec![at(0.0), at(0.1), at(-0.5), none(), at(1.2), at(-1.2), at(30.0), none(), None, at(0.3)]
+    }
+
+    fn counts_of(score: &Score, name: &str) -> (u64, u64) {
+        (score.figures[name].count, score.figures[name].of)
+    }
+
+    /// The definition of every rate: what it counts and what it is divided by.
+    #[test]
+    fn rates_are_of_all_frames_and_accuracies_of_the_detected() {
+        let score = score(&day());
+        assert_eq!(score.frames, 10);
+        for (name, count, of) in [
+            (names::HIT_RATE, 7, 10),
+            (names::CORRECT_RATE, 6, 10),
+            (names::WRONG_RATE, 1, 10),
+            (names::MISS_RATE, 3, 10),
+            (names::RA_WITHIN_1PX, 4, 7),
+            (names::RA_WITHIN_2PX, 6, 7),
+            (names::DEC_WITHIN_1PX, 7, 7),
+            (names::RA_RMS_DEG, 6, 6),
+            // The hand-made answers tell no number of stars, and none is invented.
+            (names::STARS_MEAN, 0, 0),
+            (names::ATTITUDE_FROM_STARS_RATE, 0, 10),
+        ] {
+            assert_eq!(counts_of(&score, name), (count, of), "{name}");
+        }
+        assert_eq!(score.figures[names::CORRECT_RATE].value, Some(0.6));
+        let rms_px = ((0.01 + 0.25 + 1.44 + 1.44 + 0.09) / 6.0f64).sqrt();
+        // The arc tangent of 1.2 px differs from its argument by less than 1e-6 of it.
+        assert!((score.figures[names::RA_RMS_DEG].value.unwrap() - rms_px * 0.024).abs() < 1e-7);
+    }
+
+    #[test]
+    fn every_frame_is_counted_exactly_once() {
+        let outcomes: Vec<_> = day().into_iter().cycle().take(37).collect();
+        let score = score(&outcomes);
+        assert_eq!(score.frames, 37);
+        assert_eq!(score.groups.values().map(|group| group.frames).sum::<u64>(), 37);
+        let detected = score.figures[names::HIT_RATE].count;
+        assert_eq!(score.misses.values().sum::<u64>() + detected, 37);
+        assert_eq!(score.wrong.values().sum::<u64>(), score.figures[names::WRONG_RATE].count);
+        assert_eq!(score.wrong_taken.values().sum::<u64>(), score.figures[names::WRONG_RATE].count);
+        for (group, own) in &score.groups {
+            let detected = own.figures[names::HIT_RATE].count;
+            assert_eq!(own.misses.values().sum::<u64>() + detected, own.frames, "{group}");
+        }
+    }
+
+    #[test]
+    fn an_error_of_exactly_one_pixel_is_not_within_it() {
+        let with_error = |ra: Angle| {
+            let error = LineOfSightError { ra, dec: Angle::ZERO };
+            let verdict = FrameVerdict {
+                frame: 0,
+                group: "day 1".into(),
+                verdict: Verdict::Correct { error },
+                n_stars: None,
+                attitude_source: None,
+            };
+            figures(&[&[&verdict]])[names::RA_WITHIN_1PX].count
+        };
+        assert_eq!(with_error(Angle::from_degrees(0.024)), 0);
+        assert_eq!(with_error(Angle::from_degrees(-0.024)), 0);
+        assert_eq!(with_error(Angle::from_degrees(0.023_999_999)), 1);
+    }
+
+    #[test]
+    fn saboteur_a_shift_of_half_a_pixel_shows_in_the_bias_and_in_the_accuracy() {
+        let shifted = |shift: f64| {
+            let outcomes: Vec<_> =
+                (0..200).map(|i| Some(right_of_target(0.7 * f64::from(i % 3 - 1) + shift))).collect();
+            score(&outcomes)
+        };
+        let (good, bad) = (shifted(0.0), shifted(0.5));
+        let bias = |score: &Score| score.figures[names::RA_MEAN_DEG];
+        assert!((bias(&bad).value.unwrap() - bias(&good).value.unwrap() - 0.012).abs() < 1e-4);
+        assert!(bias(&bad).low.unwrap() > 0.0 && bias(&good).low.unwrap() < 0.0);
+        let within = |score: &Score| score.figures[names::RA_WITHIN_1PX].value.unwrap();
+        assert!(within(&good) == 1.0 && within(&bad) < 0.7);
+    }
+
+    #[test]
+    fn a_frame_twice_or_out_of_order_is_refused_and_not_counted() {
+        let mut scorer = scorer();
+        scorer.add(&frame(4), &[], None).unwrap();
+        assert_eq!(
+            scorer.add(&frame(4), &[], None).unwrap_err(),
+            ScoreError::Order { previous: 4, frame: 4 }
+        );
+        assert_eq!(
+            scorer.add(&frame(5), &[target_with(1.0)], None).unwrap_err(),
+            ScoreError::ForeignObject { frame: 5, object: 0 }
+        );
+        assert_eq!(scorer.finish().score.frames, 1);
+    }
+
+    #[test]
+    fn the_json_has_the_documented_shape_and_comes_back() {
+        let score = score(&day());
+        let text = serde_json::to_string(&score).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        for key in ["scenario", "seed", "version", "frames", "figures", "groups", "misses", "wrong"] {
+            assert!(json.get(key).is_some(), "{key}");
+        }
+        assert_eq!(json["misses"], serde_json::json!({"not_reported": 1, "unexplained": 2}));
+        assert_eq!(json["groups"]["day 1"]["frames"], 10);
+        assert_eq!(json["groups"]["day 1"]["figures"]["hit_rate"]["count"], 7);
+        assert_eq!(serde_json::from_str::<Score>(&text).unwrap(), score);
+    }
+
+    #[test]
+    fn groups_keep_the_order_of_their_frames() {
+        let outcomes: Vec<_> = day().into_iter().cycle().take(110).collect();
+        let score = score(&outcomes);
+        assert_eq!(score.groups.keys().next_back().unwrap(), "day 11");
+        let text = serde_json::to_string(&score).unwrap();
+        assert_eq!(serde_json::from_str::<Score>(&text).unwrap().groups.keys().nth(1).unwrap(), "day 2");
+    }
+
+    #[test]
+    fn a_run_of_nothing_but_missing_rows_has_no_nan() {
+        let text = serde_json::to_string(&score(&[None, None])).unwrap();
+        // serde_json writes null for a NaN: read it back and look for a value counted over something.
+        let score: Score = serde_json::from_str(&text).unwrap();
+        assert_eq!(score.figures[names::HIT_RATE].value, Some(0.0));
+        assert_eq!(score.figures[names::RA_WITHIN_1PX].value, None);
+        assert!(score.figures.values().all(|figure| figure.value.is_some() == (figure.of > 0)));
+    }
+
+    #[test]
+    fn every_score_has_the_figures_of_the_list_in_its_order() {
+        assert!(figure_names().iter().eq(score(&day()).figures.keys()) && figure_names().len() == 16);
+    }
+
+    #[test]
+    fn frames_of_a_group_share_its_name_and_no_frame_has_that_of_another() {
+        let mut scorer = scorer();
+        for (number, group) in ["day 1", "day 1", "day 2", "day 1"].into_iter().enumerate() {
+            let truth = FrameTruth { group: group.to_owned(), ..frame(number as u64) };
+            scorer.add(&truth, &[], None).unwrap();
+        }
+        let groups: Vec<_> = scorer.finish().verdicts.into_iter().map(|verdict| verdict.group).collect();
+        assert_eq!(groups, ["day 1", "day 1", "day 2", "day 1"].map(Arc::from));
+        assert!(Arc::ptr_eq(&groups[0], &groups[1]));
+    }
+
+    #[test]
+    fn units_are_the_frames_and_add_up_to_the_figures() {
+        let mut scorer = scorer();
+        for (number, outcome) in day().iter().enumerate() {
+            let truth = frame(number as u64);
+            let objects = [ObjectTruth { frame: truth.frame, ..target_with(1000.0) }];
+            scorer.add(&truth, &objects, outcome.as_ref()).unwrap();
+        }
+        let scored = scorer.finish();
+        let table = scored.units();
+        assert_eq!(
+            table.units.iter().map(|unit| unit.number).collect::<Vec<_>>(),
+            (0..10).collect::<Vec<_>>()
+        );
+        assert_eq!((table.units[6].group.as_str(), table.units[6].verdict.as_str()), ("day 1", "wrong"));
+        assert_eq!(table.units[8].cause.as_deref(), Some("not_reported"));
+        assert_eq!(table.figures.len(), scored.score.figures.len());
+    }
+
+    /// The pixel of the hand-made camera is the paper's.
+    #[test]
+    fn the_hand_made_pixel_is_one_pixel() {
+        assert!((PIXEL - ONE_PIXEL.radians()).abs() < 1e-15);
+    }
+}

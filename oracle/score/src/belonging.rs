@@ -1,0 +1,131 @@
+//! Which objects of the truth a cluster of bright pixels holds.
+
+use contract::PixelPoint;
+use sim::truth::{ObjectKind, ObjectTruth, Visibility};
+
+/// Least reach of an object, px: the image of a point spreads over its neighbours, and the centre of a faint one
+/// is measured no better.
+const MIN_REACH_PX: f64 = 1.5;
+
+/// Share of an object's radius within which the brightness centre of its image lies, whatever part of it is cut away:
+/// the centre of half a disk of radius R is 4R/(3π) = 0.42 R from the disk's.
+const CENTRE_SHARE: f64 = 0.5;
+
+/// How far the visible image of an object reaches from its centre: max(`radius_px`, 1.5), px; along its columns by `bloom_px`
+/// farther.
+fn reach_px(object: &ObjectTruth) -> f64 {
+    // `max` drops a NaN.
+    object.radius_px.max(MIN_REACH_PX)
+}
+
+/// Distance of two places, px, from which along the columns up to `bloom_px` is forgiven: that of a place from a line.
+fn distance_px(a: PixelPoint, b: PixelPoint, bloom_px: f64) -> f64 {
+    // `max` drops a NaN.
+    libm::hypot(a.x - b.x, ((a.y - b.y).abs() - bloom_px.max(0.0)).max(0.0))
+}
+
+/// The electrons that arrive on the ground: those outside the transmitted regions cannot be chosen.
+pub(super) fn transmitted_electrons(object: &ObjectTruth) -> f64 {
+    object.electrons * (1.0 - object.cut)
+}
+
+/// Whether a cluster with its centre at `position` holds the object: it lies within max(`radius_px`/2, 1.5) px of its centre,
+/// or, where wells overflowed, of the line that reaches `bloom_px`/2 from the centre up and down its column.
+pub(super) fn holds(position: PixelPoint, object: &ObjectTruth) -> bool {
+    distance_px(position, object.position, CENTRE_SHARE * object.bloom_px)
+        <= (CENTRE_SHARE * object.radius_px).max(MIN_REACH_PX)
+}
+
+/// Whether a cluster with its centre at `position` lies on the visible image of the object: within its reach.
+pub(super) fn covers(position: PixelPoint, object: &ObjectTruth) -> bool {
+    distance_px(position, object.position, object.bloom_px) <= reach_px(object)
+}
+
+/// The object that a cluster with its centre at `position` belongs to: of those that it holds, the one with the most
+/// transmitted electrons; `None` when it holds none.
+pub fn belonging_to(position: PixelPoint, objects: &[ObjectTruth]) -> Option<&ObjectTruth> {
+    brightest(objects.iter().filter(|object| holds(position, object) && transmitted_electrons(object) > 0.0))
+}
+
+/// Whether the images of two objects touch, so that they may be one cluster.
+pub(super) fn touch(a: &ObjectTruth, b: &ObjectTruth) -> bool {
+    distance_px(a.position, b.position, a.bloom_px + b.bloom_px) <= reach_px(a) + reach_px(b)
+}
+
+/// The target of a frame, if the truth has one.
+pub(super) fn target(objects: &[ObjectTruth]) -> Option<&ObjectTruth> {
+    objects.iter().find(|object| object.kind == ObjectKind::Target)
+}
+
+/// The visible thing that the target's image may have merged with: of all other objects that touch it and are not
+/// invisible, the one with the most transmitted electrons.
+pub(super) fn merged_with<'a>(target: &ObjectTruth, objects: &'a [ObjectTruth]) -> Option<&'a ObjectTruth> {
+    brightest(objects.iter().filter(|other| {
+        other.kind != ObjectKind::Target
+            && Visibility::of_snr(other.snr) != Visibility::Invisible
+            && transmitted_electrons(other) > 0.0
+            && touch(target, other)
+    }))
+}
+
+/// The object with the most transmitted electrons; the first of equals.
+pub(super) fn brightest<'a>(objects: impl Iterator<Item = &'a ObjectTruth>) -> Option<&'a ObjectTruth> {
+    objects.reduce(
+        |best, other| {
+            if transmitted_electrons(other) > transmitted_electrons(best) { other } else { best }
+        },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::{CENTRE, star_at, target_with};
+
+    fn beside(x_px: f64, y_px: f64) -> PixelPoint {
+        PixelPoint::new(CENTRE.x + x_px, CENTRE.y + y_px)
+    }
+
+    #[test]
+    fn what_regions_cut_away_entirely_is_nobodys() {
+        let cut = ObjectTruth { cut: 1.0, ..star_at(1, CENTRE, 1000.0) };
+        assert_eq!(belonging_to(CENTRE, std::slice::from_ref(&cut)), None);
+        assert_eq!(merged_with(&target_with(100.0), &[cut]), None);
+    }
+
+    #[test]
+    fn of_equals_the_first_is_the_brightest() {
+        let stars = [1, 2, 3].map(|id| star_at(id, CENTRE, if id == 1 { 10.0 } else { 20.0 }));
+        assert_eq!(brightest(stars.iter()).map(|star| star.id), Some(2));
+    }
+
+    /// A star that bleeds 40 px up and down from the centre.
+    fn bleeding() -> ObjectTruth {
+        ObjectTruth { radius_px: 6.0, bloom_px: 34.0, ..star_at(3, CENTRE, 1e6) }
+    }
+
+    #[test]
+    fn what_stands_beside_a_long_column_does_not_belong_to_it() {
+        for (x_px, y_px, belongs) in
+            [(0.0, 19.9, true), (2.9, -17.0, true), (0.0, 20.1, false), (3.1, 0.0, false), (8.0, 10.0, false)]
+        {
+            let place = beside(x_px, y_px);
+            assert_eq!(belonging_to(place, &[bleeding()]).is_some(), belongs, "{x_px}, {y_px}");
+            let neighbour = star_at(4, place, 500.0);
+            assert_eq!(
+                belonging_to(place, &[bleeding(), neighbour]).unwrap().id,
+                if belongs { 3 } else { 4 }
+            );
+        }
+    }
+
+    #[test]
+    fn a_column_touches_what_stands_above_it_and_not_what_stands_beside_it() {
+        let at = |x_px: f64, y_px: f64| ObjectTruth { position: beside(x_px, y_px), ..target_with(500.0) };
+        assert!(touch(&at(0.0, 41.4), &bleeding()) && !touch(&at(0.0, 41.6), &bleeding()));
+        assert!(touch(&at(-7.4, 30.0), &bleeding()) && !touch(&at(8.0, 30.0), &bleeding()));
+        // Two columns side by side whose ends meet.
+        let above = ObjectTruth { position: beside(5.0, -78.0), ..bleeding() };
+        assert!(touch(&above, &bleeding()) && covers(beside(5.0, -40.0), &above));
+    }
+}

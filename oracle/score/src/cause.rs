@@ -1,0 +1,373 @@
+//! Why the target was not taken: every miss and every wrong answer has exactly one cause.
+
+use contract::{Cluster, Label, NoSolution, Outcome, Solution};
+use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
+
+use super::belonging::{covers, holds, merged_with, target};
+
+/// Why the target was not taken. When several hold, the first in this order is the cause:
+///
+/// 1. there is no row ([`Cause::NotReported`]): nothing else is known about the answer;
+/// 2. what no pipeline could have helped, by the truth alone: [`Cause::OutsideField`], [`Cause::InEclipse`],
+///    [`Cause::TooFaint`], [`Cause::CutByRoi`];
+/// 3. the reason that the pipeline itself gives: [`Cause::PipelineFailed`], [`Cause::SaturatedFrame`],
+///    [`Cause::NoPreviousFrame`], and an empty frame as [`Cause::BelowThreshold`];
+/// 4. when the pipeline tells its clusters, the label of the one nearest to the target and within its reach of
+///    max(`radius_px`, 1.5) px, along its columns by `bloom_px` farther; where there is none, a cluster at a star, planet, the Moon, a hot pixel or track that touches the target
+///    (distance up to the sum of the reaches), and where that is missing too, [`Cause::BelowThreshold`];
+/// 5. by the truth alone, the visible star, planet, Moon, hot pixel or track that touches the target;
+/// 6. [`Cause::Unexplained`].
+///
+/// A wrong answer whose chosen cluster holds the target but more light of a star, planet, the Moon, a hot pixel or track was merged with it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Cause {
+    /// The measurements have no row for the frame.
+    NotReported,
+    /// The centre of the target's image is off the detector, or the target is behind the camera.
+    OutsideField,
+    /// The Earth's shadow is on the target, wholly or in part, and it is not detectable.
+    InEclipse,
+    /// In sunlight, but not detectable: its signal-to-noise ratio is below 5.
+    TooFaint,
+    /// More than half of its electrons lie outside the transmitted regions.
+    CutByRoi,
+    /// The pipeline failed, or its answer is no direction.
+    PipelineFailed,
+    /// So much of the frame is saturated that the pipeline gave up.
+    SaturatedFrame,
+    /// The pipeline had no previous frame to measure motion against.
+    NoPreviousFrame,
+    /// Its image touches a visible star's: one cluster, which was taken for the star or for another place.
+    MergedWithStar,
+    /// Its image touches a visible planet's: one cluster, which was taken for another place.
+    MergedWithPlanet,
+    /// Its image touches the visible Moon's: one cluster, which was taken for another place.
+    MergedWithMoon,
+    /// Its cluster was labelled as a star though no visible star touches it: a wrong identification.
+    TakenForStar,
+    /// Its cluster was labelled as a hotspot, or it touches a hot pixel.
+    TakenForHotspot,
+    /// The track of a charged particle touches it.
+    MergedWithCosmicRay,
+    /// Its cluster was a candidate, and another one won.
+    LostMotionTest,
+    /// Its cluster was not linked to the previous frame.
+    NotLinked,
+    /// It is detectable, yet the pipeline found no cluster where it is.
+    BelowThreshold,
+    /// None of the above.
+    Unexplained,
+}
+
+impl Cause {
+    /// Every cause, in the order of precedence.
+    pub const ALL: [Self; 18] = [
+        Self::NotReported,
+        Self::OutsideField,
+        Self::InEclipse,
+        Self::TooFaint,
+        Self::CutByRoi,
+        Self::PipelineFailed,
+        Self::SaturatedFrame,
+        Self::NoPreviousFrame,
+        Self::MergedWithStar,
+        Self::MergedWithPlanet,
+        Self::MergedWithMoon,
+        Self::TakenForStar,
+        Self::TakenForHotspot,
+        Self::MergedWithCosmicRay,
+        Self::LostMotionTest,
+        Self::NotLinked,
+        Self::BelowThreshold,
+        Self::Unexplained,
+    ];
+
+    /// The word used in files.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::NotReported => "not_reported",
+            Self::OutsideField => "outside_field",
+            Self::InEclipse => "in_eclipse",
+            Self::TooFaint => "too_faint",
+            Self::CutByRoi => "cut_by_roi",
+            Self::PipelineFailed => "pipeline_failed",
+            Self::SaturatedFrame => "saturated_frame",
+            Self::NoPreviousFrame => "no_previous_frame",
+            Self::MergedWithStar => "merged_with_star",
+            Self::MergedWithPlanet => "merged_with_planet",
+            Self::MergedWithMoon => "merged_with_moon",
+            Self::TakenForStar => "taken_for_star",
+            Self::TakenForHotspot => "taken_for_hotspot",
+            Self::MergedWithCosmicRay => "merged_with_cosmic_ray",
+            Self::LostMotionTest => "lost_motion_test",
+            Self::NotLinked => "not_linked",
+            Self::BelowThreshold => "below_threshold",
+            Self::Unexplained => "unexplained",
+        }
+    }
+
+    /// Reads [`Cause::code`].
+    pub fn parse(code: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|cause| cause.code() == code)
+    }
+
+    /// Why the target was lost in an image that it shares with a brighter object of this kind.
+    pub(super) fn of_outshining(kind: ObjectKind) -> Self {
+        match kind {
+            ObjectKind::Star => Self::MergedWithStar,
+            ObjectKind::Planet => Self::MergedWithPlanet,
+            ObjectKind::Moon => Self::MergedWithMoon,
+            ObjectKind::HotPixel => Self::TakenForHotspot,
+            ObjectKind::CosmicRay => Self::MergedWithCosmicRay,
+            ObjectKind::Target => Self::Unexplained,
+        }
+    }
+}
+
+/// Size of the detector, px.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Detector {
+    pub columns: usize,
+    pub rows: usize,
+}
+
+/// The cause, by the precedence told at [`Cause`].
+pub(super) fn cause(
+    truth: &FrameTruth,
+    objects: &[ObjectTruth],
+    outcome: Option<&Outcome>,
+    detector: Detector,
+) -> Cause {
+    let Some(outcome) = outcome else { return Cause::NotReported };
+    let target = target(objects);
+    let neighbour = target.and_then(|target| merged_with(target, objects));
+    beyond_help(truth, target, detector)
+        .or_else(|| own_word(&outcome.solution))
+        .or_else(|| by_labels(target?, neighbour, &outcome.clusters))
+        .or_else(|| neighbour.map(|other| Cause::of_outshining(other.kind)))
+        .unwrap_or(Cause::Unexplained)
+}
+
+/// What no pipeline could have helped.
+fn beyond_help(truth: &FrameTruth, target: Option<&ObjectTruth>, detector: Detector) -> Option<Cause> {
+    let in_field = truth.target_position.is_some_and(|at| at.is_on_detector(detector.columns, detector.rows));
+    if !in_field {
+        Some(Cause::OutsideField)
+    } else if truth.target_visibility != Visibility::Detectable {
+        Some(if truth.shadow == Shadow::Sunlit { Cause::TooFaint } else { Cause::InEclipse })
+    } else if target.is_some_and(|target| target.cut > 0.5) {
+        Some(Cause::CutByRoi)
+    } else {
+        None
+    }
+}
+
+/// The reason that the pipeline gives, where it is a reason for the whole frame.
+fn own_word(solution: &Solution) -> Option<Cause> {
+    match solution {
+        Solution::NoSolution(NoSolution::Failed(_)) => Some(Cause::PipelineFailed),
+        Solution::NoSolution(NoSolution::SaturatedFrame) => Some(Cause::SaturatedFrame),
+        Solution::NoSolution(NoSolution::NoPreviousFrame) => Some(Cause::NoPreviousFrame),
+        Solution::NoSolution(NoSolution::EmptyFrame) => Some(Cause::BelowThreshold),
+        Solution::NoSolution(NoSolution::NoTarget) | Solution::Detected(_) => None,
+    }
+}
+
+/// The label of the cluster at the target's place; `None` when the clusters are not told or say nothing.
+fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[Cluster]) -> Option<Cause> {
+    if clusters.is_empty() {
+        return None;
+    }
+    let distance = |cluster: &Cluster| cluster.position.distance(target.position);
+    let nearest = clusters
+        .iter()
+        .filter(|cluster| covers(cluster.position, target))
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    match nearest.map(|cluster| cluster.label) {
+        Some(Label::Star(_)) => Some(match neighbour {
+            Some(other) if matches!(other.kind, ObjectKind::Star | ObjectKind::Planet | ObjectKind::Moon) => {
+                Cause::of_outshining(other.kind)
+            }
+            _ => Cause::TakenForStar,
+        }),
+        Some(Label::Hotspot) => Some(Cause::TakenForHotspot),
+        Some(Label::Candidate) => Some(Cause::LostMotionTest),
+        Some(Label::Unlinked) => Some(Cause::NotLinked),
+        // The pipeline says that it took this cluster, and the verdict that it did not: left to the truth.
+        Some(Label::Target) => None,
+        // A brighter neighbour draws the centre of a common cluster out of the target's reach.
+        None => Some(
+            neighbour
+                .filter(|other| clusters.iter().any(|cluster| holds(cluster.position, other)))
+                .map_or(Cause::BelowThreshold, |other| Cause::of_outshining(other.kind)),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::{
+        CENTRE, COLUMNS, ROWS, cluster, cosmic_ray_at, detected_at, frame, hot_pixel_at, star_at, target_with,
+    };
+    use contract::PixelPoint;
+
+    const DETECTOR: Detector = Detector { columns: COLUMNS, rows: ROWS };
+
+    /// The cause for a detectable target in sunlight, alone but for `others`.
+    fn of(outcome: &Outcome, others: &[ObjectTruth]) -> Cause {
+        let objects: Vec<_> = [target_with(1000.0)].into_iter().chain(others.iter().cloned()).collect();
+        cause(&frame(0), &objects, Some(outcome), DETECTOR)
+    }
+
+    fn labelled(label: Label) -> Outcome {
+        Outcome { clusters: vec![cluster(CENTRE, label)], ..Outcome::none(NoSolution::NoTarget) }
+    }
+
+    fn no_target() -> Outcome {
+        Outcome::none(NoSolution::NoTarget)
+    }
+
+    fn right_of_target(px: f64) -> PixelPoint {
+        PixelPoint::new(CENTRE.x + px, CENTRE.y)
+    }
+
+    #[test]
+    fn a_hot_pixel_beside_it_does_not_excuse_a_target_that_is_called_a_star() {
+        let hot_pixel = hot_pixel_at(3, right_of_target(1.0), 5000.0);
+        assert_eq!(of(&labelled(Label::Star(7)), &[hot_pixel]), Cause::TakenForStar);
+    }
+
+    #[test]
+    fn a_frame_without_a_row_is_not_reported() {
+        assert_eq!(cause(&frame(0), &[target_with(1000.0)], None, DETECTOR), Cause::NotReported);
+    }
+
+    #[test]
+    fn a_target_off_the_detector_or_behind_the_camera_is_outside_the_field() {
+        for position in [None, Some(PixelPoint::new(-0.6, 10.0)), Some(PixelPoint::new(10.0, ROWS as f64))] {
+            let truth = FrameTruth { target_position: position, ..frame(0) };
+            assert_eq!(cause(&truth, &[], Some(&no_target()), DETECTOR), Cause::OutsideField);
+        }
+    }
+
+    #[test]
+    fn a_dark_target_is_in_eclipse_and_a_faint_one_in_sunlight_is_too_faint() {
+        for (shadow, visibility, expected) in [
+            (Shadow::Umbra, Visibility::Invisible, Cause::InEclipse),
+            (Shadow::Penumbra, Visibility::Ambiguous, Cause::InEclipse),
+            (Shadow::Penumbra, Visibility::Detectable, Cause::LostMotionTest),
+            (Shadow::Sunlit, Visibility::Invisible, Cause::TooFaint),
+            (Shadow::Sunlit, Visibility::Ambiguous, Cause::TooFaint),
+        ] {
+            let truth = FrameTruth { shadow, target_visibility: visibility, ..frame(0) };
+            let got = cause(&truth, &[target_with(10.0)], Some(&labelled(Label::Candidate)), DETECTOR);
+            assert_eq!(got, expected, "{shadow:?} {visibility:?}");
+        }
+    }
+
+    #[test]
+    fn a_target_mostly_outside_the_windows_is_cut() {
+        for (cut, expected) in [(0.6, Cause::CutByRoi), (0.5, Cause::Unexplained), (0.4, Cause::Unexplained)]
+        {
+            let target = ObjectTruth { cut, ..target_with(1000.0) };
+            assert_eq!(cause(&frame(0), &[target], Some(&no_target()), DETECTOR), expected);
+        }
+    }
+
+    #[test]
+    fn the_pipelines_own_reason_is_heard() {
+        for (reason, expected) in [
+            (NoSolution::Failed("out of memory".into()), Cause::PipelineFailed),
+            (NoSolution::SaturatedFrame, Cause::SaturatedFrame),
+            (NoSolution::NoPreviousFrame, Cause::NoPreviousFrame),
+            (NoSolution::EmptyFrame, Cause::BelowThreshold),
+            (NoSolution::NoTarget, Cause::Unexplained),
+        ] {
+            assert_eq!(of(&Outcome::none(reason), &[]), expected);
+        }
+    }
+
+    #[test]
+    fn the_label_of_the_targets_cluster_tells() {
+        for (label, expected) in [
+            (Label::Star(5), Cause::TakenForStar),
+            (Label::Hotspot, Cause::TakenForHotspot),
+            (Label::Candidate, Cause::LostMotionTest),
+            (Label::Unlinked, Cause::NotLinked),
+            (Label::Target, Cause::Unexplained),
+        ] {
+            assert_eq!(of(&labelled(label), &[]), expected, "{label:?}");
+        }
+    }
+
+    #[test]
+    fn a_star_label_is_a_merger_only_with_a_visible_star_that_touches() {
+        let near = star_at(5, right_of_target(2.5), 800.0);
+        let invisible = ObjectTruth { snr: 0.5, ..near.clone() };
+        let apart = star_at(5, right_of_target(3.5), 800.0);
+        assert_eq!(of(&labelled(Label::Star(5)), &[near]), Cause::MergedWithStar);
+        assert_eq!(of(&labelled(Label::Star(5)), &[invisible]), Cause::TakenForStar);
+        assert_eq!(of(&labelled(Label::Star(5)), &[apart]), Cause::TakenForStar);
+    }
+
+    #[test]
+    fn a_common_cluster_drawn_to_a_brighter_star_is_still_a_merger() {
+        let star = star_at(5, right_of_target(2.5), 50_000.0);
+        let clusters = vec![cluster(right_of_target(2.4), Label::Star(5))];
+        assert_eq!(of(&Outcome { clusters, ..no_target() }, &[star]), Cause::MergedWithStar);
+    }
+
+    #[test]
+    fn no_cluster_at_a_detectable_target_is_the_pipelines_threshold() {
+        let clusters = vec![cluster(right_of_target(40.0), Label::Candidate)];
+        assert_eq!(of(&Outcome { clusters, ..no_target() }, &[]), Cause::BelowThreshold);
+    }
+
+    #[test]
+    fn without_clusters_the_truth_tells() {
+        let star = star_at(5, right_of_target(2.0), 5000.0);
+        let hot = hot_pixel_at(9, right_of_target(1.0), 400.0);
+        assert_eq!(of(&no_target(), std::slice::from_ref(&star)), Cause::MergedWithStar);
+        assert_eq!(of(&no_target(), std::slice::from_ref(&hot)), Cause::TakenForHotspot);
+        assert_eq!(of(&no_target(), &[hot, star]), Cause::MergedWithStar);
+        let track = cosmic_ray_at(0, right_of_target(1.0), 900.0);
+        assert_eq!(of(&no_target(), &[track]), Cause::MergedWithCosmicRay);
+    }
+
+    #[test]
+    fn a_planet_or_the_moon_at_the_target_is_a_merger_of_its_own() {
+        for (kind, cause) in
+            [(ObjectKind::Planet, Cause::MergedWithPlanet), (ObjectKind::Moon, Cause::MergedWithMoon)]
+        {
+            let other = ObjectTruth { kind, ..star_at(5, right_of_target(2.0), 5000.0) };
+            assert_eq!(of(&no_target(), std::slice::from_ref(&other)), cause);
+            assert_eq!(of(&labelled(Label::Star(5)), &[other]), cause);
+        }
+    }
+
+    #[test]
+    fn a_wrong_answer_has_the_cause_of_the_targets_own_cluster() {
+        let elsewhere = right_of_target(40.0);
+        let clusters = vec![cluster(elsewhere, Label::Target), cluster(CENTRE, Label::Candidate)];
+        let outcome = Outcome { clusters, ..detected_at(elsewhere) };
+        assert_eq!(of(&outcome, &[]), Cause::LostMotionTest);
+        assert_eq!(of(&detected_at(elsewhere), &[]), Cause::Unexplained);
+    }
+
+    #[test]
+    fn what_no_pipeline_could_help_comes_before_its_own_reason() {
+        let truth = FrameTruth { target_visibility: Visibility::Invisible, ..frame(0) };
+        let failed = Outcome::none(NoSolution::Failed("no light".into()));
+        assert_eq!(cause(&truth, &[target_with(1.0)], Some(&failed), DETECTOR), Cause::TooFaint);
+    }
+
+    #[test]
+    fn codes_come_back_and_the_list_is_complete_and_ordered() {
+        for cause in Cause::ALL {
+            assert_eq!(Cause::parse(cause.code()), Some(cause));
+        }
+        assert!(Cause::ALL.is_sorted_by(|a, b| a < b));
+        assert_eq!(Cause::Unexplained as usize + 1, Cause::ALL.len());
+    }
+}

@@ -1,0 +1,285 @@
+//! From fields to figures.
+
+use std::collections::BTreeMap;
+
+use contract::docking::{DockingOutcome, DockingSetup, Motion, MotionReport};
+
+use super::bins::{bin, group_name, lens_names};
+use super::cause::MissCause;
+use super::consistency::{nees, within_3_sigma};
+use super::errors::{PoseErrors, phi_error};
+use super::figures::definitions;
+use super::portions::{MotionVerdict, PortionVerdict};
+use super::report::{DockingGroup, DockingScore, names};
+use super::sight::Sights;
+use super::truth::{TrueField, View};
+use super::verdict::{Gross, Verdict, gross};
+use crate::accumulate::counts;
+use crate::{Figure, FigureTerms, ScoreError, UnitTable, UnitVerdict};
+
+/// What the score of a docking run needs besides the fields.
+#[derive(Debug, Clone)]
+pub struct DockingContext {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Its seed.
+    pub seed: u64,
+    /// Version of Boresight.
+    pub version: String,
+    /// What drew the scene: `fast` or `mitsuba`.
+    pub renderer: String,
+    /// The true cameras and the target's true dimensions.
+    pub setup: DockingSetup,
+}
+
+/// What the score keeps of a field.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FieldVerdict {
+    /// Number of the field.
+    field: u64,
+    /// Bin of the true range, and camera.
+    group: (usize, usize),
+    /// True ρ, m.
+    pub(super) range_m: f64,
+    /// Whether the target is resolved and wholly in the image.
+    pub(super) is_clear: bool,
+    /// Of a clear field, from a second after the first measured one: whether the last report is at most a second old.
+    pub(super) is_renewed: Option<bool>,
+    /// Whether all six parameters were given.
+    pub(super) is_measured: bool,
+    /// Whether all six can be asked for: the target is resolved, or they were given all the same.
+    pub(super) is_asked: bool,
+    pub(super) verdict: Verdict,
+    /// Of a success: NEES over its dimension.
+    pub(super) nees: Option<f64>,
+    /// Of a success: whether each parameter is within three standard deviations.
+    pub(super) within: Option<[Option<bool>; 6]>,
+    /// Errors of the paper's pose, where there is one.
+    pub(super) paper: Option<PoseErrors>,
+    pub(super) paper_is_wrong: bool,
+    /// The report, where the field ends a portion.
+    pub(super) portion: Option<PortionVerdict>,
+}
+
+/// Scores the fields of a docking run one after the other.
+pub struct DockingScorer {
+    context: DockingContext,
+    sights: Sights,
+    verdicts: Vec<FieldVerdict>,
+    last_field: Option<u64>,
+    portions: PortionClock,
+}
+
+/// Where the running portion began and the last one ended.
+#[derive(Debug, Default)]
+struct PortionClock {
+    /// Whether the best estimator gave a motion, and whether the paper's did.
+    has_best: bool,
+    has_paper: bool,
+    /// Fields since the portion's first measured one, that one included; 0: there is none yet.
+    fields: u64,
+    /// When a field was first measured, s.
+    begin_s: Option<f64>,
+    last_report_s: Option<f64>,
+}
+
+/// Longest time between two reports, s (docking paper, section 2), and a microsecond for the rounding of times.
+const RENEWAL_S: f64 = 1.0 + 1e-6;
+
+impl PortionClock {
+    /// Whether the last report is at most a second old; `None` until a second after the first measured field.
+    fn is_renewed(&self, time_s: f64) -> Option<bool> {
+        let renewed = |since_s: f64| time_s - since_s <= RENEWAL_S;
+        self.begin_s.filter(|begin_s| !renewed(*begin_s))?;
+        Some(self.last_report_s.is_some_and(renewed))
+    }
+}
+
+impl DockingScorer {
+    /// A scorer that has seen no field.
+    pub fn new(context: DockingContext) -> Self {
+        let sights = Sights::new(&context.setup);
+        let portions = PortionClock::default();
+        Self { context, sights, verdicts: Vec::new(), last_field: None, portions }
+    }
+
+    /// Judges the next field; `outcome` is `None` when the measurements have no row for it.
+    ///
+    /// # Errors
+    /// [`ScoreError::Order`] unless the number is larger than the one before. The field is then not counted.
+    pub fn add(&mut self, truth: &TrueField, outcome: Option<&DockingOutcome>) -> Result<(), ScoreError> {
+        self.add_with_report(truth, outcome, outcome.and_then(|outcome| outcome.motion.as_ref()))
+    }
+
+    /// [`DockingScorer::add`] with a report that stands apart from the answer, as in files.
+    ///
+    /// # Errors
+    /// As [`DockingScorer::add`].
+    pub fn add_with_report(
+        &mut self,
+        truth: &TrueField,
+        outcome: Option<&DockingOutcome>,
+        report: Option<&MotionReport>,
+    ) -> Result<(), ScoreError> {
+        if let Some(previous) = self.last_field.filter(|previous| *previous >= truth.field) {
+            return Err(ScoreError::Order { previous, frame: truth.field });
+        }
+        self.last_field = Some(truth.field);
+        let verdict = Verdict::of(&self.sights, truth, outcome);
+        let measurement = outcome.and_then(DockingOutcome::measurement);
+        let success = measurement.filter(|_| matches!(verdict, Verdict::Success { .. }));
+        let error = success.map(|measurement| {
+            let (best, truth) = (&measurement.best.pose, &truth.pose);
+            let (d, phi) = (best.position_m - truth.position_m, phi_error(best, truth));
+            (nalgebra::Vector6::new(d.x, d.y, d.z, phi.x, phi.y, phi.z), &measurement.best.covariance)
+        });
+        let paper = measurement
+            .and_then(|measurement| measurement.paper)
+            .map(|pose| PoseErrors::new(&pose, &truth.pose));
+        let range_m = truth.pose.position_m.norm();
+        let portion = self.portion(truth, measurement.is_some(), report);
+        let is_resolved = self.sights.resolves(truth.camera, &truth.pose);
+        let is_clear = truth.view == View::Whole && is_resolved;
+        self.verdicts.push(FieldVerdict {
+            field: truth.field,
+            group: (bin(range_m), truth.camera),
+            range_m,
+            is_clear,
+            is_renewed: self.portions.is_renewed(truth.time_s).filter(|_| is_clear),
+            is_measured: measurement.is_some(),
+            is_asked: is_resolved || measurement.is_some(),
+            verdict,
+            nees: error.and_then(|(error, covariance)| nees(&error, covariance)),
+            within: error.map(|(error, covariance)| {
+                std::array::from_fn(|i| within_3_sigma(error[i], covariance[(i, i)].sqrt()))
+            }),
+            paper,
+            paper_is_wrong: paper.is_some_and(|errors| gross(&self.sights, truth, &errors).is_some()),
+            portion,
+        });
+        Ok(())
+    }
+
+    fn portion(
+        &mut self,
+        truth: &TrueField,
+        is_measured: bool,
+        report: Option<&MotionReport>,
+    ) -> Option<PortionVerdict> {
+        let clock = &mut self.portions;
+        if clock.fields > 0 || is_measured {
+            clock.fields += 1;
+        }
+        if is_measured {
+            clock.begin_s.get_or_insert(truth.time_s);
+        }
+        let report = report?;
+        let sights = &self.sights;
+        let judge = |motion: Option<&Motion>, has_one: &mut bool| {
+            let is_led = *has_one;
+            *has_one |= motion.is_some();
+            motion.map(|motion| MotionVerdict::of(sights, truth, motion, is_led))
+        };
+        let verdict = PortionVerdict {
+            best: judge(report.best.as_ref(), &mut clock.has_best),
+            paper: judge(report.paper.as_ref(), &mut clock.has_paper),
+            fields: clock.fields,
+        };
+        clock.fields = 0;
+        clock.last_report_s = Some(truth.time_s);
+        Some(verdict)
+    }
+
+    /// Every field by itself, with what it adds to each figure but the latency, which only a whole sequence has.
+    pub fn units(&self) -> UnitTable {
+        let lenses = lens_names(&self.context.setup.cameras);
+        let unit = |field: &FieldVerdict| {
+            let (verdict, cause) = match &field.verdict {
+                Verdict::Success { .. } => ("success", None),
+                Verdict::RangeOnly { .. } => ("range_only", None),
+                Verdict::Wrong { gross } => ("wrong", Some(gross.code())),
+                Verdict::Missed { cause } => ("missed", Some(cause.code())),
+            };
+            UnitVerdict {
+                number: field.field,
+                group: name_of(field.group, &lenses),
+                verdict: verdict.to_owned(),
+                cause: cause.map(str::to_owned),
+            }
+        };
+        UnitTable {
+            units: self.verdicts.iter().map(unit).collect(),
+            figures: definitions().iter().map(|figure| FigureTerms::new(figure, &self.verdicts)).collect(),
+        }
+    }
+
+    /// The figures over all fields. A bin of range and lens is one sequence for the statistics, even where another one
+    /// interrupts it.
+    pub fn finish(self) -> DockingScore {
+        let mut groups: BTreeMap<(usize, usize), Vec<&FieldVerdict>> = BTreeMap::new();
+        for verdict in &self.verdicts {
+            groups.entry(verdict.group).or_default().push(verdict);
+        }
+        let sequences: Vec<&[&FieldVerdict]> = groups.values().map(Vec::as_slice).collect();
+        let mut all = group_score(&sequences);
+        let latency = Figure::mean(&[latency(&self.verdicts).into_iter().collect()]);
+        all.figures.insert(names::LATENCY_FIELDS.to_owned(), latency);
+        let lenses = lens_names(&self.context.setup.cameras);
+        DockingScore {
+            world: "docking".to_owned(),
+            scenario: self.context.scenario,
+            seed: self.context.seed,
+            version: self.context.version,
+            renderer: self.context.renderer,
+            frames: all.frames,
+            portions: all.portions,
+            figures: all.figures,
+            groups: groups
+                .iter()
+                .map(|(group, fields)| (name_of(*group, &lenses), group_score(&[fields])))
+                .collect(),
+            misses: all.misses,
+            wrong: all.wrong,
+        }
+    }
+}
+
+fn name_of((bin, camera): (usize, usize), lenses: &[String]) -> String {
+    let lens = lenses.get(camera).cloned().unwrap_or_else(|| format!("camera {camera}"));
+    group_name(bin, &lens)
+}
+
+/// Names of the figures of every score, in their order.
+pub fn figure_names() -> Vec<String> {
+    group_score(&[]).figures.into_keys().chain([names::LATENCY_FIELDS.to_owned()]).collect()
+}
+
+/// Fields from the first clear one to the first success at or after it; `None` when there is no such pair.
+fn latency(verdicts: &[FieldVerdict]) -> Option<f64> {
+    let after = &verdicts[verdicts.iter().position(|field| field.is_clear)?..];
+    let waited = after.iter().position(|field| matches!(field.verdict, Verdict::Success { .. }))?;
+    Some(waited as f64)
+}
+
+/// The score of some sequences of fields taken together.
+fn group_score(sequences: &[&[&FieldVerdict]]) -> DockingGroup {
+    let fields = || sequences.iter().copied().flatten();
+    let misses = fields().filter_map(|field| match &field.verdict {
+        Verdict::Missed { cause } => Some(cause.code()),
+        _ => None,
+    });
+    let wrong = fields().filter_map(|field| match field.verdict {
+        Verdict::Wrong { gross } => Some(gross.code()),
+        _ => None,
+    });
+    DockingGroup {
+        frames: fields().count() as u64,
+        portions: fields().filter(|field| field.portion.is_some()).count() as u64,
+        figures: definitions().iter().map(|figure| (figure.name.clone(), figure.figure(sequences))).collect(),
+        misses: counts(&MissCause::CODES, misses),
+        wrong: counts(&Gross::ALL.map(Gross::code), wrong),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,117 @@
+//! Why a field was not measured: every miss has exactly one cause.
+
+use contract::docking::NoPose;
+
+use super::truth::{TrueField, View};
+
+/// Why there is no pose and no range. When several hold, the first in this order is the cause: what is known of the answer
+/// at all, then what no pipeline could have helped, by the truth alone, then what the pipeline says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum MissCause {
+    /// The measurements have no row for the field.
+    NotReported,
+    /// The target is not resolved: a bar of its cross is narrower than two pixels.
+    TooFar,
+    /// The target is outside the image ([`View::Outside`]), or partly so and the pipeline says it.
+    OutsideField,
+    /// At least [`MissCause::LOST_LINES`] of the image's lines were lost.
+    LostLines,
+    /// Neither Sun nor lamp shines on any of half of the marks or more.
+    InShadow,
+    /// The pipeline failed.
+    PipelineFailed,
+    /// The pipeline's own reason, and the truth knows no better; never [`NoPose::Failed`].
+    Said(NoPose),
+}
+
+impl MissCause {
+    /// Fraction of lost lines from which on they are the cause.
+    pub const LOST_LINES: f64 = 0.1;
+
+    /// Every cause's word, in the order of precedence.
+    pub const CODES: [&str; 13] = [
+        "not_reported",
+        "too_far",
+        "outside_field",
+        "lost_lines",
+        "in_shadow",
+        "pipeline_failed",
+        "empty_field",
+        "saturated_field",
+        "no_target",
+        "ambiguous_target",
+        "out_of_field",
+        "too_few_features",
+        "inconsistent",
+    ];
+
+    /// The cause of a field without a pose; `said` is the pipeline's reason, `None` when it did not answer.
+    pub(super) fn of(truth: &TrueField, is_resolved: bool, said: Option<&NoPose>) -> Self {
+        let Some(said) = said else { return Self::NotReported };
+        let view = truth.view;
+        if !is_resolved {
+            Self::TooFar
+        } else if view == View::Outside || (view == View::Part && *said == NoPose::OutOfField) {
+            Self::OutsideField
+        } else if truth.lost_lines >= Self::LOST_LINES {
+            Self::LostLines
+        } else if truth.marks_in_shadow >= 0.5 {
+            Self::InShadow
+        } else if matches!(said, NoPose::Failed(_)) {
+            Self::PipelineFailed
+        } else {
+            Self::Said(said.clone())
+        }
+    }
+
+    /// The word used in files.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NotReported => "not_reported",
+            Self::TooFar => "too_far",
+            Self::OutsideField => "outside_field",
+            Self::LostLines => "lost_lines",
+            Self::InShadow => "in_shadow",
+            Self::PipelineFailed => "pipeline_failed",
+            Self::Said(reason) => reason.code(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::docking::hand_made::field;
+
+    fn cause(change: impl FnOnce(&mut TrueField, &mut bool), said: Option<NoPose>) -> &'static str {
+        let (mut truth, mut is_resolved) = (field(0, 10.0), true);
+        change(&mut truth, &mut is_resolved);
+        let code = MissCause::of(&truth, is_resolved, said.as_ref()).code();
+        assert!(MissCause::CODES.contains(&code), "{code}");
+        code
+    }
+
+    #[test]
+    fn the_truth_comes_before_what_the_pipeline_says() {
+        let said = || Some(NoPose::NoTarget);
+        assert_eq!(cause(|_, is_resolved| *is_resolved = false, said()), "too_far");
+        assert_eq!(cause(|truth, _| truth.view = View::Outside, said()), "outside_field");
+        assert_eq!(cause(|truth, _| truth.lost_lines = 0.2, said()), "lost_lines");
+        assert_eq!(cause(|truth, _| truth.marks_in_shadow = 0.6, said()), "in_shadow");
+        assert_eq!(cause(|_, _| (), said()), "no_target");
+        assert_eq!(cause(|_, is_resolved| *is_resolved = false, None), "not_reported");
+    }
+
+    #[test]
+    fn a_target_partly_outside_is_the_cause_when_the_pipeline_says_so() {
+        let partly = |truth: &mut TrueField, _: &mut bool| truth.view = View::Part;
+        assert_eq!(cause(partly, Some(NoPose::OutOfField)), "outside_field");
+        assert_eq!(cause(partly, Some(NoPose::TooFewFeatures)), "too_few_features");
+        assert_eq!(cause(|_, _| (), Some(NoPose::OutOfField)), "out_of_field");
+    }
+
+    #[test]
+    fn a_failure_of_the_pipeline_is_one_cause_whatever_its_text() {
+        assert_eq!(cause(|_, _| (), Some(NoPose::Failed("out of film".to_owned()))), "pipeline_failed");
+    }
+}

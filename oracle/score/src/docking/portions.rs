@@ -1,0 +1,155 @@
+//! What is said at the end of a portion, against the truth of the moment that it is said of.
+
+use contract::docking::Motion;
+use nalgebra::{Matrix6, Vector6};
+
+use super::consistency::{nees, within_3_sigma};
+use super::errors::{PoseErrors, phi_error};
+use super::shown::Shown;
+use super::sight::Sights;
+use super::truth::TrueField;
+use super::verdict::gross;
+
+/// A motion of a moment farther than this from the field that reports it is wrong whatever it says, s.
+const MAX_AGE_S: f64 = 1.0;
+
+/// One estimator's motion at the end of a portion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct MotionVerdict {
+    /// Whether its estimator gave a motion before: the first of a sequence has none to lean on.
+    pub(super) is_led: bool,
+    /// Whether its pose is grossly wrong, as that of a field may be.
+    pub(super) is_wrong: bool,
+    /// Measured minus true: ρ (m), u (m/s), α, β, φ1, φ2, φ3 (rad).
+    pub(super) errors: [f64; 7],
+    /// Whether each lies within three of its standard deviations.
+    pub(super) within: [Option<bool>; 7],
+    /// NEES over its dimension: of (d, φ), of (d, d'), of (φ, φ').
+    pub(super) nees: [Option<f64>; 3],
+}
+
+impl MotionVerdict {
+    pub(super) fn of(sights: &Sights, truth: &TrueField, motion: &Motion, is_led: bool) -> Self {
+        // A portion's last fields may not be measured: its motion is then of an earlier moment than the field that reports
+        // it. A few fields back the true rates carry the truth there to micrometres.
+        let since_s = motion.time_s - truth.time_s;
+        let moved = TrueField { pose: truth.moved(since_s), ..truth.clone() };
+        // Times of files are rounded: what is nearer than a microsecond is the same moment.
+        let truth = if since_s.abs() < 1e-6 { truth } else { &moved };
+        let shown = Shown::of(&motion.pose, &motion.velocity_m_s);
+        let errors = shown.minus(&Shown::of(&truth.pose, &truth.velocity_m_s));
+        let sigmas = Shown::sigmas(motion);
+        let within = std::array::from_fn(|i| sigmas.and_then(|sigmas| within_3_sigma(errors[i], sigmas[i])));
+        let d = motion.pose.position_m - truth.pose.position_m;
+        let phi = phi_error(&motion.pose, &truth.pose);
+        let d_rate = motion.velocity_m_s - truth.velocity_m_s;
+        let phi_rate = motion.phi_rate_rad_s - truth.phi_rate_rad_s;
+        let both =
+            |a: nalgebra::Vector3<f64>, b: nalgebra::Vector3<f64>| Vector6::new(a.x, a.y, a.z, b.x, b.y, b.z);
+        Self {
+            is_led,
+            is_wrong: since_s.abs() > MAX_AGE_S
+                || gross(sights, truth, &PoseErrors::new(&motion.pose, &truth.pose)).is_some(),
+            errors: errors.into(),
+            within,
+            nees: [
+                nees(&both(d, phi), &pose_covariance(motion)),
+                nees(&both(d, d_rate), &motion.position_covariance),
+                nees(&both(phi, phi_rate), &motion.attitude_covariance),
+            ],
+        }
+    }
+}
+
+/// The covariance of (d, φ) of a motion.
+fn pose_covariance(motion: &Motion) -> Matrix6<f64> {
+    let mut covariance = Matrix6::zeros();
+    covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&motion.position_covariance.fixed_view::<3, 3>(0, 0));
+    covariance.fixed_view_mut::<3, 3>(3, 3).copy_from(&motion.attitude_covariance.fixed_view::<3, 3>(0, 0));
+    covariance.fixed_view_mut::<3, 3>(0, 3).copy_from(&motion.cross_covariance);
+    covariance.fixed_view_mut::<3, 3>(3, 0).copy_from(&motion.cross_covariance.transpose());
+    covariance
+}
+
+/// The report at the end of a portion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PortionVerdict {
+    /// By the pipeline's own best estimator, where it gave one.
+    pub(super) best: Option<MotionVerdict>,
+    /// By the paper's formulas, where they gave one.
+    pub(super) paper: Option<MotionVerdict>,
+    /// Fields from the portion's first measured one to the report, both counted.
+    pub(super) fields: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use contract::docking::Pose;
+    use nalgebra::{Matrix3, Vector3};
+
+    use super::*;
+    use crate::docking::hand_made::{field, setup};
+
+    /// The same motion told of a moment 0.1 s earlier, where the camera was 20 mm farther away, is as good.
+    #[test]
+    fn a_motion_is_held_against_the_truth_of_its_own_moment() {
+        let truth = TrueField {
+            time_s: 5.0,
+            velocity_m_s: Vector3::new(0.0, 0.0, -0.2),
+            phi_rate_rad_s: Vector3::new(0.0, 0.0, 0.03),
+            ..field(0, 10.0)
+        };
+        let sights = Sights::new(&setup());
+        let motion = |time_s: f64, d3_m: f64| Motion {
+            time_s,
+            pose: Pose {
+                position_m: Vector3::new(0.0, 0.0, d3_m),
+                phi_rad: truth.pose.phi_rad + truth.phi_rate_rad_s * (time_s - 5.0),
+            },
+            velocity_m_s: truth.velocity_m_s,
+            phi_rate_rad_s: truth.phi_rate_rad_s,
+            position_covariance: Matrix6::from_diagonal_element(1e-4),
+            attitude_covariance: Matrix6::from_diagonal_element(1e-6),
+            cross_covariance: Matrix3::zeros(),
+            fields: 10,
+        };
+        let verdict = MotionVerdict::of(&sights, &truth, &motion(4.9, 10.02), false);
+        assert!(!verdict.is_wrong && verdict.errors.iter().all(|error| error.abs() < 1e-12), "{verdict:?}");
+        assert!(!MotionVerdict::of(&sights, &truth, &motion(4.0, 10.2), false).is_wrong, "a second old");
+        assert!(MotionVerdict::of(&sights, &truth, &motion(3.9, 10.22), false).is_wrong, "too old");
+        // A tenth of a microsecond is the rounding of a file, and moves nothing.
+        let rounded = MotionVerdict::of(&sights, &truth, &motion(5.0 + 1e-7, 10.0), false);
+        assert_eq!(rounded.errors[..6], [0.0; 6]);
+    }
+
+    #[test]
+    fn errors_and_their_normalised_squares_are_those_of_a_sum_by_hand() {
+        let mut truth = TrueField { phi_rate_rad_s: Vector3::new(0.0, 0.0, 0.010), ..field(0, 10.0) };
+        truth.pose.phi_rad.y = 0.002;
+        let sights = Sights::new(&setup());
+        let motion = Motion {
+            time_s: 0.0,
+            pose: Pose {
+                position_m: Vector3::new(0.0, 0.0, 10.02),
+                phi_rad: Vector3::new(0.001, 0.002, -0.002),
+            },
+            velocity_m_s: Vector3::new(0.0, 0.0, -0.21),
+            phi_rate_rad_s: Vector3::new(0.0, 0.0, 0.012),
+            position_covariance: Matrix6::from_diagonal_element(1e-4),
+            attitude_covariance: Matrix6::from_diagonal_element(1e-6),
+            cross_covariance: Matrix3::zeros(),
+            fields: 10,
+        };
+        let verdict = MotionVerdict::of(&sights, &truth, &motion, false);
+        assert!(!verdict.is_wrong);
+        let expected = [0.02, -0.01, 0.0, 0.0, 0.001, 0.0, -0.002];
+        for (error, expected) in verdict.errors.iter().zip(expected) {
+            assert!((error - expected).abs() < 1e-12, "{:?}", verdict.errors);
+        }
+        // 2σ, 1σ; of φ 1σ and 2σ, of its rate 2σ.
+        assert_eq!(verdict.within, [Some(true); 7]);
+        for (met, expected) in verdict.nees.iter().zip([(4.0 + 1.0 + 4.0) / 6.0, 5.0 / 6.0, 9.0 / 6.0]) {
+            assert!((met.unwrap() - expected).abs() < 1e-9, "{:?}", verdict.nees);
+        }
+    }
+}

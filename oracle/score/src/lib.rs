@@ -1,0 +1,49 @@
+//! The score: a pure function of the truth and of what a pipeline said.
+//!
+//! Every frame is counted exactly once and gets one [`Verdict`]. Two notions are kept apart:
+//!
+//! - *Detected*, as the far-range paper counts it: the pipeline says that it has a target, rightly or wrongly.
+//!   The accuracy figures of the paper (its Table 2) are counted over these.
+//! - *Correct*: most of the light in the cluster that it chose comes from the target, by the table of truth.
+//!
+//! The verdict needs nothing but the truth and the reported position and line of sight, so that anybody's
+//! measurement file gets the same figures as a built-in run. Only the *cause* of a miss profits from the labelled
+//! clusters that a pipeline may tell; without them it rests on the truth alone.
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+mod accumulate;
+mod angles;
+mod argon_table2;
+mod belonging;
+mod cause;
+mod definition;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+pub mod docking;
+#[cfg(test)]
+mod hand_made;
+mod report;
+mod sense;
+mod verdict;
+
+pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, Unproject, figure_names};
+pub use angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
+pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
+pub use belonging::belonging_to;
+pub use cause::Cause;
+pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
+pub use report::{Figure, GroupScore, Score, names};
+pub use sense::{Better, Kind, Sense, sense};
+pub use verdict::{FrameVerdict, Taken, Verdict, VerdictRow};

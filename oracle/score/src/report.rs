@@ -1,0 +1,226 @@
+//! What `score.json` holds.
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use statistics::{Interval, effective_size, mean_interval, median, median_interval, rms_interval, wilson};
+
+/// Names of the far-range figures. Rates are fractions from 0 to 1.
+pub mod names {
+    /// Detected, of all frames.
+    pub const HIT_RATE: &str = "hit_rate";
+    /// Missed, of all frames.
+    pub const MISS_RATE: &str = "miss_rate";
+    /// Correct, of all frames.
+    pub const CORRECT_RATE: &str = "correct_rate";
+    /// Wrong, of all frames.
+    pub const WRONG_RATE: &str = "wrong_rate";
+    /// |RA error| < 0.024°, of the detected.
+    pub const RA_WITHIN_1PX: &str = "ra_within_1px";
+    /// |RA error| < 0.048°, of the detected.
+    pub const RA_WITHIN_2PX: &str = "ra_within_2px";
+    /// |Dec error| < 0.024°, of the detected.
+    pub const DEC_WITHIN_1PX: &str = "dec_within_1px";
+    /// |Dec error| < 0.048°, of the detected.
+    pub const DEC_WITHIN_2PX: &str = "dec_within_2px";
+    /// Root mean square of the RA error of the correct, degrees.
+    pub const RA_RMS_DEG: &str = "ra_rms_deg";
+    /// Root mean square of the Dec error of the correct, degrees.
+    pub const DEC_RMS_DEG: &str = "dec_rms_deg";
+    /// Mean RA error (bias) of the correct, degrees.
+    pub const RA_MEAN_DEG: &str = "ra_mean_deg";
+    /// Mean Dec error (bias) of the correct, degrees.
+    pub const DEC_MEAN_DEG: &str = "dec_mean_deg";
+    /// Median RA error of the correct, degrees.
+    pub const RA_MEDIAN_DEG: &str = "ra_median_deg";
+    /// Median Dec error of the correct, degrees.
+    pub const DEC_MEDIAN_DEG: &str = "dec_median_deg";
+    /// Mean number of identified stars, over the frames whose answer tells it.
+    pub const STARS_MEAN: &str = "stars_mean";
+    /// Attitude solved from the stars of the frame itself, of all frames.
+    pub const ATTITUDE_FROM_STARS_RATE: &str = "attitude_from_stars_rate";
+}
+
+/// One figure, with what it was counted over and its 95 % interval. Nothing in it is ever NaN: what cannot be said
+/// is `None` (null).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// The value; `None` when it is counted over nothing.
+    pub value: Option<f64>,
+    /// How many count: the value of a rate is `count`/`of`. For a mean, the same as `of`.
+    pub count: u64,
+    /// How many it is counted over.
+    pub of: u64,
+    /// How many independent frames these are worth (see [`effective_size`]); 0 when `of` is 0.
+    pub effective: f64,
+    /// Lower limit of the 95 % interval.
+    pub low: Option<f64>,
+    /// Upper limit of the 95 % interval.
+    pub high: Option<f64>,
+}
+
+impl Figure {
+    /// A rate. Each inner list is one sequence in order of time.
+    pub fn rate(sequences: &[Vec<bool>]) -> Self {
+        let numbers: Vec<Vec<f64>> = sequences
+            .iter()
+            .map(|sequence| sequence.iter().map(|&b| f64::from(u8::from(b))).collect())
+            .collect();
+        let of = sequences.iter().map(Vec::len).sum::<usize>() as u64;
+        let count = sequences.iter().flatten().filter(|&&b| b).count() as u64;
+        let value = (of > 0).then(|| count as f64 / of as f64);
+        let effective = effective_size(&numbers);
+        Self::new(value, count, of, effective, value.and_then(|rate| wilson(rate, effective)))
+    }
+
+    /// A mean. Each inner list is one sequence of finite values in order of time.
+    pub fn mean(sequences: &[Vec<f64>]) -> Self {
+        Self::location(sequences, effective_size(sequences), mean, mean_interval)
+    }
+
+    /// A root mean square.
+    pub fn rms(sequences: &[Vec<f64>]) -> Self {
+        let squares: Vec<Vec<f64>> =
+            sequences.iter().map(|sequence| sequence.iter().map(|x| x * x).collect()).collect();
+        let rms = |_: &[Vec<f64>]| mean(&squares).map(f64::sqrt);
+        Self::location(sequences, effective_size(&squares), rms, rms_interval)
+    }
+
+    /// A median.
+    pub fn median(sequences: &[Vec<f64>]) -> Self {
+        Self::location(sequences, effective_size(sequences), median, median_interval)
+    }
+
+    fn location(
+        sequences: &[Vec<f64>],
+        effective: f64,
+        value: impl Fn(&[Vec<f64>]) -> Option<f64>,
+        interval: impl Fn(&[Vec<f64>]) -> Option<Interval>,
+    ) -> Self {
+        let of = sequences.iter().map(Vec::len).sum::<usize>() as u64;
+        Self::new(value(sequences), of, of, effective, interval(sequences))
+    }
+
+    fn new(value: Option<f64>, count: u64, of: u64, effective: f64, interval: Option<Interval>) -> Self {
+        Self {
+            value,
+            count,
+            of,
+            effective,
+            low: interval.map(|interval| interval.low),
+            high: interval.map(|interval| interval.high),
+        }
+    }
+}
+
+fn mean(sequences: &[Vec<f64>]) -> Option<f64> {
+    let n = sequences.iter().map(Vec::len).sum::<usize>();
+    (n > 0).then(|| sequences.iter().flatten().sum::<f64>() / n as f64)
+}
+
+/// The score of a run: the content of `score.json`. Figures and groups keep their order in the file; groups are in
+/// the order of their first frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Score {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Its seed.
+    pub seed: u64,
+    /// Version of Boresight that made the score.
+    pub version: String,
+    /// The stage whose result was replaced by the truth: with one, this is no score of the pipeline. Absent without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inject: Option<String>,
+    /// Number of frames: detected and missed, each counted once.
+    pub frames: u64,
+    /// Figures over all frames, by name (see [`names`] for far range).
+    pub figures: IndexMap<String, Figure>,
+    /// The same for each group (day, portion).
+    pub groups: IndexMap<String, GroupScore>,
+    /// Misses by [`crate::Cause::code`]; causes that did not occur are left out.
+    pub misses: IndexMap<String, u64>,
+    /// Wrong answers, by the cause that kept the target itself from being taken.
+    pub wrong: IndexMap<String, u64>,
+    /// Wrong answers, by what was taken: `star`, `planet`, `moon`, `hot_pixel`, `cosmic_ray`, `nothing`.
+    pub wrong_taken: IndexMap<String, u64>,
+}
+
+/// The score of one group of frames.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GroupScore {
+    /// Number of frames.
+    pub frames: u64,
+    /// Figures by name.
+    pub figures: IndexMap<String, Figure>,
+    /// Misses by cause.
+    pub misses: IndexMap<String, u64>,
+    /// Wrong answers by cause.
+    pub wrong: IndexMap<String, u64>,
+    /// Wrong answers by what was taken.
+    pub wrong_taken: IndexMap<String, u64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_sane(figure: &Figure) {
+        let finite = |v: Option<f64>| v.is_none_or(f64::is_finite);
+        assert!(
+            finite(figure.value) && finite(figure.low) && finite(figure.high) && figure.effective.is_finite()
+        );
+        if let (Some(value), Some(low), Some(high)) = (figure.value, figure.low, figure.high) {
+            assert!(low <= value && value <= high, "{figure:?}");
+        }
+        assert!(figure.effective <= figure.of as f64);
+    }
+
+    #[test]
+    fn a_figure_over_nothing_is_null_and_not_nan() {
+        for figure in [
+            Figure::rate(&[]),
+            Figure::rate(&[vec![], vec![]]),
+            Figure::mean(&[]),
+            Figure::rms(&[vec![]]),
+            Figure::median(&[]),
+        ] {
+            is_sane(&figure);
+            assert_eq!((figure.value, figure.count, figure.of, figure.low), (None, 0, 0, None));
+        }
+        assert_eq!(
+            serde_json::to_string(&Figure::rate(&[])).unwrap(),
+            r#"{"value":null,"count":0,"of":0,"effective":0.0,"low":null,"high":null}"#
+        );
+    }
+
+    #[test]
+    fn all_hits_and_all_misses_have_one_sided_doubt() {
+        let hits = Figure::rate(&[vec![true; 10]]);
+        assert_eq!((hits.value, hits.high), (Some(1.0), Some(1.0)));
+        assert!((hits.low.unwrap() - 0.7225).abs() < 1e-4);
+        let misses = Figure::rate(&[vec![false; 10]]);
+        assert_eq!((misses.value, misses.low), (Some(0.0), Some(0.0)));
+        assert!((misses.high.unwrap() - 0.2775).abs() < 1e-4);
+    }
+
+    #[test]
+    fn figures_of_short_series_are_sane() {
+        for n in 1..6 {
+            for bits in 0..1u32 << n {
+                let series: Vec<bool> = (0..n).map(|i| bits >> i & 1 == 1).collect();
+                let numbers: Vec<f64> = series.iter().map(|&b| if b { -0.02 } else { 0.5 }).collect();
+                is_sane(&Figure::rate(&[series]));
+                for figure in
+                    [Figure::mean, Figure::rms, Figure::median].map(|f| f(std::slice::from_ref(&numbers)))
+                {
+                    is_sane(&figure);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn root_mean_square_of_three_four_is_its_own_definition() {
+        let figure = Figure::rms(&[vec![3.0], vec![-4.0]]);
+        assert!((figure.value.unwrap() - 12.5f64.sqrt()).abs() < 1e-15);
+        assert_eq!(figure.of, 2);
+    }
+}

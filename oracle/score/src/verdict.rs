@@ -1,0 +1,408 @@
+//! The verdict on one frame.
+
+use std::sync::Arc;
+
+use contract::{AttitudeSource, Measurement, NoSolution, Outcome, PixelPoint};
+use serde::Serialize;
+use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
+
+use super::accumulate::Unproject;
+use super::angles::LineOfSightError;
+use super::belonging::{brightest, holds, transmitted_electrons};
+use super::cause::{Cause, Detector, cause};
+
+/// What the oracle says about one frame: exactly one of three.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Verdict {
+    /// The pipeline has no target. An answer whose place is not on the detector, or which has no direction, is no answer
+    /// and is missed too.
+    Missed {
+        /// Why.
+        cause: Cause,
+    },
+    /// The pipeline has the target.
+    ///
+    /// An object belongs to the chosen cluster when its true centre lies within max(`radius_px`/2, 1.5) px of
+    /// the reported position, along the columns by `bloom_px`/2 farther. The answer is correct when the target belongs to it and more than half of the electrons
+    /// of all that belongs to it (stars, hot pixels and tracks of particles included) are the target's. Only transmitted electrons
+    /// count: electrons × (1 − cut).
+    Correct {
+        /// Error of the line of sight.
+        error: LineOfSightError,
+    },
+    /// The pipeline has a target that is not one: detected by the paper's count, and wrong.
+    Wrong {
+        /// Error of the line of sight, from the true target.
+        error: LineOfSightError,
+        /// What was taken for the target.
+        taken: Taken,
+        /// Why the target itself was not taken.
+        cause: Cause,
+    },
+}
+
+/// What was taken for the target: of the objects that belong to the chosen cluster, without the target, the one
+/// with the most transmitted electrons.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Taken {
+    /// The star of this number in the catalogue.
+    Star(u32),
+    /// The planet of this number, 1 to 8.
+    Planet(u32),
+    /// The Moon.
+    Moon,
+    /// The hot pixel of this number: row × columns + column.
+    HotPixel(u32),
+    /// The track of this number in the frame.
+    CosmicRay(u32),
+    /// Nothing of the truth is there: noise, or a place of its own making.
+    Nothing,
+}
+
+impl Taken {
+    /// The word used in files; the number has a column of its own.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Star(_) => "star",
+            Self::Planet(_) => "planet",
+            Self::Moon => "moon",
+            Self::HotPixel(_) => "hot_pixel",
+            Self::CosmicRay(_) => "cosmic_ray",
+            Self::Nothing => "nothing",
+        }
+    }
+
+    /// The number of the star, planet, hot pixel or track; 0 for the Moon.
+    pub fn id(self) -> Option<u32> {
+        match self {
+            Self::Star(id) | Self::Planet(id) | Self::HotPixel(id) | Self::CosmicRay(id) => Some(id),
+            Self::Moon => Some(0),
+            Self::Nothing => None,
+        }
+    }
+}
+
+impl Verdict {
+    /// The word used in files.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Missed { .. } => "missed",
+            Self::Correct { .. } => "correct",
+            Self::Wrong { .. } => "wrong",
+        }
+    }
+
+    /// Whether the pipeline says that it has a target, rightly or wrongly.
+    pub fn is_detected(&self) -> bool {
+        !matches!(self, Self::Missed { .. })
+    }
+
+    /// The error of the line of sight of a detected target, right or wrong.
+    pub fn error(&self) -> Option<LineOfSightError> {
+        match self {
+            Self::Missed { .. } => None,
+            Self::Correct { error } | Self::Wrong { error, .. } => Some(*error),
+        }
+    }
+}
+
+/// The verdict on one frame, with what else the figures need.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameVerdict {
+    /// Number of the frame.
+    pub frame: u64,
+    /// Name of the group it belongs to.
+    pub group: Arc<str>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Stars that the pipeline identified; `None` when it did not answer the frame.
+    pub n_stars: Option<u32>,
+    /// Where the attitude of its answer comes from, if it says so.
+    pub attitude_source: Option<AttitudeSource>,
+}
+
+impl FrameVerdict {
+    /// The verdict as a row of a table.
+    pub fn row(&self) -> VerdictRow<'_> {
+        let (taken, cause) = match self.verdict {
+            Verdict::Missed { cause } => (None, Some(cause)),
+            Verdict::Correct { .. } => (None, None),
+            Verdict::Wrong { taken, cause, .. } => (Some(taken), Some(cause)),
+        };
+        let error = self.verdict.error();
+        VerdictRow {
+            frame: self.frame,
+            group: &self.group,
+            verdict: self.verdict.code(),
+            cause: cause.map(Cause::code),
+            taken: taken.map(Taken::code),
+            taken_id: taken.and_then(Taken::id),
+            ra_error_deg: error.map(|error| error.ra.degrees()),
+            dec_error_deg: error.map(|error| error.dec.degrees()),
+            n_stars: self.n_stars,
+            attitude_source: self.attitude_source.map(AttitudeSource::code),
+        }
+    }
+}
+
+/// A [`FrameVerdict`] in words and numbers, for CSV and JSON; the names of the fields are those of the columns.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VerdictRow<'a> {
+    /// Number of the frame.
+    pub frame: u64,
+    /// Name of the group.
+    pub group: &'a str,
+    /// `missed`, `correct` or `wrong`.
+    pub verdict: &'static str,
+    /// [`Cause::code`], when missed or wrong.
+    pub cause: Option<&'static str>,
+    /// [`Taken::code`], when wrong.
+    pub taken: Option<&'static str>,
+    /// Number of the star or hot pixel taken.
+    pub taken_id: Option<u32>,
+    /// Error across columns, degrees, when detected.
+    pub ra_error_deg: Option<f64>,
+    /// Error across rows, degrees, when detected.
+    pub dec_error_deg: Option<f64>,
+    /// Stars identified; empty when the frame was not answered.
+    pub n_stars: Option<u32>,
+    /// [`AttitudeSource::code`].
+    pub attitude_source: Option<&'static str>,
+}
+
+/// Judges one frame. `objects` are those of this frame; `outcome` is `None` when there is no row for it.
+pub(super) fn judge(
+    truth: &FrameTruth,
+    objects: &[ObjectTruth],
+    outcome: Option<&Outcome>,
+    detector: Detector,
+    unproject: Unproject<'_>,
+) -> Verdict {
+    let missed = |outcome| Verdict::Missed { cause: cause(truth, objects, outcome, detector) };
+    let Some(answer) = outcome else { return missed(None) };
+    let Some(measurement) = answer.measurement() else { return missed(outcome) };
+    let Some(error) = sound_error(measurement, truth, detector, unproject) else {
+        let no_answer = Outcome::none(NoSolution::Failed("the answer is no direction".to_owned()));
+        return missed(Some(&no_answer));
+    };
+    match chosen(measurement.position, objects) {
+        Chosen::Target => Verdict::Correct { error },
+        Chosen::TargetOutshone(by) => {
+            Verdict::Wrong { error, taken: taken(by), cause: Cause::of_outshining(by.kind) }
+        }
+        Chosen::Other(other) => Verdict::Wrong {
+            error,
+            taken: other.map_or(Taken::Nothing, taken),
+            cause: cause(truth, objects, outcome, detector),
+        },
+    }
+}
+
+/// The error of a measurement that has a position on the detector and a direction.
+fn sound_error(
+    measurement: &Measurement,
+    truth: &FrameTruth,
+    detector: Detector,
+    unproject: Unproject<'_>,
+) -> Option<LineOfSightError> {
+    if measurement.position.is_on_detector(detector.columns, detector.rows) {
+        LineOfSightError::of(measurement, truth, unproject)
+    } else {
+        None
+    }
+}
+
+/// What the cluster at the reported position holds.
+enum Chosen<'a> {
+    /// Mostly the target.
+    Target,
+    /// The target, and more of others, of which this is the brightest.
+    TargetOutshone(&'a ObjectTruth),
+    /// No target; the brightest of what is there.
+    Other(Option<&'a ObjectTruth>),
+}
+
+fn chosen(position: PixelPoint, objects: &[ObjectTruth]) -> Chosen<'_> {
+    let members = || objects.iter().filter(|object| holds(position, object));
+    let (mut of_target, mut total) = (0.0, 0.0);
+    for object in members() {
+        let electrons = transmitted_electrons(object);
+        total += electrons;
+        if object.kind == ObjectKind::Target {
+            of_target += electrons;
+        }
+    }
+    if of_target > 0.5 * total {
+        return Chosen::Target;
+    }
+    match brightest(members().filter(|object| object.kind != ObjectKind::Target)) {
+        Some(other) if of_target > 0.0 => Chosen::TargetOutshone(other),
+        other => Chosen::Other(other),
+    }
+}
+
+fn taken(object: &ObjectTruth) -> Taken {
+    match object.kind {
+        ObjectKind::Star => Taken::Star(object.id),
+        ObjectKind::Planet => Taken::Planet(object.id),
+        ObjectKind::Moon => Taken::Moon,
+        ObjectKind::HotPixel => Taken::HotPixel(object.id),
+        ObjectKind::CosmicRay => Taken::CosmicRay(object.id),
+        ObjectKind::Target => Taken::Nothing,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::{
+        CENTRE, COLUMNS, ROWS, cluster, cosmic_ray_at, detected_at, frame, hot_pixel_at, star_at,
+        target_with, unproject,
+    };
+    use contract::Label;
+
+    fn verdict(objects: &[ObjectTruth], outcome: &Outcome) -> Verdict {
+        judge(&frame(0), objects, Some(outcome), Detector { columns: COLUMNS, rows: ROWS }, &unproject)
+    }
+
+    fn right_of_target(px: f64) -> PixelPoint {
+        PixelPoint::new(CENTRE.x + px, CENTRE.y)
+    }
+
+    #[test]
+    fn a_place_within_reach_of_the_target_is_correct_and_beyond_is_wrong() {
+        let objects = [target_with(1000.0)];
+        assert_eq!(verdict(&objects, &detected_at(right_of_target(1.49))).code(), "correct");
+        let Verdict::Wrong { taken, .. } = verdict(&objects, &detected_at(right_of_target(1.51))) else {
+            panic!("1.51 px off is another place");
+        };
+        assert_eq!(taken, Taken::Nothing);
+    }
+
+    #[test]
+    fn a_large_image_is_the_target_as_far_as_its_centre_can_be() {
+        let mut target = target_with(1000.0);
+        target.radius_px = 12.0;
+        let code = |px| verdict(std::slice::from_ref(&target), &detected_at(right_of_target(px))).code();
+        assert_eq!((code(5.9), code(6.1)), ("correct", "wrong"));
+    }
+
+    #[test]
+    fn the_majority_of_the_electrons_decides() {
+        for (star, expected) in [(999.0, "correct"), (1000.0, "wrong"), (1001.0, "wrong")] {
+            let objects = [target_with(1000.0), star_at(7, right_of_target(1.0), star)];
+            assert_eq!(verdict(&objects, &detected_at(right_of_target(0.5))).code(), expected, "{star}");
+        }
+    }
+
+    #[test]
+    fn the_order_of_the_objects_does_not_matter() {
+        let objects = [star_at(7, right_of_target(1.0), 3000.0), target_with(1000.0)];
+        let reversed = [objects[1].clone(), objects[0].clone()];
+        let outcome = detected_at(right_of_target(0.8));
+        assert_eq!(verdict(&objects, &outcome), verdict(&reversed, &outcome));
+    }
+
+    #[test]
+    fn what_was_taken_is_named() {
+        let far = right_of_target(50.0);
+        for (object, expected, merged) in [
+            (star_at(7, far, 500.0), Taken::Star(7), false),
+            (hot_pixel_at(99, far, 500.0), Taken::HotPixel(99), false),
+            (cosmic_ray_at(2, far, 500.0), Taken::CosmicRay(2), false),
+            (star_at(8, right_of_target(1.0), 5000.0), Taken::Star(8), true),
+        ] {
+            let place = object.position;
+            let Verdict::Wrong { taken, cause, .. } =
+                verdict(&[target_with(1000.0), object], &detected_at(place))
+            else {
+                panic!("wrong");
+            };
+            assert_eq!(taken, expected);
+            assert_eq!(cause == Cause::MergedWithStar, merged);
+        }
+    }
+
+    #[test]
+    fn a_hot_pixel_in_the_targets_image_counts_with_its_electrons() {
+        let objects = [target_with(1000.0), hot_pixel_at(3, CENTRE, 1500.0)];
+        let Verdict::Wrong { taken, cause, .. } = verdict(&objects, &detected_at(CENTRE)) else {
+            panic!("most of it is the hot pixel's");
+        };
+        assert_eq!((taken, cause), (Taken::HotPixel(3), Cause::TakenForHotspot));
+    }
+
+    #[test]
+    fn electrons_that_were_not_transmitted_do_not_count() {
+        let mut star = star_at(7, right_of_target(1.0), 5000.0);
+        star.cut = 0.9;
+        assert_eq!(verdict(&[target_with(1000.0), star], &detected_at(CENTRE)).code(), "correct");
+    }
+
+    #[test]
+    fn an_answer_that_is_not_a_number_is_missed_and_has_a_cause() {
+        let objects = [target_with(1000.0)];
+        let missed = Verdict::Missed { cause: Cause::PipelineFailed };
+        assert_eq!(verdict(&objects, &detected_at(PixelPoint::new(f64::NAN, 1.0))), missed);
+        assert_eq!(verdict(&objects, &detected_at(PixelPoint::new(1.0, f64::INFINITY))), missed);
+        let nowhere = judge(
+            &frame(0),
+            &objects,
+            Some(&detected_at(CENTRE)),
+            Detector { columns: COLUMNS, rows: ROWS },
+            &|_| None,
+        );
+        assert_eq!(nowhere, missed);
+    }
+
+    #[test]
+    fn what_was_taken_has_a_word_and_a_number_in_files() {
+        let taken = [
+            Taken::Star(7),
+            Taken::Planet(5),
+            Taken::Moon,
+            Taken::HotPixel(99),
+            Taken::CosmicRay(2),
+            Taken::Nothing,
+        ];
+        let words = ["star", "planet", "moon", "hot_pixel", "cosmic_ray", "nothing"];
+        assert_eq!(taken.map(Taken::code), words);
+        assert_eq!(taken.map(Taken::id), [Some(7), Some(5), Some(0), Some(99), Some(2), None]);
+    }
+
+    /// Outshone is who is there and has less than another: what the pipeline says of the cluster does not count then.
+    #[test]
+    fn a_target_outshone_by_a_star_is_merged_whatever_its_cluster_is_called() {
+        let place = right_of_target(0.5);
+        let answer = Outcome { clusters: vec![cluster(place, Label::Candidate)], ..detected_at(place) };
+        let cause = |target| match verdict(&[target, star_at(7, right_of_target(1.0), 3000.0)], &answer) {
+            Verdict::Wrong { cause, .. } => cause,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(cause(target_with(1000.0)), Cause::MergedWithStar);
+        // Without light it is not there, and the reason is sought elsewhere.
+        assert_eq!(cause(target_with(0.0)), Cause::LostMotionTest);
+    }
+
+    #[test]
+    fn a_target_without_light_cannot_be_found() {
+        let verdict = verdict(&[target_with(0.0)], &detected_at(CENTRE));
+        assert!(matches!(verdict, Verdict::Wrong { taken: Taken::Nothing, .. }), "{verdict:?}");
+    }
+
+    #[test]
+    fn a_row_names_everything_and_leaves_empty_what_there_is_not() {
+        let frame_verdict = |verdict| FrameVerdict {
+            frame: 3,
+            group: "day 1".into(),
+            verdict,
+            n_stars: Some(12),
+            attitude_source: Some(AttitudeSource::Stars),
+        };
+        let missed = frame_verdict(Verdict::Missed { cause: Cause::TooFaint });
+        assert_eq!(
+            serde_json::to_string(&missed.row()).unwrap(),
+            r#"{"frame":3,"group":"day 1","verdict":"missed","cause":"too_faint","taken":null,"taken_id":null,"ra_error_deg":null,"dec_error_deg":null,"n_stars":12,"attitude_source":"stars"}"#
+        );
+    }
+}

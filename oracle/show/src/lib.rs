@@ -1,0 +1,63 @@
+//! Annotated pictures of frames: pixels, true objects, the pipeline's answer, transmitted regions, a scale bar and a legend.
+//!
+//! [`picture`] is a pure function of [`Panel`]s: one frame is drawn large, with a close-up and a table beside it; several become a
+//! contact sheet. [`encode`] writes the result as a PNG with a palette, which names this program in a text chunk; [`is_own_picture`]
+//! recognises that chunk. Nothing here reads or writes files.
+//!
+//! Positions are pixels of the frame: the centre of the first pixel is (0, 0).
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+mod canvas;
+mod class;
+mod colour;
+mod label;
+mod layout;
+mod legend;
+mod panel;
+mod png_file;
+mod raster;
+mod scale_bar;
+mod stretch;
+mod text;
+mod view;
+
+use thiserror::Error;
+
+pub use class::Class;
+pub use layout::{PanelPlace, Picture, picture};
+pub use panel::{Mark, Panel, Pixels, PlateScale, Reduction, Shape, Table, Tone, Verdict};
+pub use png_file::{encode, is_own_picture};
+pub use stretch::Stretch;
+pub use view::Placement;
+
+/// Most panels of a contact sheet.
+pub const MOST_PANELS: usize = 16;
+
+/// Why a picture cannot be drawn.
+#[derive(Debug, Error)]
+pub enum ShowError {
+    /// Too few or too many frames for a picture.
+    #[error("{0} frames are asked for, expected 1 to {MOST_PANELS}")]
+    PanelCount(usize),
+    /// A view without pixels, or a canvas that cannot be allocated.
+    #[error("a picture of {width} × {height} pixels cannot be drawn")]
+    Size {
+        /// Width, px.
+        width: usize,
+        /// Height, px.
+        height: usize,
+    },
+    /// The encoder refused.
+    #[error("the picture cannot be encoded: {0}")]
+    Encode(String),
+}

@@ -1,0 +1,184 @@
+//! A study in a folder: what is missing of it is made, shard by shard, until it is done.
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use files::Failure;
+
+use super::cases::{CaseRow, CaseTable};
+use super::definition::Study;
+use super::engine::run_cases;
+use super::evaluate::Evaluated;
+use super::record::StudyRecord;
+use super::shard::{Plan, ShardManifest, ShardStore};
+use super::stopping::Stopping;
+use super::summary::Summary;
+use super::tried::StudyPipeline;
+
+/// A study, the pipeline that it tries, and the folder of its results.
+pub struct Campaign<'a> {
+    study: &'a Study,
+    pipeline: &'a dyn StudyPipeline,
+    store: ShardStore,
+}
+
+/// How the cases of a campaign are run.
+#[derive(Debug, Clone, Copy)]
+pub struct Workers<'a> {
+    /// Threads; the rows do not depend on it.
+    pub jobs: usize,
+    /// A program finds its images in folders of its own below this one.
+    pub scratch: &'a Path,
+    /// Set from outside, it ends the campaign: no other case is begun, and those of a shard that is not whole are lost.
+    pub ended: Option<&'a AtomicBool>,
+}
+
+/// A case that a campaign knows.
+#[derive(Debug, Clone, Copy)]
+pub enum Known<'a> {
+    /// It was in a shard that is there already.
+    Kept(&'a CaseRow),
+    /// It was run now.
+    Run(&'a Evaluated),
+}
+
+impl Known<'_> {
+    /// Its row.
+    pub fn row(&self) -> &CaseRow {
+        match self {
+            Self::Kept(row) => row,
+            Self::Run(evaluated) => &evaluated.row,
+        }
+    }
+}
+
+impl<'a> Campaign<'a> {
+    /// Opens a folder for a study, new or with a part of it; in `shards` pieces, or as many as its plan says, or of about 32 cases. Nothing
+    /// is written before study and pipeline are known to go together.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a pipeline that is not there, and a folder that holds another study, or the same one in other pieces.
+    pub fn open(
+        study: &'a Study,
+        pipeline: &'a dyn StudyPipeline,
+        out: &Path,
+        shards: Option<u64>,
+    ) -> Result<Self, Failure> {
+        pipeline.check(study.scenario())?;
+        let shards = shards.or_else(|| ShardStore::planned_shards(out));
+        let plan = Plan::new(study, study.hash_with(pipeline), shards)?;
+        Ok(Self { study, pipeline, store: ShardStore::open(out, plan)? })
+    }
+
+    /// Opens a folder that holds a plan of the study.
+    ///
+    /// # Errors
+    /// As [`Campaign::open`], and [`Failure::Usage`] where there is no plan.
+    pub fn reopen(study: &'a Study, pipeline: &'a dyn StudyPipeline, out: &Path) -> Result<Self, Failure> {
+        if ShardStore::planned_shards(out).is_none() {
+            return Err(Failure::Usage(format!(
+                "{}: there is no plan.json that can be read, expected the directory of a study's shards",
+                out.display()
+            )));
+        }
+        Self::open(study, pipeline, out, None)
+    }
+
+    /// Its folder.
+    pub fn store(&self) -> &ShardStore {
+        &self.store
+    }
+
+    /// A shard, made if it is missing or damaged; `done` is told of each of its cases.
+    ///
+    /// # Errors
+    /// The [`Failure`] of the first case that has one, or of files.
+    pub fn shard(
+        &self,
+        shard: u64,
+        workers: Workers<'_>,
+        done: impl Fn(Known<'_>) + Sync,
+    ) -> Result<(CaseTable, ShardManifest), Failure> {
+        let empty = self.study.table();
+        if let Some((table, manifest)) = self.store.read(shard, &empty)? {
+            table.rows.iter().for_each(|row| done(Known::Kept(row)));
+            return Ok((table, manifest));
+        }
+        let cases = self.store.plan().cases_of(shard);
+        let rows = run_cases(self.study, cases, self.pipeline, workers, |case| done(Known::Run(case)))?;
+        let table = empty.with_rows(rows);
+        let manifest = self.store.write(shard, &table)?;
+        Ok((table, manifest))
+    }
+
+    /// All cases, or as many as the stopping rule asks for; what is missing is made, and `done` is told of each case.
+    ///
+    /// # Errors
+    /// As [`Campaign::shard`].
+    pub fn run(&self, workers: Workers<'_>, done: impl Fn(Known<'_>) + Sync) -> Result<CaseTable, Failure> {
+        self.gather(|shard| Ok(Some(self.shard(shard, workers, &done)?.0)))
+    }
+
+    /// All cases, or as many as the stopping rule asks for, of the shards that are there.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when shards are missing or damaged, or files are there that are none of the plan's.
+    pub fn merge(&self) -> Result<CaseTable, Failure> {
+        self.store.check_foreign()?;
+        let mut first_missing = None;
+        let table = self.gather(|shard| {
+            let read = self.store.read(shard, &self.study.table())?;
+            if read.is_none() {
+                first_missing = Some(shard);
+            }
+            Ok(read.map(|(table, _)| table))
+        })?;
+        first_missing.map_or(Ok(table), |first| Err(self.missing(first)?))
+    }
+
+    /// What to say of the shards that are not there, of which one is known. That one is not looked for again: another process may have
+    /// made it since, and the table would still be without it.
+    fn missing(&self, first: u64) -> Result<Failure, Failure> {
+        let shards = self.store.plan().shards;
+        let mut missing = vec![first.to_string()];
+        for shard in first + 1..=shards {
+            if self.store.read(shard, &self.study.table())?.is_none() {
+                missing.push(shard.to_string());
+            }
+        }
+        Ok(Failure::Usage(format!(
+            "shards {} of {shards} are missing or were damaged; `boresight study run` makes them",
+            missing.join(", ")
+        )))
+    }
+
+    /// The cases of the shards in order, up to the first that is not to be had, or to where the stopping rule stops.
+    fn gather(
+        &self,
+        mut shard: impl FnMut(u64) -> Result<Option<CaseTable>, Failure>,
+    ) -> Result<CaseTable, Failure> {
+        let mut table = self.study.table();
+        let mut stopping = Stopping::new(self.study);
+        for number in 1..=self.store.plan().shards {
+            let Some(read) = shard(number)? else { break };
+            table.rows.extend(read.rows);
+            if let Some(cases) = stopping.enough(&table) {
+                table.rows.truncate(cases as usize);
+                break;
+            }
+        }
+        Ok(table)
+    }
+
+    /// Sums up some cases, and writes them with the summary; `path` is the study's file, for its commands.
+    ///
+    /// # Errors
+    /// A [`Failure`] of files.
+    pub fn finish(&self, path: &Path, table: &CaseTable) -> Result<Summary, Failure> {
+        let summary = Summary::new(self.study, self.pipeline, path, table);
+        self.store.write_record(&StudyRecord::new(self.study)?)?;
+        self.store.write_cases(table)?;
+        self.store.write_summary(&summary)?;
+        self.store.seal()?;
+        Ok(summary)
+    }
+}

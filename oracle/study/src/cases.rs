@@ -1,0 +1,274 @@
+//! The rows of a study: a case each, with what was drawn and what came of it.
+
+use std::io::Write;
+use std::path::Path;
+
+use files::sha256::hex;
+use files::{
+    Cell, Cells, Column, ColumnType, ColumnValues, FileError, ParquetFile, TableOptions, write_table,
+};
+use indexmap::IndexMap;
+use sha2::{Digest, Sha256};
+
+/// A drawn value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Drawn {
+    /// A number.
+    Number(f64),
+    /// Anything else, as JSON.
+    Text(String),
+}
+
+impl Drawn {
+    /// As a person reads it.
+    pub fn shown(&self) -> String {
+        match self {
+            Self::Number(number) => number.to_string(),
+            Self::Text(text) => text.clone(),
+        }
+    }
+}
+
+/// A figure of a case.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CaseFigure {
+    /// The value; `None` when it is counted over nothing.
+    pub value: Option<f64>,
+    /// How many count: of a rate, `value` is `count`/`of`.
+    pub count: u64,
+    /// How many it is counted over.
+    pub of: u64,
+}
+
+/// A case and what came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseRow {
+    /// Number of the case.
+    pub case: u64,
+    /// Seed of its scenario.
+    pub seed: u64,
+    /// Whether the pipeline itself failed, at one frame or more: it crashed, gave no answer in time, or none that can be read.
+    pub has_failed: bool,
+    /// Drawn values, in the order of the table's columns.
+    pub drawn: Vec<Drawn>,
+    /// Figures, in the order of the table's columns.
+    pub figures: Vec<CaseFigure>,
+}
+
+/// Rows with their columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseTable {
+    /// Names of what is drawn, and whether they are numbers.
+    pub drawn: IndexMap<String, bool>,
+    /// Names of the figures.
+    pub figures: Vec<String>,
+    /// The rows, by number of the case.
+    pub rows: Vec<CaseRow>,
+}
+
+/// Before the name of a drawn value's column.
+const SET: &str = "set.";
+/// Rows read at a time.
+const BATCH_ROWS: usize = 8192;
+
+impl CaseTable {
+    /// SHA-256 of the rows and the names of their columns, hexadecimal: what a table says, however it is encoded.
+    pub fn sha256(&self) -> String {
+        let mut hash = Sha256::new();
+        let mut text = |text: &str| {
+            hash.update((text.len() as u64).to_le_bytes());
+            hash.update(text);
+        };
+        self.drawn.keys().for_each(|name| text(name));
+        self.figures.iter().for_each(|name| text(name));
+        for row in &self.rows {
+            hash.update(row.case.to_le_bytes());
+            hash.update(row.seed.to_le_bytes());
+            hash.update([u8::from(row.has_failed)]);
+            for drawn in &row.drawn {
+                match drawn {
+                    Drawn::Number(number) => hash.update(number.to_bits().to_le_bytes()),
+                    Drawn::Text(text) => {
+                        hash.update((text.len() as u64).to_le_bytes());
+                        hash.update(text);
+                    }
+                }
+            }
+            for figure in &row.figures {
+                hash.update([u8::from(figure.value.is_some())]);
+                hash.update(figure.value.unwrap_or(0.0).to_bits().to_le_bytes());
+                hash.update(figure.count.to_le_bytes());
+                hash.update(figure.of.to_le_bytes());
+            }
+        }
+        hex(hash.finalize())
+    }
+
+    /// Writes the rows as Parquet: `case`, `seed`, `has_failed`, `set.PATH` for what was drawn, and NAME, NAME.count, NAME.of for each figure.
+    ///
+    /// # Errors
+    /// [`FileError`], of `path`, when the file cannot be written.
+    pub fn write(
+        &self,
+        file: impl Write + Send,
+        path: &Path,
+        metadata: &[(&str, String)],
+    ) -> Result<(), FileError> {
+        let notes = metadata.iter().map(|(key, value)| ((*key).to_owned(), value.clone())).collect();
+        write_table(file, path, &self.columns(), TableOptions { notes, ..TableOptions::default() })
+    }
+
+    #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
+    fn columns(&self) -> Vec<Column> {
+        let rows = || self.rows.iter();
+        let mut columns = vec![
+            Column::new("case", rows().map(|row| row.case)),
+            Column::new("seed", rows().map(|row| row.seed)),
+            Column::new("has_failed", rows().map(|row| row.has_failed)),
+        ];
+        for (index, (name, is_number)) in self.drawn.iter().enumerate() {
+            let name = format!("{SET}{name}");
+            let cells = rows().map(|row| &row.drawn[index]);
+            columns.push(if *is_number {
+                let number = |cell: &Drawn| match cell {
+                    Drawn::Number(number) => Some(*number),
+                    Drawn::Text(_) => None,
+                };
+                // A word among numbers has no number: the writer refuses the column.
+                Column::of(name, false, f64::values(cells.map(number).collect()))
+            } else {
+                Column::texts(name, cells.map(Drawn::shown))
+            });
+        }
+        for (index, name) in self.figures.iter().enumerate() {
+            let figures = || rows().map(|row| row.figures[index]);
+            columns.extend([
+                Column::nullable(name, figures().map(|figure| figure.value)),
+                Column::new(format!("{name}.count"), figures().map(|figure| figure.count)),
+                Column::new(format!("{name}.of"), figures().map(|figure| figure.of)),
+            ]);
+        }
+        columns
+    }
+
+    /// The columns of a file of cases, without its rows.
+    ///
+    /// # Errors
+    /// [`FileError`] for a file that cannot be read or is damaged.
+    pub fn columns_of(path: &Path) -> Result<Self, FileError> {
+        let file = ParquetFile::open(path)?;
+        let columns = file.columns();
+        let drawn = columns.iter().filter_map(|column| {
+            let name = column.name.strip_prefix(SET)?;
+            Some((name.to_owned(), column.column_type == Ok(ColumnType::Float64)))
+        });
+        let figures = columns.iter().filter_map(|column| column.name.strip_suffix(".of"));
+        Ok(Self {
+            drawn: drawn.collect(),
+            figures: figures.filter(|name| !name.starts_with(SET)).map(str::to_owned).collect(),
+            rows: Vec::new(),
+        })
+    }
+
+    /// Reads a table with these columns, and what was written beside the rows.
+    ///
+    /// # Errors
+    /// [`FileError`] for a file that cannot be read, is damaged, or has other columns.
+    pub fn read(&self, path: &Path) -> Result<(Self, IndexMap<String, String>), FileError> {
+        let file = ParquetFile::open(path)?;
+        let notes = file.notes().map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
+        let mut table = self.with_rows(Vec::new());
+        let expected = table.columns();
+        for column in &expected {
+            let expected = column.values().column_type();
+            if file.column(column.name()).is_none_or(|found| found.column_type != Ok(expected)) {
+                return Err(no_column(path, column.name(), expected));
+            }
+        }
+        let names: Vec<&str> = expected.iter().map(Column::name).collect();
+        for batch in file.batches(&names, BATCH_ROWS)? {
+            table.add(path, &batch?)?;
+        }
+        Ok((table, notes))
+    }
+
+    fn add(&mut self, path: &Path, batch: &[Column]) -> Result<(), FileError> {
+        fn cells<'a, T: Cell>(
+            path: &Path,
+            batch: &'a [Column],
+            name: &str,
+            column_type: ColumnType,
+        ) -> Result<&'a Cells<T>, FileError> {
+            let found = batch.iter().find(|column| column.name() == name);
+            found
+                .and_then(|column| T::cells(column.values()))
+                .ok_or_else(|| no_column(path, name, column_type))
+        }
+        let whole = |name: &str| cells::<u64>(path, batch, name, ColumnType::UInt64).map(Cells::values);
+        let number = |name: &str| cells::<f64>(path, batch, name, ColumnType::Float64);
+        let failed = cells::<bool>(path, batch, "has_failed", ColumnType::Boolean)?.values();
+        let rows = whole("case")?.iter().zip(whole("seed")?).zip(failed);
+        let mut rows: Vec<CaseRow> = rows
+            .map(|((&case, &seed), &has_failed)| CaseRow {
+                case,
+                seed,
+                has_failed,
+                drawn: Vec::with_capacity(self.drawn.len()),
+                figures: Vec::with_capacity(self.figures.len()),
+            })
+            .collect();
+        for (name, is_number) in &self.drawn {
+            let name = format!("{SET}{name}");
+            if *is_number {
+                let numbers = number(&name)?.values();
+                rows.iter_mut().zip(numbers).for_each(|(row, &number)| row.drawn.push(Drawn::Number(number)));
+            } else {
+                let found = batch.iter().find(|column| *column.name() == name).map(Column::values);
+                let Some(ColumnValues::Utf8(texts)) = found else {
+                    return Err(no_column(path, &name, ColumnType::Utf8));
+                };
+                let texts = texts.iter().map(Option::unwrap_or_default);
+                rows.iter_mut()
+                    .zip(texts)
+                    .for_each(|(row, text)| row.drawn.push(Drawn::Text(text.to_owned())));
+            }
+        }
+        for name in &self.figures {
+            let (values, counts, ofs) =
+                (number(name)?, whole(&format!("{name}.count"))?, whole(&format!("{name}.of"))?);
+            let figures = values.iter().zip(counts).zip(ofs);
+            for (row, ((value, &count), &of)) in rows.iter_mut().zip(figures) {
+                row.figures.push(CaseFigure { value, count, of });
+            }
+        }
+        self.rows.extend(rows);
+        Ok(())
+    }
+
+    /// A table of the same columns.
+    pub fn with_rows(&self, rows: Vec<CaseRow>) -> Self {
+        Self { drawn: self.drawn.clone(), figures: self.figures.clone(), rows }
+    }
+
+    /// The numbers of a figure, case by case.
+    #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
+    pub fn figure(&self, name: &str) -> Option<Vec<CaseFigure>> {
+        let index = self.figures.iter().position(|figure| figure == name)?;
+        Some(self.rows.iter().map(|row| row.figures[index]).collect())
+    }
+
+    /// The numbers of a drawn value, case by case; `None` for what is no number.
+    #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
+    pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
+        let index = self.drawn.get_index_of(name)?;
+        let number = |row: &CaseRow| match row.drawn[index] {
+            Drawn::Number(number) => Some(number),
+            Drawn::Text(_) => None,
+        };
+        self.rows.iter().map(number).collect()
+    }
+}
+
+fn no_column(path: &Path, name: &str, column_type: ColumnType) -> FileError {
+    FileError::format(path, "Parquet", format!("it has no column `{name}` of the type {column_type}"))
+}

@@ -1,0 +1,457 @@
+//! A study that was read and checked, and the scenarios of its cases.
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use files::sha256::{hex, sha256_hex};
+use files::{Failure, toml_file};
+use indexmap::IndexMap;
+use scenario::{Scenario, ScenarioSource};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use sim::randomness::{Effect, Seed};
+
+use super::cases::{CaseTable, Drawn};
+use super::design::Design;
+use super::design::DesignKind;
+use super::file::StudyFile;
+use super::law::{Drawable, Law, boresight, euler_123};
+use super::overlay::ValuePath;
+use super::tried::StudyPipeline;
+
+/// Most cases of a study.
+const MOST_CASES: u64 = 1 << 40;
+
+/// What is no parameter.
+const NOT_VARIED: [&str; 3] = ["title", "world", "seed"];
+
+/// Names of the angles of an attitude: of a boresight, or of Euler's.
+const BORESIGHT: [&str; 3] = ["ra_deg", "dec_deg", "roll_deg"];
+const EULER_123: [&str; 3] = ["phi_deg", "theta_deg", "psi_deg"];
+
+/// A study that was read and checked.
+pub struct Study {
+    /// Name: that of its file without the extension.
+    pub name: String,
+    /// What is asked for.
+    pub file: StudyFile,
+    /// The scenario that the cases begin from.
+    base: ScenarioSource,
+    base_values: Value,
+    vary: Vec<Varied>,
+    sweep: Vec<Swept>,
+    design: Design,
+    path: PathBuf,
+    text: String,
+    hash: String,
+}
+
+/// A parameter with its law, ready to be drawn.
+struct Varied {
+    path: ValuePath,
+    law: Drawable,
+    /// Of an attitude: its angles.
+    angles: Option<[ValuePath; 3]>,
+    is_euler: bool,
+}
+
+struct Swept {
+    path: ValuePath,
+    values: Vec<Value>,
+}
+
+/// A case: a scenario of its own.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Its number.
+    pub number: u64,
+    /// Seed of its scenario.
+    pub seed: u64,
+    /// What was drawn, in the order of [`Study::drawn_columns`].
+    pub drawn: Vec<Drawn>,
+    /// Its scenario.
+    pub source: ScenarioSource,
+}
+
+impl Study {
+    /// Reads and checks a study, the scenario that it names included; the first case is made, so that a path that leads nowhere or a
+    /// value of the wrong type is found before anything runs.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the first mistake.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let text = toml_file::read_text(path).map_err(|error| {
+            Failure::Usage(format!("`{}` is no study that can be read: {error}", path.display()))
+        })?;
+        let file: StudyFile = toml_file::parse(path, &text)?;
+        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        let refuse =
+            |at: &str, message: String| -> Failure { toml_file::refuse(path, &text, at, message).into() };
+
+        let beside = folder.join(&file.scenario);
+        let word = if scenario::BUILT_IN.iter().any(|built_in| built_in.name == file.scenario) {
+            file.scenario.clone()
+        } else {
+            beside.to_string_lossy().into_owned()
+        };
+        let base = match ScenarioSource::read(&word) {
+            Err(Failure::Usage(message)) => return Err(refuse("scenario", message)),
+            other => other?,
+        };
+        let base_values = base.scenario.to_json()?;
+
+        let mut vary = Vec::new();
+        let mut taken: Vec<ValuePath> = Vec::new();
+        for (i, dispersion) in file.vary.iter().enumerate() {
+            let at = |field: &str| format!("vary[{i}].{field}");
+            dispersion.law.check().map_err(|(field, value, expected)| {
+                refuse(&at(&format!("law.{field}")), format!("is {value}, expected {expected}"))
+            })?;
+            let varied = Varied::new(&dispersion.path, &dispersion.law, &folder, &base_values)
+                .map_err(|(field, message)| refuse(&at(field), message))?;
+            check_free(&mut taken, &varied.path).map_err(|message| refuse(&at("path"), message))?;
+            vary.push(varied);
+        }
+        let mut sweep = Vec::new();
+        for (i, swept) in file.sweep.iter().enumerate() {
+            let at = |field: &str| format!("sweep[{i}].{field}");
+            let value_path = ValuePath::parse(&swept.path).map_err(|expected| {
+                refuse(&at("path"), format!("is `{}`, expected {expected}", swept.path))
+            })?;
+            check_free(&mut taken, &value_path).map_err(|message| refuse(&at("path"), message))?;
+            if swept.values.is_empty() {
+                return Err(refuse(&at("values"), "is [], expected one value or more".to_owned()));
+            }
+            sweep.push(Swept { path: value_path, values: swept.values.clone() });
+        }
+
+        let counts = sweep.iter().map(|swept| swept.values.len() as u64);
+        let Some(cells) = counts.into_iter().try_fold(1_u64, |cells, count| cells.checked_mul(count)) else {
+            return Err(refuse(
+                "sweep",
+                "has 2^64 combinations or more, expected no more than cases".to_owned(),
+            ));
+        };
+        let cases = file.stop.cases;
+        if !(1..=MOST_CASES).contains(&cases) || !cases.is_multiple_of(cells) {
+            let expected = format!("is {cases}, expected 1 to 2^40, a multiple of the sweep's {cells}");
+            return Err(refuse("stop.cases", expected));
+        }
+        if file.design == DesignKind::Saltelli && !sweep.is_empty() {
+            return Err(refuse("design", "is saltelli, expected without a sweep".to_owned()));
+        }
+        if let Some(until) = &file.stop.until {
+            if file.design != DesignKind::Random {
+                let message = "is given, expected with the random design alone: of another one, all cases belong together";
+                return Err(refuse("stop.until", message.to_owned()));
+            }
+            if !(until.half_width > 0.0 && until.half_width.is_finite()) {
+                let message = format!("is {}, expected a number > 0", until.half_width);
+                return Err(refuse("stop.until.half_width", message));
+            }
+        }
+        let dimensions = file.vary.iter().map(|dispersion| dispersion.law.dimensions()).sum();
+        let design = Design::new(file.design, dimensions, cases / cells, file.seed)
+            .map_err(|expected| refuse("stop.cases", format!("is {cases}, expected {expected}")))?;
+
+        let name =
+            path.file_stem().map_or_else(|| "study".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let mut study = Self {
+            name,
+            file,
+            base,
+            base_values,
+            vary,
+            sweep,
+            design,
+            path: path.to_owned(),
+            text,
+            hash: String::new(),
+        };
+        study.hash = study.make_hash()?;
+        study.check_names()?;
+        let first = study.case(0)?.source;
+        let count = match &first.scenario {
+            Scenario::FarRange(scenario) => first.simulator(scenario)?.schedule().frame_count(),
+            Scenario::Docking(scenario) => first.docking_simulator(scenario)?.field_count(),
+        };
+        study.frames(count)?;
+        Ok(study)
+    }
+
+    /// Number of cases, the most there are.
+    pub fn cases(&self) -> u64 {
+        self.file.stop.cases
+    }
+
+    /// Number of points of the sweep: the first so many cases are one of each.
+    fn sweep_points(&self) -> u64 {
+        self.sweep.iter().map(|swept| swept.values.len() as u64).product()
+    }
+
+    /// Checks that the built-in pipeline can be run on the cameras of the sweep, of its first thousand points.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the parameter by which it cannot, in the case's scenario.
+    pub fn check_built_in_pipeline(&self) -> Result<(), Failure> {
+        const MOST_POINTS: u64 = 1000;
+        for number in 0..self.sweep_points().min(self.cases()).min(MOST_POINTS) {
+            let source = self.case(number)?.source;
+            if let Scenario::FarRange(scenario) = &source.scenario {
+                source.check_built_in_pipeline(scenario)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// SHA-256 of all that the rows depend on but the pipeline: the study, its scenario, its tables; hexadecimal.
+    pub fn hash(&self) -> &str {
+        &self.hash
+    }
+
+    /// The hash of rows by a pipeline.
+    pub fn hash_with(&self, pipeline: &dyn StudyPipeline) -> String {
+        match pipeline.hash(self.scenario().world()) {
+            Some(own) => sha256_hex(format!("{} {}", self.hash, hex(own))),
+            None => self.hash.clone(),
+        }
+    }
+
+    /// The scenario that the cases begin from.
+    pub fn scenario(&self) -> &Scenario {
+        &self.base.scenario
+    }
+
+    /// Frames of every case of a scenario that has `count`.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of a range that the scenario does not have.
+    pub fn frames(&self, count: u64) -> Result<Range<u64>, Failure> {
+        let Some(text) = &self.file.frames else { return Ok(0..count) };
+        let range = text
+            .split_once("..")
+            .and_then(|(from, to)| Some(from.trim().parse::<u64>().ok()?..to.trim().parse::<u64>().ok()?));
+        match range.filter(|range| range.start < range.end && range.end <= count) {
+            Some(range) => Ok(range),
+            None => {
+                let message = format!(
+                    "is `{text}`, expected A..B with A < B, frames of the scenario, which has {count}"
+                );
+                Err(self.refuse("frames", message))
+            }
+        }
+    }
+
+    /// A mistake in the study's file.
+    pub(super) fn refuse(&self, at: &str, message: String) -> Failure {
+        toml_file::refuse(&self.path, &self.text, at, message).into()
+    }
+
+    /// Names of what is drawn, each with whether it is a number: the sweep first, then what varies.
+    pub fn drawn_columns(&self) -> IndexMap<String, bool> {
+        let mut columns = IndexMap::new();
+        for swept in &self.sweep {
+            columns.insert(swept.path.text().to_owned(), swept.values.iter().all(Value::is_number));
+        }
+        for varied in &self.vary {
+            match (&varied.angles, &varied.law) {
+                (Some(angles), _) => {
+                    columns.extend(angles.iter().map(|angle| (angle.text().to_owned(), true)));
+                }
+                (None, Drawable::Law(Law::Choice { values, .. })) => {
+                    columns.insert(varied.path.text().to_owned(), values.iter().all(Value::is_number));
+                }
+                (None, _) => {
+                    columns.insert(varied.path.text().to_owned(), true);
+                }
+            }
+        }
+        columns
+    }
+
+    /// A table of this study without rows.
+    pub fn table(&self) -> CaseTable {
+        CaseTable { drawn: self.drawn_columns(), figures: self.figures(), rows: Vec::new() }
+    }
+
+    /// Names of the figures that are recorded.
+    pub fn figures(&self) -> Vec<String> {
+        let all = super::evaluate::figure_names(self.scenario());
+        match &self.file.record.figures {
+            Some(names) => names.clone(),
+            None => all,
+        }
+    }
+
+    /// The figure by which cases are good or bad.
+    pub fn worst_by(&self) -> String {
+        let default = match self.scenario() {
+            Scenario::FarRange(_) => score::names::CORRECT_RATE,
+            Scenario::Docking(_) => score::docking::names::SUCCESS_RATE,
+        };
+        self.file.record.worst_by.clone().unwrap_or_else(|| default.to_owned())
+    }
+
+    /// A case, by its number alone.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the values drawn make no scenario; the place is that of the value in the case's scenario.
+    pub fn case(&self, number: u64) -> Result<Case, Failure> {
+        let cells = self.sweep_points();
+        let (mut cell, replicate) = (number % cells, number / cells);
+        let mut values = self.base_values.clone();
+        let mut drawn = Vec::new();
+        for (i, swept) in self.sweep.iter().enumerate().rev() {
+            let count = swept.values.len() as u64;
+            // A sweep has a value, which was checked when it was read.
+            let value = swept.values.get((cell % count) as usize).cloned().unwrap_or_default();
+            cell /= count;
+            drawn.insert(0, recorded(&value));
+            let at = format!("sweep[{i}].path");
+            swept
+                .path
+                .set(&mut values, value)
+                .map_err(|expected| self.refuse_path(&at, &swept.path, &expected))?;
+        }
+        let point = self.design.point(replicate);
+        let mut u = point.iter().copied();
+        for (i, varied) in self.vary.iter().enumerate() {
+            let at = format!("vary[{i}].path");
+            let mut set = |path: &ValuePath, value: Value| {
+                drawn.push(recorded(&value));
+                path.set(&mut values, value).map_err(|expected| self.refuse_path(&at, path, &expected))
+            };
+            if let Some(angles) = &varied.angles {
+                let unit = [0; 3].map(|_: i32| u.next().unwrap_or(0.5));
+                let drawn = if varied.is_euler { euler_123(unit) } else { boresight(unit) };
+                for (path, angle) in angles.iter().zip(drawn) {
+                    set(path, Value::from(angle))?;
+                }
+            } else {
+                set(&varied.path, varied.law.value(u.next().unwrap_or(0.5)))?;
+            }
+        }
+        // The same at every point of a sweep. TOML's whole numbers have a sign: one bit less.
+        let seed = Seed { seed: self.file.seed, case: replicate }.streams(0, Effect::CaseSeed).word(0) >> 1;
+        let source =
+            self.base.with_values(&values, seed, format!("{}, case {number}", self.path.display()))?;
+        Ok(Case { number, seed, drawn, source })
+    }
+
+    fn refuse_path(&self, at: &str, path: &ValuePath, expected: &str) -> Failure {
+        self.refuse(at, format!("is `{}`, expected {expected}", path.text()))
+    }
+
+    /// Figures and paths that there are.
+    fn check_names(&self) -> Result<(), Failure> {
+        let known = super::evaluate::figure_names(self.scenario());
+        let check = |at: &str, name: &str| {
+            if known.iter().any(|figure| figure == name) {
+                return Ok(());
+            }
+            let hint = toml_file::nearest(name, known.iter().map(String::as_str))
+                .map_or_else(|| known.join(", "), |name| format!("did you mean `{name}`?"));
+            Err(self.refuse(at, format!("is `{name}`, expected a figure of the score; {hint}")))
+        };
+        let recorded = self.file.record.figures.iter().flatten();
+        for (i, name) in recorded.enumerate() {
+            check(&format!("record.figures[{i}]"), name)?;
+        }
+        check("record.worst_by", &self.worst_by())?;
+        if let Some(until) = &self.file.stop.until {
+            check("stop.until.figure", &until.figure)?;
+        }
+        let is_recorded = |name: &str| self.figures().iter().any(|figure| figure == name);
+        for (at, name) in [("record.worst_by", Some(self.worst_by()))]
+            .into_iter()
+            .chain([("stop.until.figure", self.file.stop.until.as_ref().map(|until| until.figure.clone()))])
+        {
+            if let Some(name) = name.filter(|name| !is_recorded(name)) {
+                return Err(self.refuse(at, format!("is `{name}`, expected one of record.figures")));
+            }
+        }
+        Ok(())
+    }
+
+    fn make_hash(&self) -> Result<String, Failure> {
+        let mut hash = Sha256::new();
+        hash.update(serde_json::to_string(&self.file).map_err(unwritable)?);
+        hash.update(serde_json::to_string(&self.base_values).map_err(unwritable)?);
+        hash.update(env!("CARGO_PKG_VERSION"));
+        for varied in &self.vary {
+            if let Drawable::Column(values) = &varied.law {
+                values.iter().for_each(|value| hash.update(value.to_bits().to_le_bytes()));
+            }
+        }
+        Ok(hex(hash.finalize()))
+    }
+}
+
+impl Varied {
+    fn new(path: &str, law: &Law, folder: &Path, base: &Value) -> Result<Self, Problem> {
+        let value_path = ValuePath::parse(path)
+            .map_err(|expected| ("path", format!("is `{path}`, expected {expected}")))?;
+        let mut varied = Self {
+            law: law.load(folder).map_err(|error| ("law.path", error.to_string()))?,
+            path: value_path,
+            angles: None,
+            is_euler: false,
+        };
+        if *law == Law::IsotropicAttitude {
+            let table = varied.path.get(base);
+            let has = |names: [&str; 3]| names.iter().all(|name| table.and_then(|t| t.get(name)).is_some());
+            let names = if has(BORESIGHT) {
+                BORESIGHT
+            } else if has(EULER_123) {
+                varied.is_euler = true;
+                EULER_123
+            } else {
+                let message = format!(
+                    "is `{path}`, expected a table of the scenario with {}, or with {}",
+                    BORESIGHT.join(", "),
+                    EULER_123.join(", ")
+                );
+                return Err(("path", message));
+            };
+            let angle = |name: &str| ValuePath::parse(&format!("{path}.{name}"));
+            let [Ok(a), Ok(b), Ok(c)] = names.map(angle) else {
+                return Err(("path", format!("is `{path}`, expected the path of a table")));
+            };
+            varied.angles = Some([a, b, c]);
+        }
+        Ok(varied)
+    }
+}
+
+/// What is wrong with an entry: the field, and why.
+type Problem = (&'static str, String);
+
+fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String> {
+    if NOT_VARIED.contains(&path.text()) {
+        return Err(format!(
+            "is `{}`, expected a parameter of what is simulated or of the pipeline: every case has a seed of its own already",
+            path.text()
+        ));
+    }
+    if let Some(other) = taken.iter().find(|other| other.overlaps(path)) {
+        return Err(format!(
+            "is `{}`, expected a path apart from `{}`, which is set too",
+            path.text(),
+            other.text()
+        ));
+    }
+    taken.push(path.clone());
+    Ok(())
+}
+
+/// As it stands in a table.
+fn recorded(value: &Value) -> Drawn {
+    match (value, value.as_f64()) {
+        (_, Some(number)) => Drawn::Number(number),
+        (Value::String(text), _) => Drawn::Text(text.clone()),
+        (other, _) => Drawn::Text(other.to_string()),
+    }
+}
+
+fn unwritable(error: serde_json::Error) -> Failure {
+    Failure::Usage(format!("the study cannot be written as JSON: {error}"))
+}

@@ -1,0 +1,47 @@
+//! Runs the cases of a shard on the threads of this machine.
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+use files::Failure;
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
+
+use super::campaign::Workers;
+use super::cases::CaseRow;
+use super::definition::Study;
+use super::evaluate::{Evaluated, evaluate};
+use super::tried::StudyPipeline;
+
+/// Evaluates cases on `jobs` threads, a case a thread; `done` is told of each, in no order. The rows are in order, and depend on
+/// neither. A program finds its images in folders of its own below `scratch`.
+///
+/// # Errors
+/// The failure of the first case, in order, that has one; [`Failure::Interrupted`] of those that were not done when it was ended.
+pub(super) fn run_cases(
+    study: &Study,
+    cases: Range<u64>,
+    pipeline: &dyn StudyPipeline,
+    Workers { jobs, scratch, ended }: Workers<'_>,
+    done: impl Fn(&Evaluated) + Sync,
+) -> Result<Vec<CaseRow>, Failure> {
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(jobs)
+        .build()
+        .map_err(|error| Failure::Usage(format!("{jobs} threads cannot be started: {error}")))?;
+    let go_on = || match ended {
+        Some(ended) if ended.load(Ordering::Relaxed) => Err(Failure::Interrupted),
+        _ => Ok(()),
+    };
+    let one = |case: u64| {
+        go_on()?;
+        let own = tempfile::tempdir_in(scratch)
+            .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))?;
+        let evaluated = evaluate(study, case, pipeline, own.path())?;
+        // What a pipeline answered while it was ended is no result.
+        go_on()?;
+        done(&evaluated);
+        Ok(evaluated.row)
+    };
+    let rows: Vec<Result<CaseRow, Failure>> = pool.install(|| cases.into_par_iter().map(one).collect());
+    rows.into_iter().collect()
+}

@@ -1,0 +1,85 @@
+//! The pipeline that a study tries.
+use std::path::Path;
+
+use contract::PipelineFactory;
+use contract::docking::DockingPipelineFactory;
+use files::Failure;
+use pipeline::docking::DockingConfig;
+use pipeline::far_range::FarRangeConfig;
+use run::pipeline_choice::PipelineChoice;
+use scenario::{Scenario, World};
+
+use super::definition::Study;
+use super::summary::command_line;
+
+/// The pipeline that a study tries, built anew for every case: one that a command line can name ([`PipelineChoice`]), or one of the
+/// caller's own, alive in this process. Cases ask it from several threads at once.
+pub trait StudyPipeline: Sync {
+    /// Refuses a scenario of a world that it is not for, before anything is written.
+    ///
+    /// # Errors
+    /// A [`Failure`] that says what was expected.
+    fn check(&self, scenario: &Scenario) -> Result<(), Failure>;
+
+    /// SHA-256 of what its answers depend on, as far as it can be known, so that rows of two pipelines never mix; none for the built-in
+    /// pipeline of a world, whose parameters are the scenario's.
+    fn hash(&self, world: World) -> Option<[u8; 32]>;
+
+    /// What runs a case of a study again, as a reader would type it; `path` is the study's file.
+    fn replay(&self, study: &Study, path: &Path, case: u64) -> String;
+
+    /// Builds it for a case of the far range. A program finds the images of its frames in `scratch`.
+    ///
+    /// # Errors
+    /// A [`Failure`] when there is no such pipeline.
+    fn factory(
+        &self,
+        far_range: &FarRangeConfig,
+        scratch: &Path,
+    ) -> Result<Box<dyn PipelineFactory>, Failure>;
+
+    /// The same for a case of docking.
+    ///
+    /// # Errors
+    /// As [`StudyPipeline::factory`].
+    fn docking_factory(
+        &self,
+        docking: &DockingConfig,
+        scratch: &Path,
+    ) -> Result<Box<dyn DockingPipelineFactory>, Failure>;
+}
+
+impl StudyPipeline for PipelineChoice {
+    fn check(&self, scenario: &Scenario) -> Result<(), Failure> {
+        PipelineChoice::check(self, scenario)
+    }
+
+    fn hash(&self, world: World) -> Option<[u8; 32]> {
+        PipelineChoice::hash(self, world)
+    }
+
+    fn replay(&self, study: &Study, path: &Path, case: u64) -> String {
+        let mut words = ["boresight", "study", "replay"].map(str::to_owned).to_vec();
+        words.push(path.display().to_string());
+        words.extend(["--case".to_owned(), case.to_string()]);
+        words.extend(self.arguments(study.scenario().world()));
+        words.extend(["--save-frames", "png"].map(str::to_owned));
+        command_line(&words)
+    }
+
+    fn factory(
+        &self,
+        far_range: &FarRangeConfig,
+        scratch: &Path,
+    ) -> Result<Box<dyn PipelineFactory>, Failure> {
+        PipelineChoice::factory(self, far_range, scratch)
+    }
+
+    fn docking_factory(
+        &self,
+        docking: &DockingConfig,
+        scratch: &Path,
+    ) -> Result<Box<dyn DockingPipelineFactory>, Failure> {
+        PipelineChoice::docking_factory(self, docking, scratch)
+    }
+}

@@ -1,0 +1,415 @@
+//! The verification of requirements: each by the analytic law, and by simulated frames.
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use files::Failure;
+use statistics::clopper_pearson;
+
+use super::binding::binding_of;
+use super::confirm::{Bench, StarFrame};
+use super::curves;
+use super::definition::Requirements;
+use super::design::{Design, Reached, design_with};
+use super::inverse::{FoundValue, Search, resolvable, search};
+use super::report::{Found, Simulated, Status, Verdict, VisibilityReport};
+use super::requirement::{Demand, Find, Over, Parameter, Requirement, Want};
+use super::sky::Pointing;
+
+/// Factor of a step by which a value is moved that all boresights do not agree with, and most of such steps.
+const POLISH: f64 = 1.005;
+const POLISH_STEPS: usize = 8;
+
+/// Verifies all requirements and computes the curves. `progress` is told what is being looked at.
+///
+/// # Errors
+/// A [`Failure`] when the camera, the target or a simulation cannot be made.
+pub fn assess(requirements: &Requirements, progress: impl Fn(&str)) -> Result<VisibilityReport, Failure> {
+    let file = &requirements.file;
+    let pointings = file.sky.pointings as usize;
+    // One sky for all exposures that are looked at.
+    let finds = file.requirements.iter().filter_map(|requirement| requirement.find.as_ref());
+    let exposures = finds.filter(|find| find.parameter == Parameter::ExposureS).map(|find| find.to);
+    let longest_s = exposures.fold(file.exposure.max_s, f64::max);
+    let design = Design::new(requirements, &requirements.camera, pointings, longest_s)?;
+    progress("the sky");
+    let sky = curves::sky(requirements, &design)?;
+    if sky.counted == 0 {
+        let [sun, moon, earth] = sky.excluded;
+        return Err(Failure::Usage(format!(
+            "`{}`: the exclusion angles of [sky] leave none of {} pointings (Sun {sun}, Moon {moon}, limb of the Earth {earth}), expected \
+             angles that leave some: of no sky nothing can be verified",
+            requirements.name, sky.pointings
+        )));
+    }
+    let assessment = Assessment::new(requirements, &design);
+    let mut verdicts = Vec::new();
+    for requirement in &file.requirements {
+        progress(&requirement.id);
+        verdicts.push(match &requirement.find {
+            None => assessment.as_it_is(requirement)?,
+            Some(find) => assessment.find(requirement, find)?,
+        });
+    }
+    progress("curves");
+    let detection = curves::detection(requirements, &design)?;
+    let frames = assessment.star_frames(file.exposure.nominal_s)?;
+    let (exposure_window, stars_lost) = curves::exposure_window(requirements, &design)?;
+    Ok(VisibilityReport {
+        name: requirements.name.clone(),
+        title: file.title.clone(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        camera: curves::camera_figures(requirements, &design)?,
+        requirements: verdicts,
+        detection_simulated: curves::detection_simulated(&frames, &detection),
+        detection,
+        limiting_magnitude: curves::limiting_magnitude(requirements, &design)?,
+        sky,
+        exposure_window,
+        stars_lost,
+        target_range: curves::target_range(requirements, &design)?,
+    })
+}
+
+struct Assessment<'a> {
+    requirements: &'a Requirements,
+    design: &'a Design<'a>,
+    /// Frames over the sky that were made already, with their exposures.
+    frames: RefCell<Vec<(f64, Rc<Vec<StarFrame>>)>>,
+}
+
+/// A rate as far from the law's as chance brings it in one of five hundred results is not of that law.
+const DISAGREEMENT: f64 = 0.999;
+
+/// What was simulated where the law says `law`, in words; whether the two disagree, too.
+fn told(simulated: Option<&Simulated>, law: f64) -> String {
+    let Some(s) = simulated else { return "not simulated".to_owned() };
+    let (low, high) = clopper_pearson(s.count, s.of, DISAGREEMENT);
+    let remark = if (low..=high).contains(&law) { "" } else { ", which DISAGREES with the law" };
+    format!(
+        "simulated {} of {} frames ({:.1} to {:.1} %){remark}",
+        s.count,
+        s.of,
+        100.0 * s.low,
+        100.0 * s.high
+    )
+}
+
+impl<'a> Assessment<'a> {
+    fn new(requirements: &'a Requirements, design: &'a Design<'a>) -> Self {
+        Self { requirements, design, frames: RefCell::default() }
+    }
+
+    /// Whether the camera as it is meets a requirement.
+    fn as_it_is(&self, requirement: &Requirement) -> Result<Verdict, Failure> {
+        let file = &self.requirements.file;
+        let demand = &requirement.demand;
+        let asked = demand.probability(file.probability);
+        let reached = self.design.reached(demand, None)?;
+        let simulated = self.simulate(demand, &reached, None)?;
+        // Simulation may refute, within its confidence; where it agrees, the law decides.
+        let refuted = simulated.is_some_and(|s| s.high < asked);
+        let is_met = reached.probability >= asked && !refuted;
+        let binds = if is_met {
+            None
+        } else if reached.probability >= asked {
+            Some("simulation: fewer frames meet it than the analytic law says".to_owned())
+        } else {
+            Some(binding_of(self.design, self.requirements, demand, None, asked)?)
+        };
+        let (margin, margin_unit) = self.margin(demand, &reached, asked)?;
+        Ok(Verdict {
+            id: requirement.id.clone(),
+            text: requirement.text.clone(),
+            status: if is_met { Status::Met } else { Status::NotMet },
+            asked,
+            reached: reached.probability,
+            margin,
+            margin_unit: margin_unit.into(),
+            evidence: format!(
+                "{}; {}",
+                self.reached_in_words(demand, &reached, asked),
+                told(simulated.as_ref(), reached.probability)
+            ),
+            simulated,
+            found: None,
+            binds,
+        })
+    }
+
+    /// The value of a parameter that meets a requirement.
+    fn find(&self, requirement: &Requirement, find: &Find) -> Result<Verdict, Failure> {
+        let file = &self.requirements.file;
+        let demand = &requirement.demand;
+        let asked = demand.probability(file.probability);
+        let (parameter, unit) = find.parameter.words();
+        let verdict = Verdict {
+            id: requirement.id.clone(),
+            text: requirement.text.clone(),
+            status: Status::Impossible,
+            asked,
+            reached: 0.0,
+            margin: None,
+            margin_unit: unit.into(),
+            evidence: String::new(),
+            simulated: None,
+            found: None,
+            binds: None,
+        };
+        let FoundValue { value, threshold_value, failing_value, is_monotone } =
+            match search(self.requirements, self.design, demand, find)? {
+                Search::Impossible { best_value, best_probability, binds } => {
+                    return Ok(Verdict {
+                        reached: best_probability,
+                        evidence: format!(
+                            "{parameter} {} to {} {unit}: at most {:.1} %, at {} {unit}",
+                            digits(find.from),
+                            digits(find.to),
+                            100.0 * best_probability,
+                            digits(best_value)
+                        ),
+                        binds: Some(binds),
+                        ..verdict
+                    });
+                }
+                Search::Found(found) => found,
+            };
+        let value = self.polished(demand, find, value, asked)?;
+        let (reached, simulated) = self.at_value(demand, find.parameter, value)?;
+        let (failing, failing_simulated) = match failing_value {
+            Some(failing) => {
+                let (reached, simulated) = self.at_value(demand, find.parameter, failing)?;
+                (Some(reached.probability), simulated)
+            }
+            None => (None, None),
+        };
+        let confirmed = simulated.is_none_or(|s| s.low >= asked);
+        let shown = resolvable(asked, file.confirm.frames, file.confirm.confidence).0.is_some();
+        let is_met = reached.probability >= asked && (confirmed || !shown);
+        let own = match find.parameter {
+            Parameter::ExposureS => Some(file.exposure.nominal_s),
+            other => self.requirements.camera.value(other),
+        };
+        let mut evidence = format!(
+            "{parameter} {} {unit}: {:.1} %, {}",
+            digits(value),
+            100.0 * reached.probability,
+            told(simulated.as_ref(), reached.probability)
+        );
+        if let (Some(value), Some(probability)) = (failing_value, failing) {
+            let told = told(failing_simulated.as_ref(), probability);
+            evidence.push_str(&format!("; {} {unit}: {:.1} %, {told}", digits(value), 100.0 * probability));
+        }
+        if !is_monotone {
+            evidence.push_str("; beyond, not everywhere met");
+        }
+        if !shown && file.confirm.frames > 0 {
+            evidence.push_str("; too few frames to show it");
+        }
+        Ok(Verdict {
+            status: if is_met { Status::Met } else { Status::NotMet },
+            reached: reached.probability,
+            // Room of the camera as it is.
+            margin: own.map(|own| if find.want == Want::Largest { value - own } else { own - value }),
+            evidence,
+            simulated,
+            binds: (!is_met)
+                .then(|| "simulation: fewer frames meet it than the analytic law says".to_owned()),
+            found: Some(Found {
+                parameter: parameter.into(),
+                unit: unit.into(),
+                value,
+                probability: reached.probability,
+                threshold_value,
+                simulated,
+                failing_value,
+                failing_probability: failing,
+                failing_simulated,
+                is_monotone,
+            }),
+            ..verdict
+        })
+    }
+
+    /// A value that the search found from some boresights, moved until all of them agree that the law is met; a few steps at most.
+    fn polished(&self, demand: &Demand, find: &Find, found: f64, asked: f64) -> Result<f64, Failure> {
+        let inwards = if find.want == Want::Largest { 1.0 / POLISH } else { POLISH };
+        let mut value = found;
+        for _ in 0..POLISH_STEPS {
+            if self.law_at(demand, find.parameter, value)?.probability >= asked {
+                break;
+            }
+            value = (value * inwards).clamp(find.from, find.to);
+        }
+        Ok(value)
+    }
+
+    /// What a value of a parameter reaches by the law.
+    fn law_at(&self, demand: &Demand, parameter: Parameter, value: f64) -> Result<Reached, Failure> {
+        if parameter == Parameter::ExposureS && self.design.covers(value) {
+            return Ok(self.design.reached(demand, Some(value))?);
+        }
+        let pointings = self.requirements.file.sky.pointings as usize;
+        let (design, exposure_s) = design_with(self.requirements, parameter, value, pointings)?;
+        Ok(design.reached(demand, exposure_s)?)
+    }
+
+    /// What a value of a parameter reaches, by the law and by simulation.
+    fn at_value(
+        &self,
+        demand: &Demand,
+        parameter: Parameter,
+        value: f64,
+    ) -> Result<(Reached, Option<Simulated>), Failure> {
+        if parameter == Parameter::ExposureS && self.design.covers(value) {
+            let reached = self.design.reached(demand, Some(value))?;
+            let simulated = self.simulate(demand, &reached, Some(value))?;
+            return Ok((reached, simulated));
+        }
+        let pointings = self.requirements.file.sky.pointings as usize;
+        let (design, exposure_s) = design_with(self.requirements, parameter, value, pointings)?;
+        let reached = design.reached(demand, exposure_s)?;
+        let at = Assessment::new(self.requirements, &design);
+        let simulated = at.simulate(demand, &reached, exposure_s)?;
+        Ok((reached, simulated))
+    }
+
+    /// Frames of what a demand speaks of, at the worst of it. A limiting magnitude is not simulated by frames of its own: the stars
+    /// of the sky's frames stand beside the detection curve.
+    fn simulate(
+        &self,
+        demand: &Demand,
+        reached: &Reached,
+        exposure_s: Option<f64>,
+    ) -> Result<Option<Simulated>, Failure> {
+        let file = &self.requirements.file;
+        let frames = file.confirm.frames;
+        if frames == 0 {
+            return Ok(None);
+        }
+        let exposure_s = exposure_s.unwrap_or(reached.exposure_s);
+        let count = match demand {
+            Demand::LimitingMagnitude { .. } => return Ok(None),
+            Demand::Stars { n_min, over, .. } => {
+                self.enough_stars(exposure_s, n_min.unwrap_or(file.n_min), *over)?
+            }
+            Demand::ExposureWindow { n_min, .. } if reached.exposure_s >= file.exposure.min_s => {
+                self.enough_stars(reached.exposure_s, n_min.unwrap_or(file.n_min), Over::Sky)?
+            }
+            Demand::ExposureWindow { .. } => return Ok(None),
+            Demand::TargetDetected { phase_max_deg, .. } => {
+                let (Some(body), Some(range_km)) = (&self.requirements.target, reached.range_km) else {
+                    return Ok(None);
+                };
+                let groups = self.design.groups(*phase_max_deg);
+                let (_, worst) = self.design.target_chance(&groups, range_km, exposure_s)?;
+                let Some(group) = groups.get(worst) else { return Ok(None) };
+                let scenario = self.requirements.scenario.as_ref();
+                Some(self.bench().target(body, scenario, &group.aspects, range_km, exposure_s, frames)?)
+            }
+        };
+        let confidence = file.confirm.confidence;
+        Ok(count.map(|count| {
+            let of = u64::from(frames);
+            let (low, high) = clopper_pearson(count, of, confidence);
+            Simulated { count, of, low, high, confidence }
+        }))
+    }
+
+    /// How many frames have enough stars; `None` when no pointing counts.
+    fn enough_stars(&self, exposure_s: f64, n_min: u32, over: Over) -> Result<Option<u64>, Failure> {
+        let frames = match over {
+            Over::Sky => self.star_frames(exposure_s)?,
+            Over::EveryPointing => Rc::new(self.frames_of_the_worst(exposure_s, n_min)?),
+        };
+        let enough = frames.iter().filter(|frame| frame.detected >= n_min).count() as u64;
+        Ok((!frames.is_empty()).then_some(enough))
+    }
+
+    /// Frames of stars at pointings that count, spread over the sky.
+    fn star_frames(&self, exposure_s: f64) -> Result<Rc<Vec<StarFrame>>, Failure> {
+        if let Some((_, known)) = self.frames.borrow().iter().find(|(known, _)| *known == exposure_s) {
+            return Ok(Rc::clone(known));
+        }
+        let count = self.requirements.file.confirm.frames as usize;
+        let counted: Vec<&Pointing> = self.design.sky()?.counted().map(|field| &field.pointing).collect();
+        let places = if counted.is_empty() { 0..0 } else { 0..count };
+        let pointings: Vec<Pointing> =
+            places.map(|k| counted[(2 * k + 1) * counted.len() / (2 * count)].clone()).collect();
+        let frames = Rc::new(self.bench().stars(&pointings, exposure_s)?);
+        self.frames.borrow_mut().push((exposure_s, Rc::clone(&frames)));
+        Ok(frames)
+    }
+
+    /// Frames of stars, all at the pointing with the least chance of enough of them.
+    fn frames_of_the_worst(&self, exposure_s: f64, n_min: u32) -> Result<Vec<StarFrame>, Failure> {
+        let seen = self.design.stars(exposure_s, n_min)?;
+        let counted = self.design.sky()?.counted().zip(&seen);
+        let worst = counted.min_by(|(_, a), (_, b)| a.chance.total_cmp(&b.chance));
+        let Some((field, _)) = worst else { return Ok(Vec::new()) };
+        let pointings = vec![field.pointing.clone(); self.requirements.file.confirm.frames as usize];
+        self.bench().stars(&pointings, exposure_s)
+    }
+
+    fn bench(&self) -> Bench<'_> {
+        let file = &self.requirements.file;
+        Bench {
+            camera: &self.design.camera.config,
+            rule: &file.detection,
+            motion: &file.motion,
+            seed: file.seed,
+        }
+    }
+
+    /// The room of a camera as it is: in magnitudes, in kilometres, in exposures, or as a probability.
+    fn margin(
+        &self,
+        demand: &Demand,
+        reached: &Reached,
+        asked: f64,
+    ) -> Result<(Option<f64>, &'static str), Failure> {
+        Ok(match demand {
+            Demand::Stars { .. } => (Some(100.0 * (reached.probability - asked)), "points"),
+            Demand::LimitingMagnitude { magnitude, .. } => {
+                let limit = self.design.limiting_magnitude(reached.exposure_s, asked)?;
+                (limit.map(|limit| limit - magnitude), "mag")
+            }
+            Demand::TargetDetected { to_km, phase_max_deg, .. } => {
+                let groups = self.design.groups(*phase_max_deg);
+                let greatest = curves::greatest_range_km(self.design, &groups, reached.exposure_s, asked)?;
+                (greatest.map(|greatest| greatest - to_km), "km")
+            }
+            Demand::ExposureWindow { .. } => (Some(100.0 * (reached.probability - asked)), "points"),
+        })
+    }
+
+    fn reached_in_words(&self, demand: &Demand, reached: &Reached, asked: f64) -> String {
+        let Reached { probability, exposure_s, range_km } = *reached;
+        let percent = format!("{:.1} % ({:.1} % asked)", 100.0 * probability, 100.0 * asked);
+        let exposure = format!("{} s", digits(exposure_s));
+        match (demand, range_km) {
+            (Demand::Stars { n_min, over, .. }, _) => {
+                let n_min = n_min.unwrap_or(self.requirements.file.n_min);
+                let place = match over {
+                    Over::Sky => "over the sky",
+                    Over::EveryPointing => "at the worst pointing",
+                };
+                format!("{n_min} stars at {exposure} {place}: {percent}")
+            }
+            (Demand::LimitingMagnitude { magnitude, .. }, _) => {
+                format!("V = {magnitude} at {exposure}: {percent}")
+            }
+            (_, Some(range_km)) => format!("at {} km and {exposure}: {percent}", digits(range_km)),
+            (_, None) => percent,
+        }
+    }
+}
+
+/// Three digits that count.
+pub fn digits(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || !size.is_finite() {
+        return format!("{value}");
+    }
+    let places = (2.0 - libm::log10(size).floor()).clamp(0.0, 9.0) as usize;
+    format!("{value:.places$}")
+}

@@ -1,0 +1,95 @@
+//! Requirements: which camera sees enough stars, and the target.
+//!
+//! A file of requirements ([`RequirementFile`]) names a camera and what is demanded of it. The answer ([`VisibilityReport`]) is
+//! computed from the simulator's models of light by an analytic law of detection, and confirmed by frames of the simulator that the detector of the
+//! far-range method has looked at: so a mistake of the law is seen by the simulation, and what no number of frames could search is
+//! found by the law.
+//!
+//! - [`RequirementFile`], [`Requirements`]: what is asked; read and checked.
+//! - [`CameraModel`]: the camera, prepared by the simulator's models.
+//! - [`PixelThreshold`], [`ImageShares`], [`DetectionCurve`]: the law of detection: of a pixel, of an image, of stars.
+//! - [`Sky`], [`Curves`], [`at_least`]: stars in the field at every boresight, and how many of them are detected.
+//! - [`TargetModel`], [`Watch`]: the target by range, phase angle and attitude.
+//! - [`Design`]: one camera and what it reaches of a demand; [`search`]: the parameter that reaches it; [`binding`]: why none does.
+//! - [`Bench`]: simulated frames.
+//! - [`assess`]: all of it, into a [`VisibilityReport`]; [`write_report`]: its files.
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::indexing_slicing,
+        clippy::string_slice,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable
+    )
+)]
+
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod assess;
+mod binding;
+mod camera;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod confirm;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod curves;
+mod definition;
+mod design;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod detection;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod inverse;
+mod pixel;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod poisson_binomial;
+mod report;
+mod requirement;
+mod sky;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod star_count;
+mod target;
+mod write;
+
+pub use assess::{assess, digits};
+pub use binding::{binding, binding_of};
+pub use camera::{CameraConfig, CameraModel, mean_motion_rad_s};
+pub use confirm::{Bench, StarFrame, StarTrial};
+pub use definition::{BUILT_IN_REQUIREMENTS, Requirements};
+pub use design::{AspectGroup, Design, Reached, between};
+pub use detection::{DetectionCurve, FrameThresholds, ImageShares, background_e, is_flooded};
+pub use inverse::{FoundValue, Search, resolvable, search};
+pub use pixel::{PixelThreshold, readout_e};
+pub use poisson_binomial::at_least;
+pub use report::{
+    CameraFigures, DetectionPoint, Found, LimitPoint, PointingStars, RangeByPhase, Simulated, SimulatedPoint,
+    SkySummary, StarsLost, Status, Verdict, VisibilityReport, WindowPoint,
+};
+pub use requirement::{
+    CameraTable, ConfirmTable, Demand, DetectionRule, ExposureTable, Find, MotionGuidance, MotionTable, Over,
+    Parameter, Requirement, RequirementFile, SkyTable, SkyTime, TargetLight, TargetTable, Want,
+};
+pub use sky::{Excluded, Field, Pointing, Sky, SkyStar};
+pub use star_count::{Curves, Seen, over_sky, star_trail_px};
+pub use target::{Aspect, Setting, Sight, TargetModel, Watch};
+pub use write::{read_sky, write_report};

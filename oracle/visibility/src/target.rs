@@ -1,0 +1,298 @@
+//! The target as the camera sees it: how bright, how large, how likely detected, and which exposure just does not over-expose it.
+use contract::{CameraFrame, Direction, Icrs, PixelPoint, Rotation, Target};
+use hifitime::{Epoch, Unit};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use rayon::prelude::*;
+use scenario::FarRangeScenario;
+use sim::SimError;
+use sim::optics::ImagePoint;
+use sim::scene::{Appearance, Lighting, Spacecraft, TargetConfig};
+use sim::truth::{Observer, OrbitConfig, RelativeElements, Schedule, States, Trajectory, shadow};
+
+use super::camera::{CameraModel, moving_point};
+use super::detection::{ImageShares, background_e, is_flooded};
+use super::requirement::{DetectionRule, ExposureTable, MotionGuidance, MotionTable, TargetLight};
+
+/// Astronomical unit, km (IAU 2012 Resolution B2).
+const AU_KM: f64 = 149_597_870.7;
+/// Points that a body's image is made of, at most: it is looked at many times.
+const POINTS: usize = 1 << 10;
+
+/// How the body is lit and turned at one moment, whatever the range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aspect {
+    /// From the camera to the body, unit vector.
+    line_of_sight: Vector3<f64>,
+    /// From the body to the Sun, km.
+    sun_km: Vector3<f64>,
+    sunlit_fraction: f64,
+    target_from_icrs: Option<Rotation<Target, Icrs>>,
+    /// Angle Sun–target–camera, degrees.
+    pub phase_deg: f64,
+    /// What a simulation needs to show it so.
+    pub setting: Setting,
+}
+
+/// Where in a simulation an aspect is met.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Setting {
+    /// At a phase angle; the body turned by Euler angles 123 from the axes R, T, N of its orbit, degrees.
+    Phase {
+        /// φ, θ, ψ.
+        turn_deg: [f64; 3],
+    },
+    /// At a moment of the scenario's orbit.
+    Moment {
+        /// When.
+        time: Epoch,
+    },
+}
+
+/// The body, and all the ways in which it may be lit.
+#[derive(Debug, Clone)]
+pub struct TargetModel {
+    body: Spacecraft,
+    aspects: Vec<Aspect>,
+}
+
+impl TargetModel {
+    /// The body in a light.
+    ///
+    /// # Errors
+    /// [`SimError`] for a body, an orbit or a time that is not allowed, and for an orbit of which no moment is sunlit.
+    pub fn new(
+        body: &TargetConfig,
+        light: &TargetLight,
+        scenario: Option<&FarRangeScenario>,
+    ) -> Result<Self, SimError> {
+        let prepared = Spacecraft::new(body)?;
+        let aspects = match (light, scenario) {
+            (TargetLight::Phases { phases_deg, attitudes }, _) => {
+                let turns = match body {
+                    TargetConfig::Plates { .. } => *attitudes,
+                    TargetConfig::Beacon { .. } | TargetConfig::LambertSphere { .. } => 1,
+                };
+                phases_deg.iter().flat_map(|phase| (0..turns).map(|i| at_phase(*phase, i, turns))).collect()
+            }
+            (TargetLight::Orbit { moments }, Some(scenario)) => along_orbit(&prepared, scenario, *moments)?,
+            (TargetLight::Orbit { .. }, None) => Vec::new(),
+        };
+        if aspects.is_empty() {
+            return Err(SimError::Parameter {
+                field: "target.light",
+                value: "without a sunlit moment".to_owned(),
+                expected: "an orbit on which the target is lit",
+            });
+        }
+        Ok(Self { body: prepared, aspects })
+    }
+
+    /// The aspects up to a phase angle, all without one.
+    pub fn aspects(&self, phase_max_deg: Option<f64>) -> Vec<Aspect> {
+        let within = |aspect: &&Aspect| phase_max_deg.is_none_or(|most| aspect.phase_deg <= most + 1e-9);
+        self.aspects.iter().filter(within).copied().collect()
+    }
+
+    /// What the camera sees of it from `range_km`.
+    pub fn sight(&self, camera: &CameraModel, aspect: &Aspect, range_km: f64) -> Sight {
+        let chaser_km = -aspect.line_of_sight * range_km;
+        let sun_km = aspect.sun_km;
+        let lighting = Lighting { chaser_km, sun_km, sunlit_fraction: aspect.sunlit_fraction };
+        let appearance = self.body.appearance(&lighting, aspect.target_from_icrs);
+        let centre = camera.projection.project(&Direction::z()).unwrap_or_default();
+        let e_per_s = appearance
+            .magnitude()
+            .map_or(0.0, |m| camera.radiometry.sunlit(m) * camera.vignetting.transmission(centre));
+        let place = aspect.place(camera, range_km);
+        let peak_e_per_s = e_per_s * appearance.peak_share(&place, camera.psf.peak_share());
+        Sight { e_per_s, peak_e_per_s, centre, magnitude: appearance.magnitude(), appearance }
+    }
+}
+
+/// What the camera sees of the target, which it looks at.
+#[derive(Debug, Clone)]
+pub struct Sight {
+    /// Photoelectrons a second.
+    pub e_per_s: f64,
+    /// Those of its brightest pixel, as the shutter control knows it.
+    pub peak_e_per_s: f64,
+    /// V magnitude; `None` when no light comes from it.
+    pub magnitude: Option<f64>,
+    centre: PixelPoint,
+    appearance: Appearance,
+}
+
+impl Sight {
+    /// The longest exposure that does not over-expose it, s; longer than any when no light comes from it.
+    pub fn longest_s(&self, camera: &CameraModel, exposure: &ExposureTable) -> f64 {
+        exposure.target_level * camera.config.sensor.saturation_e() / self.peak_e_per_s.max(1e-30)
+    }
+}
+
+impl Aspect {
+    /// From a point of the body frame, m, to the image of a camera that looks at its origin from `range_km`.
+    fn place<'a>(
+        &'a self,
+        camera: &'a CameraModel,
+        range_km: f64,
+    ) -> impl Fn(&Vector3<f64>) -> Option<PixelPoint> + 'a {
+        let camera_from_icrs = looking_along(&self.line_of_sight);
+        move |point_m: &Vector3<f64>| {
+            let turned_m = self.target_from_icrs.map_or(*point_m, |turn| turn.inverse().rotate(point_m));
+            let from_camera_km = self.line_of_sight * range_km + turned_m / 1000.0;
+            camera.projection.project(&(camera_from_icrs * Direction::from_vector(from_camera_km).ok()?))
+        }
+    }
+
+    /// The chance that the target is detected in one exposure, over a background of light.
+    pub fn chance(
+        &self,
+        sight: &Sight,
+        watch: &Watch<'_>,
+        range_km: f64,
+        exposure_s: f64,
+        light_e_per_s: f64,
+    ) -> f64 {
+        let camera = watch.camera;
+        let background_e = background_e(camera, exposure_s, light_e_per_s);
+        if is_flooded(camera, watch.rule, background_e) {
+            return 0.0;
+        }
+        let threshold = camera.threshold(watch.rule.thresholds(camera, background_e).high_dn);
+        let electrons = sight.e_per_s * exposure_s;
+        let mut body = Vec::new();
+        sight.appearance.image(&self.place(camera, range_km), POINTS, &mut body);
+        let trail_px = match watch.motion.guidance {
+            MotionGuidance::Inertial => camera.trail_px(watch.motion, exposure_s),
+            MotionGuidance::LocalOrbital => 0.0,
+        };
+        let mut points = Vec::new();
+        for along in moving_point(sight.centre, trail_px) {
+            points.extend(body.iter().map(|point| {
+                let (dx, dy) = (along.position.x - sight.centre.x, along.position.y - sight.centre.y);
+                let position = PixelPoint::new(point.position.x + dx, point.position.y + dy);
+                ImagePoint { position, share: point.share * along.share }
+            }));
+        }
+        ImageShares::of_points(camera, &points).chance(&threshold, electrons, background_e)
+    }
+}
+
+/// A camera that watches a target.
+#[derive(Debug, Clone, Copy)]
+pub struct Watch<'a> {
+    /// The camera.
+    pub camera: &'a CameraModel,
+    /// When something counts as detected.
+    pub rule: &'a DetectionRule,
+    /// What smears.
+    pub motion: &'a MotionTable,
+    /// Light of the background, electrons a second and pixel.
+    pub light_e_per_s: f64,
+}
+
+impl Watch<'_> {
+    /// The chance that the target is detected from a range, all aspects being equally likely; 0 of none.
+    pub fn chance(&self, target: &TargetModel, aspects: &[Aspect], range_km: f64, exposure_s: f64) -> f64 {
+        let of = |aspect: &Aspect| {
+            let sight = target.sight(self.camera, aspect, range_km);
+            aspect.chance(&sight, self, range_km, exposure_s, self.light_e_per_s)
+        };
+        let chances: Vec<f64> = aspects.par_iter().map(of).collect();
+        chances.iter().sum::<f64>() / chances.len().max(1) as f64
+    }
+}
+
+/// Quantiles of the longest exposure that does not over-expose the target, over aspects, s, each cut to what the camera can command.
+pub(super) fn longest_exposures_s(
+    camera: &CameraModel,
+    target: &TargetModel,
+    aspects: &[Aspect],
+    range_km: f64,
+    exposure: &ExposureTable,
+) -> Vec<f64> {
+    let longest = |aspect| target.sight(camera, aspect, range_km).longest_s(camera, exposure);
+    let mut all: Vec<f64> = aspects.iter().map(longest).collect();
+    all.sort_by(f64::total_cmp);
+    all
+}
+
+/// The longest exposure that leaves the target not over-exposed with a probability, s, of sorted ones.
+pub(super) fn longest_with(sorted_s: &[f64], probability: f64) -> f64 {
+    // So many of the aspects may be over-exposed.
+    let spared = ((1.0 - probability) * sorted_s.len() as f64 + 1e-9).floor() as usize;
+    sorted_s.get(spared.min(sorted_s.len().saturating_sub(1))).copied().unwrap_or(0.0)
+}
+
+/// A camera that looks along a direction, at any roll.
+fn looking_along(line_of_sight: &Vector3<f64>) -> Rotation<CameraFrame, Icrs> {
+    let axis = if line_of_sight.x.abs() < 0.6 { Vector3::x() } else { Vector3::y() };
+    let x = line_of_sight.cross(&axis).normalize();
+    Rotation::from_axes(&x, &line_of_sight.cross(&x), line_of_sight)
+}
+
+/// Number `i` of `count` attitudes at a phase angle: super-Fibonacci spirals, which spread rotations evenly (Alexa 2022, Proc. CVPR,
+/// 8291). The line of sight is T of the body's orbit, the Sun towards R.
+fn at_phase(phase_deg: f64, i: u32, count: u32) -> Aspect {
+    let (sin, cos) = libm::sincos(phase_deg.to_radians());
+    let (s, n) = (f64::from(i) + 0.5, f64::from(count));
+    let (near, far) = ((s / n).sqrt(), (1.0 - s / n).sqrt());
+    let (sin_a, cos_a) = libm::sincos(std::f64::consts::TAU * s / std::f64::consts::SQRT_2);
+    let (sin_b, cos_b) = libm::sincos(std::f64::consts::TAU * s / 1.533_751_168_755_204_3);
+    let quaternion = Quaternion::new(far * cos_b, near * sin_a, near * cos_a, far * sin_b);
+    let turn: Rotation<Target, Icrs> =
+        Rotation::from_unit_quaternion(UnitQuaternion::from_quaternion(quaternion));
+    let (phi, theta, psi) = turn.euler_123();
+    Aspect {
+        line_of_sight: Vector3::y(),
+        sun_km: Vector3::new(sin, -cos, 0.0) * AU_KM,
+        sunlit_fraction: 1.0,
+        target_from_icrs: Some(turn),
+        phase_deg,
+        setting: Setting::Phase { turn_deg: [phi, theta, psi].map(|angle| angle.degrees()) },
+    }
+}
+
+/// The scenario's orbit with the camera purely along the track, `range_km` behind or ahead as in the scenario, without manoeuvres.
+pub(super) fn along_track(orbit: &OrbitConfig, range_km: f64) -> OrbitConfig {
+    let side = if orbit.relative.a_dlambda_m > 0.0 { 1.0 } else { -1.0 };
+    let relative = RelativeElements { a_dlambda_m: side * range_km * 1000.0, ..RelativeElements::default() };
+    OrbitConfig { relative, manoeuvres: Vec::new(), ..orbit.clone() }
+}
+
+/// Moments of the scenario, evenly spread over its frames, at which the target is wholly sunlit.
+fn along_orbit(
+    body: &Spacecraft,
+    scenario: &FarRangeScenario,
+    moments: u32,
+) -> Result<Vec<Aspect>, SimError> {
+    /// A range at which the geometry is taken: the camera is a degree or less of the orbit away.
+    const RANGE_KM: f64 = 10.0;
+    let trajectory = Trajectory::new(&along_track(&scenario.orbit, RANGE_KM))?;
+    let schedule = Schedule::new(&scenario.schedule)?;
+    let frames = schedule.frame_count();
+    let mut aspects = Vec::new();
+    for i in 0..u64::from(moments) {
+        let number = u128::from(frames) * (2 * u128::from(i) + 1) / (2 * u128::from(moments));
+        let Some((_, time)) = schedule.frame(number as u64) else { continue };
+        let states: States = trajectory.at(time + 0.0 * Unit::Second);
+        let observer = Observer::new(time, states.chaser.position_km, states.chaser.velocity_km_s)?;
+        let earth_to_sun_km = states.chaser.position_km + observer.sun_km();
+        let sunlit_fraction = shadow::sunlit_fraction(&states.target.position_km, &earth_to_sun_km);
+        if sunlit_fraction < 1.0 {
+            continue;
+        }
+        let line_of_sight = states.line_of_sight_km().normalize();
+        let sun_km = earth_to_sun_km - states.target.position_km;
+        let lighting = Lighting { chaser_km: -line_of_sight, sun_km, sunlit_fraction };
+        aspects.push(Aspect {
+            line_of_sight,
+            sun_km,
+            sunlit_fraction,
+            target_from_icrs: body.attitude(&states),
+            phase_deg: lighting.phase_rad().to_degrees(),
+            setting: Setting::Moment { time },
+        });
+    }
+    Ok(aspects)
+}

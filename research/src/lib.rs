@@ -1,0 +1,4 @@
+//! Programs that answer questions about Boresight itself; each is a binary in `src/bin`. Results are in docs/.
+
+pub mod docking_consistency;
+pub mod docking_random;

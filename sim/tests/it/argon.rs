@@ -1,0 +1,44 @@
+//! The simulation of the scenario `argon`, for tests and benchmarks.
+
+use serde::de::DeserializeOwned;
+
+// Of the program that includes it: the library's unit tests know the crate by another name.
+use super::Simulation;
+
+const ARGON: &str = include_str!("../../../scenarios/argon.toml");
+
+/// The scenario as a table.
+pub(crate) fn table() -> toml::Table {
+    ARGON.parse().unwrap()
+}
+
+/// A section of the scenario `argon`; a section that is missing is an empty one.
+pub(crate) fn section<T: DeserializeOwned>(table: &toml::Table, name: &str) -> T {
+    let empty = toml::Value::Table(toml::Table::new());
+    table.get(name).unwrap_or(&empty).clone().try_into().unwrap()
+}
+
+/// Its simulation.
+pub(crate) fn simulation() -> Simulation {
+    let table = table();
+    Simulation {
+        seed: section(&table, "seed"),
+        catalog: section(&table, "catalog"),
+        orbit: section(&table, "orbit"),
+        schedule: section(&table, "schedule"),
+        attitude: section(&table, "attitude"),
+        knowledge: section(&table, "knowledge"),
+        mounting: section(&table, "mounting"),
+        camera: section(&table, "camera"),
+        psf: section(&table, "psf"),
+        optics: section(&table, "optics"),
+        radiometry: section(&table, "radiometry"),
+        background: section(&table, "background"),
+        sensor: section(&table, "sensor"),
+        shutter: section(&table, "shutter"),
+        roi: Some(section(&table, "roi")),
+        zero_suppression_dn: None,
+        target: section(&table, "target"),
+        solar_system: section(&table, "solar_system"),
+    }
+}

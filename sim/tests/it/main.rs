@@ -1,0 +1,33 @@
+//! The simulator from outside, one module per suite: `cargo test -p boresight-sim --test it pixel_law::` runs one suite.
+
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
+mod argon;
+mod small_scene;
+mod vector_scene;
+
+mod argon_plan;
+mod detector_effects;
+mod determinism;
+mod earth_in_field;
+mod expectation;
+mod golden_apparent;
+mod golden_manifest;
+mod golden_moon;
+mod golden_psf;
+mod golden_radiometry;
+mod hot_pixels;
+mod interlace;
+mod moon_in_field;
+mod pixel_law;
+mod planets;
+mod sparse;
+mod switching;
+mod target_body;
+mod truth_table;
+mod vector_edges;
+mod vector_shadows;
+mod vector_witness;
+mod whole_sky;
+
+use boresight_sim::Simulation;

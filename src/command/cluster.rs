@@ -1,0 +1,132 @@
+//! A study on the workers of a Dask cluster: what Rust knows of it is how to start the driver.
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::str::FromStr;
+
+use files::Failure;
+
+/// Who runs the shards of a study.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) enum Engine {
+    /// The threads of this process.
+    #[default]
+    Local,
+    /// The workers of a Dask cluster: of the scheduler at an address, or a cluster started for the purpose on this machine.
+    Dask(Option<String>),
+}
+
+impl FromStr for Engine {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            None if text == "local" => Ok(Self::Local),
+            None if text == "dask" => Ok(Self::Dask(None)),
+            Some(("dask", address)) if !address.is_empty() => Ok(Self::Dask(Some(address.to_owned()))),
+            _ => Err(format!(
+                "there is no engine `{text}`; expected local, dask, or dask=ADDRESS as in dask=tcp://10.0.0.1:8786"
+            )),
+        }
+    }
+}
+
+/// The Python that runs the driver.
+const PYTHON: &str = "BORESIGHT_PYTHON";
+/// The program as workers find it, where it is not at the same place as here.
+const PROGRAM: &str = "BORESIGHT_PROGRAM";
+
+const INSTALL: &str =
+    "`pip install './python[dask]'` installs it, and BORESIGHT_PYTHON names the interpreter";
+
+/// Refuses where Python, the package or Dask is not there.
+///
+/// # Errors
+/// [`Failure::Usage`] that says what installs it.
+pub(super) fn check_dask() -> Result<(), Failure> {
+    let python = python();
+    let tried = Command::new(&python).args(["-c", "import boresight.dask_engine, distributed"]).output();
+    match tried {
+        Ok(output) if output.status.success() => Ok(()),
+        Ok(_) => Err(Failure::Usage(format!(
+            "--engine dask: `{python}` has no Dask engine of Boresight; {INSTALL}"
+        ))),
+        Err(error) => {
+            Err(Failure::Usage(format!("--engine dask: `{python}` cannot be started ({error}); {INSTALL}")))
+        }
+    }
+}
+
+fn python() -> String {
+    std::env::var(PYTHON).unwrap_or_else(|_| "python3".to_owned())
+}
+
+/// Has the workers of a cluster make the shards of a plan (JSON, as `study plan` prints it) below `out`; `done` is told of
+/// each shard.
+///
+/// # Errors
+/// [`Failure::Usage`] when the driver does not start, and when a shard failed.
+pub(super) fn run_on_dask(
+    plan: &str,
+    out: &Path,
+    address: Option<&str>,
+    workers: usize,
+    mut done: impl FnMut(u64),
+) -> Result<(), Failure> {
+    let python = python();
+    let program = match std::env::var(PROGRAM) {
+        Ok(program) => program,
+        Err(_) => std::env::current_exe()
+            .map_err(|error| Failure::Usage(format!("the path of this program is not known: {error}")))?
+            .to_string_lossy()
+            .into_owned(),
+    };
+    let out =
+        std::path::absolute(out).map_err(|error| Failure::Usage(format!("{}: {error}", out.display())))?;
+    let mut command = Command::new(&python);
+    command.args(["-m", "boresight.dask_engine", "--program", &program, "--out"]).arg(&out);
+    match address {
+        Some(address) => command.args(["--scheduler", address]),
+        None => command.args(["--workers", &workers.to_string()]),
+    };
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().map_err(|error| {
+        Failure::Usage(format!("--engine dask: `{python}` cannot be started ({error}); {INSTALL}"))
+    })?;
+    // Both pipes are read while the driver runs, so that it never waits for us.
+    let mut errors = child.stderr.take().map(BufReader::new);
+    let log = std::thread::spawn(move || {
+        let mut text = String::new();
+        if let Some(errors) = &mut errors {
+            // What cannot be read cannot be told.
+            let _ = std::io::Read::read_to_string(errors, &mut text);
+        }
+        text
+    });
+    if let Some(mut input) = child.stdin.take() {
+        // A driver that ended at once says why by its status.
+        let _ = input.write_all(plan.as_bytes());
+    }
+    for line in
+        child.stdout.take().map(BufReader::new).into_iter().flat_map(BufRead::lines).map_while(Result::ok)
+    {
+        if let Ok(told) = serde_json::from_str::<Told>(&line) {
+            done(told.shard);
+        }
+    }
+    let status = child
+        .wait()
+        .map_err(|error| Failure::Usage(format!("--engine dask: `{python}` was lost: {error}")))?;
+    let log = log.join().unwrap_or_default();
+    if status.success() {
+        Ok(())
+    } else {
+        Err(Failure::Usage(format!("--engine dask: the driver failed ({status}):\n{}", log.trim_end())))
+    }
+}
+
+/// What the driver tells of each shard.
+#[derive(serde::Deserialize)]
+struct Told {
+    shard: u64,
+}

@@ -1,0 +1,156 @@
+//! The server of the page, fed by a live run or by a run directory.
+
+use std::net::SocketAddr;
+use std::path::Path;
+
+use files::Failure;
+use monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
+use run::Prepared;
+use run::docking_renderer::DockingRenderer;
+use run::docking_run::PreparedDocking;
+use scenario::{BUILT_IN, Scenario, ScenarioSource};
+use serde_json::json;
+
+use super::MonitorArguments;
+use crate::command::options::FrameRange;
+use crate::command::output::Output;
+use crate::command::{Answer, scratch_directory};
+
+pub(in crate::command) fn monitor(arguments: &MonitorArguments, output: &Output) -> Result<Answer, Failure> {
+    let directory = Path::new(&arguments.selection.scenario);
+    let scratch = scratch_directory()?;
+    // As in `run`, a built-in scenario is itself beside a folder of its name: that is `./NAME`.
+    let is_built_in = BUILT_IN.iter().any(|built_in| built_in.name == arguments.selection.scenario);
+    let (name, feed) = if directory.is_dir() && !is_built_in {
+        arguments.check_replay()?;
+        replay(directory)?
+    } else {
+        live(arguments, scratch.path())?
+    };
+    if !is_page_built() {
+        return Err(Failure::Usage(format!(
+            "the monitor's page is not in this executable, expected that it was built before: {BUILD_COMMAND}, then build or run \
+             boresight again"
+        )));
+    }
+    let mut told = Ok(());
+    let ready = |address: SocketAddr| {
+        let url = format!("http://{address}/");
+        output.note(format!("{name}: {url} (Ctrl-C ends)"));
+        told = output.document(&json!({ "url": url, "scenario": name }));
+    };
+    serve(&feed, arguments.bind, ready, interrupted())?;
+    told?;
+    Ok(Answer::Yes)
+}
+
+impl MonitorArguments {
+    /// Refuses what a run that has been flown cannot have any more.
+    fn check_replay(&self) -> Result<(), Failure> {
+        let given = [
+            ("--frames", self.selection.frames.is_some()),
+            ("--from", self.from.is_some()),
+            ("--seed", self.selection.seed.is_some()),
+            ("--pipeline", self.pipeline.pipeline.is_some()),
+        ];
+        match given.iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(Failure::Usage(format!(
+                "{option} is given with the directory {}, expected with a scenario alone: a run directory is shown as it was flown",
+                self.selection.scenario
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// The frames asked for, of a scenario of `count`.
+    fn frames(&self, count: u64) -> Result<std::ops::Range<u64>, Failure> {
+        match self.from {
+            Some(from) if from >= count => Err(Failure::Usage(format!(
+                "--from is {from}, expected a frame of the scenario, which has {count} (0..{count})"
+            ))),
+            Some(from) => Ok(FrameRange(from..count).0),
+            None => self.selection.frames(count),
+        }
+    }
+}
+
+/// A run that is simulated and processed as it is watched.
+fn live(arguments: &MonitorArguments, scratch: &Path) -> Result<(String, Feed), Failure> {
+    let source = arguments.selection.scenario()?;
+    let jobs = arguments.selection.jobs();
+    let choice = arguments.pipeline.choice();
+    let feed = match &source.scenario {
+        Scenario::FarRange(_) => {
+            let prepared = Prepared::new(&source)?;
+            let frames = arguments.frames(prepared.frame_count())?;
+            let factory = choice.factory(&prepared.scenario().far_range, scratch)?;
+            Feed::FarRange(Box::new(prepared), Measurements::Live { factory, frames, jobs })
+        }
+        Scenario::Docking(_) => {
+            let prepared = PreparedDocking::new(&source, DockingRenderer::Fast)?;
+            let frames = arguments.frames(prepared.field_count())?;
+            let factory = choice.docking_factory(&prepared.scenario().docking, scratch)?;
+            Feed::Docking(Box::new(prepared), Measurements::Live { factory, frames, jobs })
+        }
+    };
+    Ok((source.name, feed))
+}
+
+/// A run directory: its measurements and its truth as they are, its pictures drawn anew.
+fn replay(directory: &Path) -> Result<(String, Feed), Failure> {
+    let run = directory.join("run.toml");
+    if !run.is_file() {
+        return Err(Failure::Usage(format!(
+            "{}: no run.toml in it, expected a run directory (boresight run … --out DIR)",
+            directory.display()
+        )));
+    }
+    let source = ScenarioSource::read(&run.to_string_lossy())?;
+    let truth = match &source.scenario {
+        Scenario::FarRange(_) => "truth/frames.parquet",
+        Scenario::Docking(_) => "truth/fields.parquet",
+    };
+    // A table has its name when it is complete.
+    if let Some(missing) =
+        [truth, "telemetry.csv", "measurements.csv"].iter().find(|name| !directory.join(name).is_file())
+    {
+        return Err(Failure::Usage(format!(
+            "{}: run.toml is there and {missing} is not, expected the directory of a run that is finished: this one still goes on, was \
+             killed, or no pipeline has processed its frames. `boresight monitor SCENARIO` flies a run and shows it as it goes on",
+            directory.display()
+        )));
+    }
+    let measurements = || directory.to_path_buf();
+    let feed = match &source.scenario {
+        Scenario::FarRange(_) => {
+            Feed::FarRange(Box::new(Prepared::new(&source)?), Measurements::Replay(measurements()))
+        }
+        Scenario::Docking(_) => {
+            let prepared = PreparedDocking::new(&source, DockingRenderer::Fast)?;
+            Feed::Docking(Box::new(prepared), Measurements::Replay(measurements()))
+        }
+    };
+    Ok((source.name, feed))
+}
+
+/// Ends with Ctrl-C, and where there is such a thing with a request to terminate.
+async fn interrupted() {
+    let interrupt = async {
+        // Without a handler the process ends by the signal itself.
+        if tokio::signal::ctrl_c().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    };
+    #[cfg(unix)]
+    {
+        use tokio::signal::unix::{SignalKind, signal};
+        if let Ok(mut terminate) = signal(SignalKind::terminate()) {
+            tokio::select! {
+                () = interrupt => {}
+                _ = terminate.recv() => {}
+            }
+            return;
+        }
+    }
+    interrupt.await;
+}

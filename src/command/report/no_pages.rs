@@ -1,0 +1,38 @@
+//! Stand-ins for `pages.rs` in a build without the feature `report`.
+use std::path::{Path, PathBuf};
+
+use files::Failure;
+use gate::GateReport;
+use score::FrameVerdict;
+use visibility::VisibilityReport;
+
+use crate::command::missing_feature;
+use crate::command::output::Output;
+
+pub(super) fn write_report(_: &Path, _: &[PathBuf], _: &Path, _: &Output) -> Result<u64, Failure> {
+    Err(missing_feature("report"))
+}
+
+pub(in crate::command) fn write_beside_far_range_run(_: &Path, _: Vec<FrameVerdict>, output: &Output) {
+    note(output);
+}
+
+pub(in crate::command) fn write_beside_results(_: &Path, output: &Output) {
+    note(output);
+}
+
+pub(in crate::command) fn write_visibility_beside(_: &VisibilityReport, _: &Path, output: &Output) {
+    note(output);
+}
+
+pub(in crate::command) fn write_visibility(_: &VisibilityReport, _: &Path) -> Result<(), Failure> {
+    Err(missing_feature("report"))
+}
+
+pub(in crate::command) fn write_gate(_: &GateReport, _: &Path, _: &Path) -> Result<(), Failure> {
+    Err(missing_feature("report"))
+}
+
+fn note(output: &Output) {
+    output.note(format!("the report was not written: {}", missing_feature("report")));
+}

@@ -1,0 +1,88 @@
+//! Pages of the crate `report`, written to files.
+
+use std::path::{Path, PathBuf};
+
+use files::Failure;
+use gate::GateReport;
+use report::{
+    FlippedFrames, Page, far_range_report, gate_page, report_of, report_with_budget, visibility_page,
+    write_page,
+};
+use score::FrameVerdict;
+use visibility::VisibilityReport;
+
+use super::budget::fly_budget;
+use crate::command::output::Output;
+
+/// The value of `--budget` that flies every stage.
+const ALL: &str = "all";
+
+/// Writes the report of a directory of results to `path` and returns its size, bytes.
+///
+/// # Errors
+/// A [`Failure`] for a directory without results, an error budget that does not belong to it, or a file that cannot be written.
+pub(super) fn write_report(
+    directory: &Path,
+    budget: &[PathBuf],
+    path: &Path,
+    output: &Output,
+) -> Result<u64, Failure> {
+    let page = match budget {
+        [] => report_of(directory)?,
+        [only] if only == Path::new(ALL) => report_with_budget(directory, &fly_budget(directory, output)?)?,
+        several if several.iter().any(|path| path == Path::new(ALL)) => {
+            return Err(Failure::Usage(
+                "--budget is `all` and a directory, expected `all` alone: it flies every stage".to_owned(),
+            ));
+        }
+        directories => report_with_budget(directory, directories)?,
+    };
+    write_page(&page, path)
+}
+
+/// Writes the report of a far-range run that has just been scored into its directory.
+pub(in crate::command) fn write_beside_far_range_run(
+    directory: &Path,
+    verdicts: Vec<FrameVerdict>,
+    output: &Output,
+) {
+    write_beside(far_range_report(directory, verdicts), directory, output);
+}
+
+/// Writes the report of a directory of complete results into it.
+pub(in crate::command) fn write_beside_results(directory: &Path, output: &Output) {
+    write_beside(report_of(directory), directory, output);
+}
+
+/// Writes the report of an assessment of requirements into the directory of its other files.
+pub(in crate::command) fn write_visibility_beside(
+    report: &VisibilityReport,
+    directory: &Path,
+    output: &Output,
+) {
+    write_beside(Ok(visibility_page(report)), directory, output);
+}
+
+/// Writes the report of an assessment of requirements to `path`.
+///
+/// # Errors
+/// A [`Failure`] when the file cannot be written.
+pub(in crate::command) fn write_visibility(report: &VisibilityReport, path: &Path) -> Result<(), Failure> {
+    write_page(&visibility_page(report), path).map(|_| ())
+}
+
+/// Writes the report of a gate to `path`, with the frames of `result` whose verdicts changed.
+///
+/// # Errors
+/// A [`Failure`] when a frame cannot be drawn or the file cannot be written.
+pub(in crate::command) fn write_gate(report: &GateReport, result: &Path, path: &Path) -> Result<(), Failure> {
+    let flipped = FlippedFrames::render(report, result)?;
+    write_page(&gate_page(report, flipped), path).map(|_| ())
+}
+
+/// Writes `report.html` into a directory whose results are complete without it: a failure is only noted.
+fn write_beside(page: Result<Page, Failure>, directory: &Path, output: &Output) {
+    if let Err(failure) = page.and_then(|page| write_page(&page, &directory.join("report.html"))) {
+        output.note(format!("the report was not written: {failure}"));
+    }
+}

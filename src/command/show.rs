@@ -1,0 +1,168 @@
+//! `boresight show`: frames of a run or dataset as one annotated picture.
+
+mod docking;
+mod far_range;
+mod picture_file;
+mod source;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use contract::Window;
+use files::Failure;
+use scenario::World;
+use serde_json::{Value, json};
+use show::{Class, MOST_PANELS, Panel, PanelPlace, ShowError, Stretch, encode, picture};
+
+use self::picture_file::PictureFile;
+use self::source::Source;
+use super::Answer;
+use super::output::Output;
+
+#[derive(Debug, Args)]
+pub(super) struct ShowArguments {
+    /// A run directory, a rendered dataset, or a dataset of real images
+    #[arg(value_name = "RUN")]
+    directory: PathBuf,
+    /// Number of the frame (docking: of the field); several, up to 16, become a contact sheet
+    #[arg(value_name = "FRAME", required = true)]
+    frames: Vec<u64>,
+    /// The PNG file to write. An earlier picture of this command is replaced, any other file is not; default: RUN/show/FRAME.png
+    #[arg(short, long, value_name = "FILE.png")]
+    out: Option<PathBuf>,
+    /// From digital numbers to grey: asinh, linear (darkest to brightest pixel) or full (0 to full scale); default: asinh, docking
+    /// full
+    #[arg(long, value_name = "STRETCH")]
+    stretch: Option<Stretch>,
+    /// The whole frame, with the target enlarged in a close-up, or the surroundings of the target alone
+    #[arg(long, value_name = "VIEW", value_enum, default_value_t)]
+    view: View,
+    /// The answers to draw, CSV; default: `measurements.csv` in RUN, if it is there. What the pipeline recognised
+    /// (features.parquet, clusters.parquet) is read from beside it
+    #[arg(long, value_name = "FILE")]
+    measurements: Option<PathBuf>,
+}
+
+/// Part of the frame that is drawn.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+enum View {
+    /// The whole frame
+    #[default]
+    Frame,
+    /// The surroundings of the target
+    Target,
+}
+
+/// A panel, and what `--json` tells of it.
+struct Shown {
+    panel: Panel,
+    frame: u64,
+    time: String,
+    pixels: PixelSource,
+    verdict: Option<String>,
+    cause: Option<String>,
+}
+
+/// Where the pixels of a frame come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum PixelSource {
+    /// From the image in the directory.
+    Stored,
+    /// Drawn again from `run.toml`.
+    DrawnAgain,
+}
+
+impl PixelSource {
+    fn code(self) -> &'static str {
+        match self {
+            Self::Stored => "stored",
+            Self::DrawnAgain => "drawn_again",
+        }
+    }
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Stored => "stored image",
+            Self::DrawnAgain => "drawn again from run.toml",
+        }
+    }
+}
+
+pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer, Failure> {
+    if arguments.frames.len() > MOST_PANELS {
+        return Err(undrawn(ShowError::PanelCount(arguments.frames.len())));
+    }
+    let source = Source::open(&arguments.directory, arguments.measurements.as_deref())?;
+    // Refused before the work.
+    let file = PictureFile::new(arguments.out.as_deref(), &source.directory, &arguments.frames)?;
+    let mut shown = match source.world {
+        World::FarRange => far_range::panels(&source, &arguments.frames)?,
+        World::Docking => docking::panels(&source, &arguments.frames)?,
+    };
+    for Shown { panel, frame, .. } in &mut shown {
+        panel.stretch = arguments.stretch.unwrap_or(panel.stretch);
+        if arguments.view == View::Target {
+            panel.view = panel.close_up.take().ok_or_else(|| {
+                Failure::Usage(format!(
+                    "--view is target, and frame {frame} has neither a target nor an answer in it, expected --view frame"
+                ))
+            })?;
+        } else if source.world == World::Docking {
+            // The target fills the field soon enough.
+            panel.close_up = None;
+        }
+    }
+    let panels: Vec<Panel> = shown.iter().map(|shown| shown.panel.clone()).collect();
+    let drawn = picture(&panels).map_err(undrawn)?;
+    let title = match panels.as_slice() {
+        [only] => only.title.clone(),
+        _ => format!("{}, {} frames", source.name, panels.len()),
+    };
+    let path = file.write(&encode(&drawn, &title).map_err(undrawn)?)?;
+    let frames: Vec<Value> =
+        shown.iter().zip(&drawn.panels).map(|(shown, place)| shown.document(place)).collect();
+    output.answer(
+        &json!({ "file": path, "width": drawn.width, "height": drawn.height, "frames": frames }),
+        path.display(),
+    )?;
+    Ok(Answer::Yes)
+}
+
+impl Shown {
+    fn document(&self, place: &PanelPlace) -> Value {
+        let mut drawn: BTreeMap<&str, usize> = BTreeMap::new();
+        for mark in self.panel.marks.iter().filter(|mark| place.frame.shows(mark.at)) {
+            *drawn.entry(mark.class.code()).or_default() += 1;
+        }
+        let meets = |region: &&Window| {
+            let view = &self.panel.view;
+            let apart = |a: usize, long: usize, b: usize, long_b: usize| a + long <= b || b + long_b <= a;
+            !(apart(region.x, region.columns, view.x, view.columns)
+                || apart(region.y, region.rows, view.y, view.rows))
+        };
+        if let Some(regions) = &self.panel.regions {
+            drawn.insert(Class::Region.code(), regions.iter().filter(meets).count());
+        }
+        json!({
+            "frame": self.frame,
+            "time": self.time,
+            "pixels": self.pixels.code(),
+            "stretch": self.panel.stretch.code(),
+            "verdict": self.verdict,
+            "cause": self.cause,
+            "panel": place.frame,
+            "close_up": place.close_up,
+            "drawn": drawn,
+        })
+    }
+}
+
+/// A word of a file as people read it: `cut by roi`.
+fn spoken(word: &str) -> String {
+    word.replace('_', " ")
+}
+
+/// The failure of a picture that cannot be drawn.
+fn undrawn(error: ShowError) -> Failure {
+    Failure::Usage(error.to_string())
+}

@@ -1,0 +1,440 @@
+//! Frames of the far range as panels: stars, target and what else is in the image, the answer, the transmitted regions.
+
+use std::collections::BTreeMap;
+
+use contract::{Camera, Cluster, Frame, Outcome, PixelPoint, Telemetry, Window};
+use files::{
+    CameraFile, Failure, FileError, FrameCluster, TelemetryRow, format_utc, read_measurements, read_telemetry,
+};
+use scenario::ScenarioSource;
+use scenario::run_file::RunFile;
+use score::{ScoreContext, Scorer, Verdict};
+use show::{
+    Class, Mark, Panel, Pixels, PlateScale, Reduction, Shape, Stretch, Table, Tone, Verdict as Words,
+};
+use sim::Simulator;
+use sim::optics::Projection;
+use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility};
+
+use super::source::{Source, rows_of};
+use super::{PixelSource, Shown, spoken};
+
+/// Sides of a close-up at least, px.
+const LEAST_SIDES: (f64, f64) = (32.0, 24.0);
+/// A region or an answer so near to the target is in its close-up, px.
+const NEAR_PX: f64 = 40.0;
+/// An object that lost more of its light than this to the regions is not in the picture.
+const MOST_CUT: f64 = 0.99;
+
+/// What is known of a frame.
+struct Known {
+    name: String,
+    telemetry: Telemetry,
+    group: Option<String>,
+    truth: Option<FrameTruth>,
+    objects: Vec<ObjectTruth>,
+    /// `None` where there are no measurements at all.
+    answer: Option<Option<Outcome>>,
+    verdict: Option<Verdict>,
+}
+
+/// Panels of some frames, in their order.
+///
+/// # Errors
+/// A [`Failure`] that names the frame or the file which is missing or cannot be read.
+pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Failure> {
+    let telemetry = read_telemetry(&source.directory.join("telemetry.csv"))?;
+    let rows = source.select("frame", &telemetry, numbers, |row: &TelemetryRow| row.frame)?;
+    let camera = CameraFile::read(&source.directory.join("camera.toml"))?;
+    let run_path = source.directory.join("run.toml");
+    let run_file =
+        source.has_run.then(|| RunFile::<scenario::FarRangeScenario>::read(&run_path)).transpose()?;
+    let name = run_file.as_ref().map_or_else(|| source.name.clone(), |run_file| run_file.name.clone());
+
+    let truths = rows_of::<FrameTruth>(source.file("truth/frames.parquet").as_deref(), numbers)?;
+    let objects = rows_of::<ObjectTruth>(source.file("truth/objects.parquet").as_deref(), numbers)?;
+    let mut answers = answers(source, numbers)?;
+    let images = images(source, &camera, &rows)?;
+    source.check()?;
+
+    let mut shown = Vec::with_capacity(rows.len());
+    for (row, (frame, pixels)) in rows.into_iter().zip(images) {
+        let truth = truths.get(&row.frame).and_then(|rows| rows.first()).cloned();
+        let objects = objects.get(&row.frame).cloned().unwrap_or_default();
+        let answer = answers.as_mut().map(|answers| answers.remove(&row.frame));
+        let judged = (run_file.as_ref()).zip(truth.as_ref()).zip(answer.as_ref());
+        let verdict = match judged {
+            Some(((run_file, truth), answer)) => Some(verdict(run_file, truth, &objects, answer.as_ref())?),
+            None => None,
+        };
+        let known = Known {
+            name: name.clone(),
+            telemetry: row.telemetry,
+            group: truth.as_ref().map(|truth| truth.group.clone()),
+            truth,
+            objects,
+            answer,
+            verdict,
+        };
+        shown.push(known.shown(&camera.camera, frame, pixels));
+    }
+    Ok(shown)
+}
+
+/// The answers to some frames, each with its clusters; `None` where there are no measurements.
+fn answers(source: &Source, numbers: &[u64]) -> Result<Option<BTreeMap<u64, Outcome>>, FileError> {
+    let Some(path) = &source.measurements else { return Ok(None) };
+    let wanted = |(frame, _): &(u64, Outcome)| numbers.contains(frame);
+    let mut answers: BTreeMap<u64, Outcome> = read_measurements(path)?.into_iter().filter(wanted).collect();
+    let clusters = source.beside_measurements("clusters.parquet");
+    for (frame, rows) in rows_of::<FrameCluster>(clusters.as_deref(), numbers)? {
+        if let Some(answer) = answers.get_mut(&frame) {
+            answer.clusters = rows.into_iter().map(|row| row.cluster).collect::<Vec<Cluster>>();
+        }
+    }
+    Ok(Some(answers))
+}
+
+/// The images of some rows: stored ones, and where none is stored frames drawn again.
+fn images(
+    source: &Source,
+    camera: &CameraFile,
+    rows: &[&TelemetryRow],
+) -> Result<Vec<(Frame, PixelSource)>, Failure> {
+    let mut simulator: Option<Simulator> = None;
+    let mut images = Vec::with_capacity(rows.len());
+    for row in rows {
+        if let Some(frame) = camera.read_listed(&source.directory, row)? {
+            images.push((frame, PixelSource::Stored));
+            continue;
+        }
+        if !source.has_run {
+            return Err(not_stored(source, "frame", row.frame));
+        }
+        let simulator = match &simulator {
+            Some(simulator) => simulator,
+            None => {
+                let run = ScenarioSource::read(&source.directory.join("run.toml").to_string_lossy())?;
+                &*simulator.insert(run.simulator(run.far_range("boresight show")?)?)
+            }
+        };
+        images.push((simulator.camera()?.expose(row.frame)?.frame, PixelSource::DrawnAgain));
+    }
+    Ok(images)
+}
+
+/// That a frame can neither be read nor drawn again.
+pub(super) fn not_stored(source: &Source, unit: &str, number: u64) -> Failure {
+    Failure::Usage(format!(
+        "{}: no image is named for {unit} {number}, expected one, or run.toml beside the table to draw it again",
+        source.directory.join("telemetry.csv").display()
+    ))
+}
+
+/// The verdict on one frame.
+fn verdict(
+    run_file: &RunFile,
+    truth: &FrameTruth,
+    objects: &[ObjectTruth],
+    answer: Option<&Outcome>,
+) -> Result<Verdict, Failure> {
+    let camera = &run_file.scenario.camera;
+    let projection = Projection::new(camera)?;
+    let unproject = |point| projection.unproject(point);
+    let mut scorer = Scorer::new(ScoreContext {
+        scenario: run_file.name.clone(),
+        seed: run_file.scenario.seed,
+        version: run_file.version.clone(),
+        inject: None,
+        columns: camera.columns,
+        rows: camera.rows,
+        unproject: &unproject,
+    });
+    let judged = scorer.add(truth, objects, answer);
+    judged
+        .map(|judged| judged.verdict)
+        .map_err(|error| Failure::Usage(format!("frame {} cannot be scored: {error}", truth.frame)))
+}
+
+impl Known {
+    fn shown(&self, camera: &Camera, frame: Frame, source: PixelSource) -> Shown {
+        let number = frame.number();
+        let regions = frame.windows().map(<[Window]>::to_vec);
+        let (columns, rows) = (frame.columns(), frame.rows());
+        let full_scale_dn = frame.full_scale_dn();
+        let pixels = Pixels { columns, rows, dn: frame.into_dn(), full_scale_dn };
+        let time = time_words(&format_utc(self.telemetry.time));
+        let verdict = self.verdict_words();
+        let (code, cause) = match self.verdict {
+            None => (None, None),
+            Some(Verdict::Correct { .. }) => (Some("correct"), None),
+            Some(Verdict::Wrong { cause, .. }) => (Some("wrong"), Some(cause.code())),
+            Some(Verdict::Missed { cause }) => (Some("missed"), Some(cause.code())),
+        };
+        let panel = Panel {
+            view: pixels.whole(),
+            close_up: self.close_up(regions.as_deref(), columns, rows),
+            pixels,
+            regions,
+            stretch: Stretch::Asinh,
+            reduction: Reduction::Brightest,
+            scale: PlateScale { focal_length_px: camera.focal_length_px().0, range_m: None },
+            marks: self.marks(),
+            title: format!("{}, frame {number}", self.name),
+            short_title: match &self.group {
+                Some(group) => format!("frame {number}, {group}"),
+                None => format!("frame {number}"),
+            },
+            verdict,
+            tables: self.tables(&time, source),
+            caption: self.caption(&time),
+        };
+        Shown {
+            panel,
+            frame: number,
+            time: format_utc(self.telemetry.time),
+            pixels: source,
+            verdict: code.map(str::to_owned),
+            cause: cause.map(str::to_owned),
+        }
+    }
+
+    fn target(&self) -> Option<&ObjectTruth> {
+        self.objects.iter().find(|object| object.kind == ObjectKind::Target)
+    }
+
+    /// Where the target truly is: the centre of its light, or, of one without light in the image, the line of sight.
+    fn target_position(&self) -> Option<PixelPoint> {
+        let of_frame = || self.truth.as_ref().and_then(|truth| truth.target_position);
+        self.target().map(|target| target.position).or_else(of_frame)
+    }
+
+    fn answer_position(&self) -> Option<PixelPoint> {
+        let answer = self.answer.as_ref()?.as_ref()?;
+        answer.measurement().map(|measurement| measurement.position)
+    }
+
+    /// Later marks lie over earlier ones; bright stars are named first.
+    fn marks(&self) -> Vec<Mark> {
+        let mut objects: Vec<&ObjectTruth> = self
+            .objects
+            .iter()
+            .filter(|object| object.kind != ObjectKind::Target && object.cut < MOST_CUT)
+            .filter(|object| Visibility::of_snr(object.snr) == Visibility::Detectable)
+            .collect();
+        objects.sort_by(|a, b| {
+            a.kind.cmp(&b.kind).then(b.electrons.total_cmp(&a.electrons)).then(a.id.cmp(&b.id))
+        });
+        let mut marks: Vec<Mark> = objects.into_iter().filter_map(object_mark).collect();
+        let around = |radius_px, least| Shape::Around { radius_px, least };
+        let radius_px = self.target().map_or(0.0, |target| target.radius_px);
+        marks.extend(self.target_position().map(|at| Mark {
+            at,
+            shape: around(radius_px, 13.0),
+            class: Class::Target,
+            label: None,
+        }));
+        let cross = Shape::Cross { arm: 11.0 };
+        marks.extend(self.answer_position().map(|at| Mark {
+            at,
+            shape: cross,
+            class: Class::Answer,
+            label: None,
+        }));
+        marks
+    }
+
+    /// The surroundings of the target, or, where it is not known or not on the detector, of the answer.
+    fn close_up(&self, regions: Option<&[Window]>, columns: usize, rows: usize) -> Option<Window> {
+        let on_detector = |at: &PixelPoint| at.is_on_detector(columns, rows);
+        let answer = self.answer_position().filter(on_detector);
+        let centre = self.target_position().filter(on_detector).or(answer)?;
+        let mut bounds = Bounds::of(centre);
+        let is_near = |at: &PixelPoint| at.distance(centre) < NEAR_PX;
+        answer.filter(is_near).into_iter().for_each(|at| bounds.add(at));
+        for region in regions.unwrap_or_default() {
+            let low = PixelPoint::new(region.x as f64, region.y as f64);
+            let high = PixelPoint::new(low.x + region.columns as f64 - 1.0, low.y + region.rows as f64 - 1.0);
+            let gap = |at: f64, low: f64, high: f64| (low - at).max(at - high).max(0.0);
+            let distance = gap(centre.x, low.x, high.x).max(gap(centre.y, low.y, high.y));
+            // The target's own region; one of the whole detector is none.
+            if distance < 4.0 && high.x - low.x < 4.0 * NEAR_PX && high.y - low.y < 4.0 * NEAR_PX {
+                bounds.add(low);
+                bounds.add(high);
+            }
+        }
+        Some(bounds.window(columns, rows))
+    }
+
+    fn verdict_words(&self) -> Option<Words> {
+        let (words, tone) = match self.verdict? {
+            Verdict::Correct { .. } => ("correct".to_owned(), Tone::Good),
+            Verdict::Missed { cause } => (format!("missed: {}", spoken(cause.code())), Tone::Bad),
+            Verdict::Wrong { cause, taken, .. } => {
+                (format!("wrong: {}, taken: {}", spoken(cause.code()), spoken(taken.code())), Tone::Bad)
+            }
+        };
+        Some(Words { words, tone })
+    }
+
+    /// Measured minus true position, px.
+    fn error_px(&self) -> Option<(f64, f64)> {
+        let (answer, truth) = self.answer_position().zip(self.target_position())?;
+        Some((answer.x - truth.x, answer.y - truth.y))
+    }
+
+    fn tables(&self, time: &str, source: PixelSource) -> Vec<Table> {
+        let mut table = Table::default();
+        table.push("time, UTC", time);
+        if let Some(group) = &self.group {
+            table.push("group", group.as_str());
+        }
+        table.push("exposure", exposure_words(self.telemetry.exposure_s));
+        table.push("pixels", source.words());
+        if let Some(truth) = &self.truth {
+            table.push("range", format!("{:.3} km", truth.range_km));
+            table.push("phase angle", format!("{:.1}°", truth.phase_deg));
+        }
+        if let Some(target) = self.target() {
+            table.push("target SNR", format!("{:.1}", target.snr));
+            table.push("cut", format!("{:.0} % of its light", 100.0 * target.cut));
+        }
+        let point = |at: PixelPoint| format!("{:.2}, {:.2} px", at.x, at.y);
+        if let Some(at) = self.target_position() {
+            table.push("truth", point(at));
+        }
+        match &self.answer {
+            Some(Some(answer)) => {
+                let said = self.answer_position().map_or_else(
+                    || match &answer.solution {
+                        contract::Solution::NoSolution(reason) => spoken(&reason.to_string()),
+                        contract::Solution::Detected(_) => String::new(),
+                    },
+                    point,
+                );
+                table.push("answer", said);
+                if let Some((x, y)) = self.error_px() {
+                    table.push("error", format!("{x:+.2}, {y:+.2} px"));
+                }
+                if let Some(stars) = answer.n_stars {
+                    table.push("stars", format!("{stars} identified"));
+                }
+            }
+            Some(None) => table.push("answer", "no row"),
+            None => {}
+        }
+        vec![table]
+    }
+
+    fn caption(&self, time: &str) -> Vec<String> {
+        let first = format!("{time} UTC, exposure {}", exposure_words(self.telemetry.exposure_s));
+        let mut parts = Vec::new();
+        if let Some(truth) = &self.truth {
+            parts.push(format!("range {:.2} km", truth.range_km));
+        }
+        if let Some(target) = self.target() {
+            parts.push(format!("SNR {:.0}", target.snr));
+            if target.cut >= 0.005 {
+                parts.push(format!("{:.0} % cut", 100.0 * target.cut));
+            }
+        }
+        let error = self.error_px().map(|(x, y)| format!("error {x:+.2}, {y:+.2} px"));
+        vec![first, parts.join(", "), error.unwrap_or_default()]
+    }
+}
+
+/// The mark of an object that is not the target.
+fn object_mark(object: &ObjectTruth) -> Option<Mark> {
+    let (class, least, label) = match object.kind {
+        ObjectKind::Target => return None,
+        ObjectKind::Star => (Class::Star, 7.0, Some(format!("HIP {}", object.id))),
+        ObjectKind::Planet => (Class::Planet, 9.0, Some(planet(object.id))),
+        ObjectKind::Moon => (Class::Planet, 9.0, Some("Moon".to_owned())),
+        ObjectKind::HotPixel => (Class::HotPixel, 6.0, None),
+        ObjectKind::CosmicRay => (Class::CosmicRay, 6.0, None),
+    };
+    Some(Mark {
+        at: object.position,
+        shape: Shape::Around { radius_px: object.radius_px.min(40.0), least },
+        class,
+        label,
+    })
+}
+
+/// The name of a planet by its number from the Sun outwards.
+fn planet(number: u32) -> String {
+    const NAMES: [&str; 8] = ["Mercury", "Venus", "Earth", "Mars", "Jupiter", "Saturn", "Uranus", "Neptune"];
+    let name = usize::try_from(number).ok().and_then(|number| NAMES.get(number.checked_sub(1)?));
+    name.map_or_else(|| format!("planet {number}"), |name| (*name).to_owned())
+}
+
+/// `2012-04-26T13:02:07.250000000Z` to the millisecond, without letters.
+pub(super) fn time_words(utc: &str) -> String {
+    let (date, time) = utc.trim_end_matches('Z').split_once('T').unwrap_or((utc, ""));
+    format!("{date} {}", time.get(..12).unwrap_or(time))
+}
+
+fn exposure_words(exposure_s: f64) -> String {
+    if exposure_s < 1.0 { format!("{:.1} ms", 1000.0 * exposure_s) } else { format!("{exposure_s:.3} s") }
+}
+
+/// A rectangle around points.
+pub(super) struct Bounds {
+    low: PixelPoint,
+    high: PixelPoint,
+}
+
+impl Bounds {
+    pub(super) fn of(point: PixelPoint) -> Self {
+        Self { low: point, high: point }
+    }
+
+    pub(super) fn add(&mut self, point: PixelPoint) {
+        self.low = PixelPoint::new(self.low.x.min(point.x), self.low.y.min(point.y));
+        self.high = PixelPoint::new(self.high.x.max(point.x), self.high.y.max(point.y));
+    }
+
+    /// The window around it, four to three, with a border of three pixels, moved into the detector.
+    pub(super) fn window(&self, columns: usize, rows: usize) -> Window {
+        let (wide, high) = (self.high.x - self.low.x + 7.0, self.high.y - self.low.y + 7.0);
+        let width = wide.max(high * 4.0 / 3.0).max(LEAST_SIDES.0);
+        let height = (0.75 * width).max(LEAST_SIDES.1);
+        let side = |low: f64, high: f64, length: f64, limit: usize| {
+            let length = (length.ceil() as usize).clamp(1, limit.max(1));
+            let first = (0.5 * (low + high + 1.0) - 0.5 * length as f64).round().max(0.0) as usize;
+            (first.min(limit.saturating_sub(length)), length)
+        };
+        let (x, columns) = side(self.low.x, self.high.x, width, columns);
+        let (y, rows) = side(self.low.y, self.high.y, height, rows);
+        Window { x, y, columns, rows }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_close_up_holds_its_points_and_stays_on_the_detector() {
+        for (columns, rows) in [(752, 580), (40, 30), (3, 2), (1, 1)] {
+            for (x, y) in [(0.0, 0.0), (0.4, 0.6), (columns as f64 - 1.0, rows as f64 - 1.0), (300.0, 200.0)]
+            {
+                let point = PixelPoint::new(x.min(columns as f64 - 1.0), y.min(rows as f64 - 1.0));
+                let window = Bounds::of(point).window(columns, rows);
+                assert!(window.x + window.columns <= columns && window.y + window.rows <= rows, "{window:?}");
+                assert!(window.contains(point.x.round() as usize, point.y.round() as usize), "{window:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn times_and_planets_are_words() {
+        assert_eq!(time_words("2012-04-26T13:02:07.250000000Z"), "2012-04-26 13:02:07.250");
+        assert_eq!(time_words("odd"), "odd ");
+        assert_eq!(
+            (planet(2).as_str(), planet(0).as_str(), planet(9).as_str()),
+            ("Venus", "planet 0", "planet 9")
+        );
+        assert_eq!((exposure_words(0.2102).as_str(), exposure_words(2.0).as_str()), ("210.2 ms", "2.000 s"));
+    }
+}

@@ -1,0 +1,343 @@
+//! The table that a person reads, shaped like Table 2 of the far-range paper.
+use comfy_table::{Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table};
+use indexmap::IndexMap;
+use score::{Cause, Figure, Score, Table2, Table2Distance, names};
+
+/// How to print a score.
+#[derive(Debug, Clone, Copy)]
+pub struct TableStyle<'a> {
+    /// Whether to set letters bold and dim with terminal codes: false when the output is not a terminal.
+    pub styled: bool,
+    /// Columns of the terminal. Where a line does not fit, the intervals go below their values.
+    pub width: usize,
+    /// Published figures to print below ours; they are left out unless the score has as many groups.
+    pub reference: Option<&'a Table2>,
+}
+
+impl Default for TableStyle<'_> {
+    /// Plain, 120 columns, without published figures.
+    fn default() -> Self {
+        Self { styled: false, width: 120, reference: None }
+    }
+}
+
+/// The score of a far-range run as text: figures by group with their 95 % intervals, then the misses and the wrong
+/// answers by cause, each with its share of the column's frames in percent. Ends with a line feed.
+pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
+    let columns = columns(score);
+    let reference = style.reference.filter(|table| table.images.len() == columns.len());
+    let rows = rows(&columns, reference);
+    let one_line = sheet(&columns, &rows, " ", style.styled);
+    let fits = one_line.lines().next().is_some_and(|line| line.chars().count() <= style.width);
+    let mut text = if fits { one_line } else { sheet(&columns, &rows, "\n", style.styled) };
+    text.push_str(
+        "Rates in percent with their 95 % intervals; RMS in seconds of arc, over the correct.\n\
+         The cause of a wrong answer is what kept the target itself from being taken.\n",
+    );
+    if let Some(distance) = style.reference.and_then(|table| table.distance(score)) {
+        let Table2Distance { mean_points, worst_points } = distance;
+        text.push_str(&format!(
+            "The 30 cells differ from the published ones by {mean_points:.1} points in the mean, {worst_points:.1} at worst.\n"
+        ));
+    }
+    for (title, pick) in [
+        ("Misses by cause", (|column: &Column<'_>| column.misses) as Counts),
+        ("Wrong answers by cause", |column| column.wrong),
+    ] {
+        text.push('\n');
+        text.push_str(&causes(title, &columns, pick, style.styled));
+    }
+    text
+}
+
+/// One column: a group, or all.
+struct Column<'a> {
+    name: &'a str,
+    frames: u64,
+    figures: &'a IndexMap<String, Figure>,
+    misses: &'a IndexMap<String, u64>,
+    wrong: &'a IndexMap<String, u64>,
+}
+
+type Counts = for<'a> fn(&Column<'a>) -> &'a IndexMap<String, u64>;
+
+/// The groups and all; all alone where one group is everything.
+fn columns(score: &Score) -> Vec<Column<'_>> {
+    let groups = score.groups.iter().map(|(name, group)| Column {
+        name,
+        frames: group.frames,
+        figures: &group.figures,
+        misses: &group.misses,
+        wrong: &group.wrong,
+    });
+    let all = Column {
+        name: "all",
+        frames: score.frames,
+        figures: &score.figures,
+        misses: &score.misses,
+        wrong: &score.wrong,
+    };
+    groups.filter(|_| score.groups.len() > 1).chain([all]).collect()
+}
+
+/// One row: its label and the value and interval of every column.
+struct Row {
+    label: &'static str,
+    cells: Vec<(String, Option<String>)>,
+    is_reference: bool,
+}
+
+fn rows(columns: &[Column<'_>], reference: Option<&Table2>) -> Vec<Row> {
+    let images = columns.iter().map(|column| (column.frames.to_string(), None)).collect();
+    let mut rows = vec![Row { label: "images", cells: images, is_reference: false }];
+    let mut add = |label, name, format: fn(f64) -> String, published: Option<[f64; 6]>| {
+        let cells = columns.iter().map(|column| figure(column.figures.get(name), format)).collect();
+        rows.push(Row { label, cells, is_reference: false });
+        if let Some(published) = published {
+            let cells = published.iter().map(|rate| (format!("{rate:.1}"), None)).collect();
+            rows.push(Row { label: "  published", cells, is_reference: true });
+        }
+    };
+    let of = |pick: fn(&Table2) -> [f64; 6]| reference.map(pick);
+    add("hit rate", names::HIT_RATE, percent, of(|t| t.hit_rate));
+    add("RA < 0.024°", names::RA_WITHIN_1PX, percent, of(|t| t.ra_within_1px));
+    add("RA < 0.048°", names::RA_WITHIN_2PX, percent, of(|t| t.ra_within_2px));
+    add("Dec < 0.024°", names::DEC_WITHIN_1PX, percent, of(|t| t.dec_within_1px));
+    add("Dec < 0.048°", names::DEC_WITHIN_2PX, percent, of(|t| t.dec_within_2px));
+    add("correct", names::CORRECT_RATE, percent, None);
+    add("wrong", names::WRONG_RATE, percent, None);
+    add("RA RMS", names::RA_RMS_DEG, arcsec, None);
+    add("Dec RMS", names::DEC_RMS_DEG, arcsec, None);
+    rows
+}
+
+/// The value and the interval of a figure as they are printed; a dash where there is none.
+fn figure(figure: Option<&Figure>, format: fn(f64) -> String) -> (String, Option<String>) {
+    let value = figure.and_then(|figure| figure.value).map_or("–".to_owned(), format);
+    let interval = figure
+        .and_then(|figure| figure.low.zip(figure.high))
+        .map(|(low, high)| format!("({}–{})", format(low), format(high)));
+    (value, interval)
+}
+
+/// A fraction in percent with one decimal. A whole 100 has none: all frames, which no rounding reaches.
+pub(crate) fn percent(fraction: f64) -> String {
+    if fraction == 1.0 { "100".to_owned() } else { format!("{:.1}", (100.0 * fraction).min(99.9)) }
+}
+
+/// Degrees in seconds of arc, with a decimal below 100.
+fn arcsec(degrees: f64) -> String {
+    let arcsec = 3600.0 * degrees;
+    if arcsec < 99.95 { format!("{arcsec:.1}") } else { format!("{arcsec:.0}") }
+}
+
+fn sheet(columns: &[Column<'_>], rows: &[Row], before_interval: &str, styled: bool) -> String {
+    let mut table = plain_table(styled);
+    let heading = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
+    table.set_header([Cell::new("")].into_iter().chain(columns.iter().map(|column| heading(column.name))));
+    for row in rows {
+        let cells = row.cells.iter().map(|(value, interval)| match interval {
+            Some(interval) => format!("{value}{before_interval}{interval}"),
+            None => value.clone(),
+        });
+        let cells = [row.label.to_owned()].into_iter().chain(cells).map(Cell::new);
+        table.add_row(cells.map(
+            |cell| {
+                if row.is_reference { cell.add_attribute(Attribute::Dim) } else { cell }
+            },
+        ));
+    }
+    finish(table)
+}
+
+/// Counts by cause with their share of the column's frames, or one line when there is none.
+fn causes(title: &str, columns: &[Column<'_>], pick: Counts, styled: bool) -> String {
+    let occurring: Vec<&str> = Cause::ALL
+        .iter()
+        .map(|cause| cause.code())
+        .filter(|code| columns.iter().any(|column| pick(column).contains_key(*code)))
+        .collect();
+    if occurring.is_empty() {
+        return format!("{title}: none\n");
+    }
+    let mut table = plain_table(styled);
+    table.set_header([title].into_iter().chain(columns.iter().map(|column| column.name)));
+    for code in occurring {
+        let cells = columns.iter().map(|column| {
+            let count = pick(column).get(code).copied().unwrap_or(0);
+            // A column without frames has no counts, and no share either.
+            if count == 0 { "–".to_owned() } else { share(count, column.frames) }
+        });
+        table.add_row([code.replace('_', " ")].into_iter().chain(cells));
+    }
+    finish(table)
+}
+
+pub(crate) fn share(count: u64, frames: u64) -> String {
+    format!("{count} ({})", percent(count as f64 / frames as f64))
+}
+
+pub(crate) fn plain_table(styled: bool) -> Table {
+    let mut table = Table::new();
+    let rule = LineStyle::none().fill('─').junction('─');
+    let rules = comfy_table::TableStyle::new().top_border(rule).header_separator(rule).bottom_border(rule);
+    table.load_style(rules).set_content_arrangement(ContentArrangement::Disabled);
+    if styled {
+        table.enforce_styling();
+    } else {
+        table.force_no_tty();
+    }
+    table
+}
+
+/// Numbers to the right, no blanks at the edges; ends with a line feed.
+pub(crate) fn finish(mut table: Table) -> String {
+    for (index, column) in table.column_iter_mut().enumerate() {
+        if index == 0 {
+            column.set_padding((0, 0));
+        } else {
+            column.set_padding((1, 0)).set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table.trim_fmt() + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use score::{ARGON_TABLE_2, GroupScore};
+
+    /// Figures of the size of a real run; each with `of` independent frames.
+    fn figures(frames: u64) -> IndexMap<String, Figure> {
+        let rate = |share: f64, of: u64| {
+            let hits = (share * of as f64) as u64;
+            Figure::rate(&[(0..of).map(|i| i < hits).collect()])
+        };
+        let detected = frames * 94 / 100;
+        let degrees = |scale: f64| Figure::rms(&[(0..detected).map(|i| scale * (i % 7) as f64).collect()]);
+        [
+            (names::HIT_RATE, rate(0.94, frames)),
+            (names::RA_WITHIN_1PX, rate(0.855, detected)),
+            (names::RA_WITHIN_2PX, rate(1.0, detected)),
+            (names::DEC_WITHIN_1PX, rate(0.449, detected)),
+            (names::DEC_WITHIN_2PX, rate(0.63, detected)),
+            (names::CORRECT_RATE, rate(0.92, frames)),
+            (names::WRONG_RATE, rate(0.02, frames)),
+            (names::RA_RMS_DEG, degrees(0.004)),
+            (names::DEC_RMS_DEG, degrees(0.04)),
+        ]
+        .map(|(name, figure)| (name.to_owned(), figure))
+        .into()
+    }
+
+    fn score(groups: usize, frames: u64) -> Score {
+        let misses: IndexMap<String, u64> = [("merged_with_star".to_owned(), frames / 20)].into();
+        let group = GroupScore {
+            frames,
+            figures: figures(frames),
+            misses: misses.clone(),
+            wrong: IndexMap::new(),
+            wrong_taken: IndexMap::new(),
+        };
+        Score {
+            scenario: "argon".to_owned(),
+            seed: 1,
+            version: "0.1.0".to_owned(),
+            inject: None,
+            frames: frames * groups as u64,
+            figures: figures(frames * groups as u64),
+            groups: (1..=groups).map(|day| (format!("day {day}"), group.clone())).collect(),
+            misses: [("merged_with_star".to_owned(), frames / 20 * groups as u64)].into(),
+            wrong: IndexMap::new(),
+            wrong_taken: IndexMap::new(),
+        }
+    }
+
+    fn widest(text: &str) -> usize {
+        text.lines().map(|line| line.chars().count()).max().unwrap()
+    }
+
+    fn line<'a>(text: &'a str, label: &str) -> &'a str {
+        text.lines().find(|line| line.trim_start().starts_with(label)).unwrap()
+    }
+
+    #[test]
+    fn five_days_and_all_fit_120_columns_on_one_line_each() {
+        let text = far_range(&score(5, 3000), TableStyle::default());
+        assert!(widest(&text) <= 120, "{}\n{text}", widest(&text));
+        assert_eq!(line(&text, "hit rate").matches("94.0 (").count(), 6, "{text}");
+    }
+
+    #[test]
+    fn where_it_does_not_fit_the_intervals_go_below() {
+        let text = far_range(&score(5, 3000), TableStyle { width: 100, ..TableStyle::default() });
+        assert!(widest(&text) <= 100, "{}\n{text}", widest(&text));
+        assert_eq!(line(&text, "hit rate").matches('(').count(), 0, "{text}");
+    }
+
+    #[test]
+    fn plain_text_has_no_terminal_codes_and_styled_text_has() {
+        let reference = Some(&ARGON_TABLE_2);
+        let plain = far_range(&score(5, 300), TableStyle { reference, ..TableStyle::default() });
+        let styled =
+            far_range(&score(5, 300), TableStyle { reference, styled: true, ..TableStyle::default() });
+        assert!(!plain.contains('\u{1b}') && styled.contains('\u{1b}'));
+    }
+
+    #[test]
+    fn published_figures_stand_below_ours_when_the_groups_are_theirs() {
+        let style = TableStyle { reference: Some(&ARGON_TABLE_2), ..TableStyle::default() };
+        assert!(line(&far_range(&score(5, 300), style), "published").contains("93.9"));
+        assert!(!far_range(&score(4, 300), style).contains("published"));
+    }
+
+    #[test]
+    fn the_distance_from_the_published_cells_is_that_of_a_sum_by_hand() {
+        let score = score(5, 3000);
+        let style = TableStyle { reference: Some(&ARGON_TABLE_2), ..TableStyle::default() };
+        let ours: Vec<f64> = ARGON_TABLE_2
+            .rates()
+            .iter()
+            .map(|(name, _)| 100.0 * score.figures[*name].value.unwrap())
+            .collect();
+        // The groups of this score are alike, and like the whole.
+        let differences: Vec<f64> = ARGON_TABLE_2
+            .rates()
+            .iter()
+            .zip(&ours)
+            .flat_map(|((_, rates), ours)| rates.map(|rate| (rate - ours).abs()))
+            .collect();
+        let mean = differences.iter().sum::<f64>() / 30.0;
+        let worst = differences.iter().copied().fold(0.0, f64::max);
+        let expected = format!("by {mean:.1} points in the mean, {worst:.1} at worst");
+        let text = far_range(&score, style);
+        assert!(text.contains(&expected), "{expected}\n{text}");
+    }
+
+    #[test]
+    fn one_group_is_shown_once() {
+        let text = far_range(&score(1, 300), TableStyle::default());
+        assert!(!text.contains("day 1") && text.contains("all"), "{text}");
+    }
+
+    #[test]
+    fn misses_are_counted_and_shared_by_cause_and_no_wrong_answer_is_said_so() {
+        let text = far_range(&score(2, 300), TableStyle::default());
+        let misses = line(&text, "merged with star");
+        assert!(misses.contains("15 (5.0)") && misses.contains("30 (5.0)"), "{text}");
+        assert!(text.ends_with("Wrong answers by cause: none\n"), "{text}");
+    }
+
+    #[test]
+    fn a_score_of_nothing_prints_dashes() {
+        let mut empty = score(0, 0);
+        empty.misses.clear();
+        let text = far_range(&empty, TableStyle::default());
+        assert!(line(&text, "hit rate").contains('–') && !text.contains("NaN"), "{text}");
+    }
+
+    #[test]
+    fn only_a_whole_is_printed_as_100_percent() {
+        assert_eq!([1.0, 0.99999, 0.9394, 0.0].map(percent), ["100", "99.9", "93.9", "0.0"]);
+    }
+}

@@ -1,0 +1,159 @@
+//! What a person reads of a gate.
+use comfy_table::{Attribute, Cell};
+use gate::{Baseline, FigureReport, FigureVerdict, Flip, GateReport, Pairing};
+use score::{Kind, sense};
+
+use crate::table::far_range::{finish, percent, plain_table};
+
+/// Units that changed, at most, that are printed; all of them are in the JSON.
+const SHOWN: usize = 10;
+
+/// Rows of the table, unless more figures are worse or better.
+const MOST_ROWS: usize = 20;
+
+/// A report as text: a row a figure, then the units that changed. Ends with a line feed.
+pub fn gate_table(report: &GateReport, styled: bool) -> String {
+    let mut table = plain_table(styled);
+    let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
+    table.set_header(
+        ["figure", "baseline", "result", "difference (95 %)", "adjusted p", "verdict", "visible"].map(bold),
+    );
+    let rows = rows(report);
+    for (name, figure) in &rows {
+        let value = |value: Option<f64>| value.map_or("–".to_owned(), |value| number(name, value));
+        let verdict = Cell::new(figure.verdict.words());
+        let is_plain = matches!(figure.verdict, FigureVerdict::NoWorse | FigureVerdict::TooLittleData);
+        table.add_row([
+            Cell::new(name),
+            Cell::new(value(figure.baseline)),
+            Cell::new(value(figure.result)),
+            Cell::new(difference(name, figure)),
+            Cell::new(format!("{:.3}", figure.adjusted_p)),
+            if is_plain { verdict } else { verdict.add_attribute(Attribute::Bold) },
+            Cell::new(value(figure.smallest_visible)),
+        ]);
+    }
+    let worse: Vec<&str> = report.worse().collect();
+    let verdict =
+        if worse.is_empty() { "no worse".to_owned() } else { format!("WORSE: {}", worse.join(", ")) };
+    let paired = match report.pairing {
+        Pairing::Frames => format!("the same {}", report.units),
+        Pairing::Blocks => format!(
+            "other noise (seeds {} and {}), stretch against stretch",
+            report.baseline_seed, report.result_seed
+        ),
+    };
+    let mut text = format!("{}: {verdict}\n", report.name);
+    text.push_str(&finish(table));
+    text.push_str(&format!(
+        "{} {} in {} blocks; {paired}. Worse: adjusted for all figures, p at most {}, and by more than the tolerance.\n\
+         Visible: the worsening that is seen with a probability of 95 % or more. Rates in percent.\n\
+         Baseline: {}\n",
+        report.count, report.units, report.blocks, report.alpha, report.reason,
+    ));
+    let left_out = report.figures.len() - rows.len();
+    if left_out > 0 {
+        text.push_str(&format!(
+            "Not shown: {left_out} more figures, none of them worse or better; --json has them.\n"
+        ));
+    }
+    for note in &report.notes {
+        text.push_str(&format!("Note: {note}\n"));
+    }
+    if let Some(flips) = &report.flips {
+        let (lost, won, other) = (flips.lost, flips.won, flips.other);
+        text.push_str(&format!("\n{} lost, {won} won, {other} changed otherwise", lost));
+        if flips.units.is_empty() {
+            text.push('\n');
+        } else {
+            text.push_str(if flips.units.len() > SHOWN { ", the first ten:\n" } else { ":\n" });
+            text.push_str(&changed(&flips.units, styled));
+        }
+    }
+    text
+}
+
+/// The figures that are shown, in their order: all with a verdict to speak of, and of the others those that came nearest to one.
+fn rows(report: &GateReport) -> Vec<(&String, &FigureReport)> {
+    let is_silent = |figure: &FigureReport| {
+        matches!(figure.verdict, FigureVerdict::NoWorse | FigureVerdict::TooLittleData)
+    };
+    let with_values = report.figures.iter().filter(|(_, figure)| figure.baseline.or(figure.result).is_some());
+    let mut by_rank: Vec<(&String, &FigureReport)> = with_values.collect();
+    by_rank.sort_by(|a, b| {
+        let rank = |figure: &FigureReport| (is_silent(figure), figure.p.min(1.0 - figure.p));
+        let (a, b) = (rank(a.1), rank(b.1));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    });
+    let spoken = by_rank.iter().filter(|(_, figure)| !is_silent(figure)).count();
+    by_rank.truncate(spoken.max(MOST_ROWS));
+    by_rank.sort_by_key(|(name, _)| report.figures.get_index_of(*name));
+    by_rank
+}
+
+fn changed(flips: &[Flip], styled: bool) -> String {
+    let mut table = plain_table(styled);
+    let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
+    table.set_header(["number", "group", "baseline", "result"].map(bold));
+    let shown = |verdict: &str, cause: &Option<String>| {
+        cause
+            .as_ref()
+            .map_or_else(|| verdict.to_owned(), |cause| format!("{verdict}: {}", cause.replace('_', " ")))
+    };
+    for flip in flips.iter().take(SHOWN) {
+        table.add_row([
+            flip.number.to_string(),
+            flip.group.clone(),
+            shown(&flip.baseline, &flip.baseline_cause),
+            shown(&flip.result, &flip.result_cause),
+        ]);
+    }
+    finish(table)
+}
+
+fn difference(name: &str, figure: &FigureReport) -> String {
+    let Some(difference) = figure.difference else { return "–".to_owned() };
+    match (figure.low, figure.high) {
+        (Some(low), Some(high)) => {
+            format!("{} ({} to {})", signed(name, difference), signed(name, low), signed(name, high))
+        }
+        _ => signed(name, difference),
+    }
+}
+
+/// What a baseline is, as text. Ends with a line feed.
+pub fn baseline_text(baseline: &Baseline) -> String {
+    let header = &baseline.header;
+    let (run, rule) = (&header.run, &header.blocks);
+    let units = run.kind.units(&run.world);
+    let remembers = if rule.memory_of.is_empty() {
+        "no figure remembers anything".to_owned()
+    } else {
+        format!("{} remembers {} {units}", rule.memory_of, rule.memory)
+    };
+    format!(
+        "{} with seed {}: {} {units} in {} blocks of about {}; {remembers}\n",
+        run.name, run.seed, header.units, rule.count, rule.length
+    )
+}
+
+fn signed(name: &str, value: f64) -> String {
+    let text = number(name, value);
+    if value > 0.0 { format!("+{text}") } else { text }
+}
+
+fn number(name: &str, value: f64) -> String {
+    if sense(name).kind == Kind::Rate {
+        return percent(value);
+    }
+    let size = value.abs();
+    if size == 0.0 {
+        "0".to_owned()
+    } else if (0.01..1e5).contains(&size) {
+        // Three digits that count, or all before the point.
+        let digits = (2 - libm::log10(size).floor() as i32).max(0) as usize;
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.1e}")
+    }
+}

@@ -1,0 +1,13 @@
+//! Tables for the terminal, one module per kind of result.
+
+mod docking;
+mod far_range;
+mod gate;
+mod study;
+mod visibility;
+
+pub use docking::docking;
+pub use far_range::{TableStyle, far_range};
+pub use gate::{baseline_text, gate_table};
+pub use study::{LiveFigure, study_table};
+pub use visibility::{visibility_markdown, visibility_table};

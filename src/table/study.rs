@@ -1,0 +1,162 @@
+//! What a person reads of a study.
+use comfy_table::{Attribute, Cell};
+use score::{Kind, sense};
+use study::{CaseFigure, CaseRow, Estimate, Study, Summary, overall};
+
+use crate::table::far_range::{finish, percent, plain_table};
+
+/// Parameters of the sensitivity table, at most.
+const SHOWN: usize = 12;
+
+/// A summary as text: figures, sweep, sensitivities, the worst cases. Ends with a line feed.
+pub fn study_table(summary: &Summary, styled: bool) -> String {
+    let mut table = plain_table(styled);
+    let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
+    table.set_header(
+        ["figure", "cases", "all cases together", "5 % of cases below", "median", "95 % below"].map(bold),
+    );
+    for (name, figure) in &summary.figures {
+        if figure.cases == 0 {
+            continue;
+        }
+        let show = |estimate: &Option<Estimate>| shown(name, estimate.as_ref());
+        table.add_row([
+            name.clone(),
+            figure.cases.to_string(),
+            show(&figure.all),
+            show(&figure.p05),
+            show(&figure.median),
+            show(&figure.p95),
+        ]);
+    }
+    let stopped = if summary.is_narrow_enough { ", stopped as its figure was known well enough" } else { "" };
+    let mut text = format!("{}: {} cases of {}{stopped}\n", summary.study, summary.cases, summary.of);
+    if summary.failed_cases > 0 {
+        let cases = summary.failed_cases;
+        text.push_str(&format!("In {cases} of them the pipeline itself failed: it crashed, gave no answer in time, or none that can be read.\n"));
+    }
+    text.push_str(&finish(table));
+    text.push_str(
+        "Intervals are of 95 %. All together: rates over all frames (Wilson, by the scatter between cases), other figures the mean of the\n\
+         cases (bootstrap). Quantiles are of the cases, theirs by bootstrap.\n",
+    );
+    let by = &summary.worst_by;
+    if let Some(first) = summary.sweep.first() {
+        let mut table = plain_table(styled);
+        let paths = first.at.keys().map(String::as_str);
+        table.set_header(paths.chain(["cases", by]).map(bold));
+        for point in &summary.sweep {
+            let figure = point.figures.get(by).and_then(|figure| figure.all.as_ref());
+            let cells = point.at.values().cloned().chain([point.cases.to_string(), shown(by, figure)]);
+            table.add_row(cells);
+        }
+        text.push('\n');
+        text.push_str(&finish(table));
+    }
+    let of_figure = summary.correlations.iter().filter(|c| &c.figure == by).take(SHOWN);
+    let rows: Vec<[String; 3]> = of_figure
+        .map(|c| {
+            let interval = format!("{:+.2} to {:+.2}", c.low, c.high);
+            [c.parameter.clone(), format!("{:+.2}", c.correlation), interval]
+        })
+        .collect();
+    if !rows.is_empty() {
+        let mut table = plain_table(styled);
+        table.set_header([&format!("{by} goes with"), "rank correlation", "95 %"].map(bold));
+        rows.into_iter().for_each(|row| {
+            table.add_row(row);
+        });
+        text.push('\n');
+        text.push_str(&finish(table));
+    }
+    let indices: Vec<_> = summary.indices.iter().filter(|index| &index.figure == by).collect();
+    if !indices.is_empty() {
+        let mut table = plain_table(styled);
+        table.set_header([&format!("variance of {by} by"), "alone", "95 %", "with others", "95 %"].map(bold));
+        for index in indices {
+            let interval = |[low, high]: [f64; 2]| format!("{low:.2} to {high:.2}");
+            table.add_row([
+                index.parameter.clone(),
+                format!("{:.2}", index.first),
+                interval(index.first_interval),
+                format!("{:.2}", index.total),
+                interval(index.total_interval),
+            ]);
+        }
+        text.push('\n');
+        text.push_str(&finish(table));
+    }
+    if !summary.worst.is_empty() {
+        let mut table = plain_table(styled);
+        table.set_header(["worst cases", by, "again, with its frames"].map(bold));
+        for case in &summary.worst {
+            table.add_row([format!("case {}", case.case), number(by, case.value), case.replay.clone()]);
+        }
+        text.push('\n');
+        text.push_str(&finish(table));
+    }
+    text
+}
+
+/// A figure of the cases so far, in a few words: estimated anew after each twentieth more of them, so that it costs little however many
+/// there are.
+pub struct LiveFigure {
+    name: String,
+    column: Option<usize>,
+    seed: u64,
+    cases: Vec<CaseFigure>,
+    next: usize,
+}
+
+impl LiveFigure {
+    /// Of a study, before its first case.
+    pub fn new(study: &Study, name: String) -> Self {
+        let column = study.figures().iter().position(|figure| *figure == name);
+        Self { name, column, seed: study.file.seed, cases: Vec::new(), next: 1 }
+    }
+
+    /// Adds a case; what is to be shown now, if it is to be shown anew.
+    pub fn add(&mut self, row: &CaseRow) -> Option<String> {
+        self.cases.push(*row.figures.get(self.column?)?);
+        if self.cases.len() < self.next {
+            return None;
+        }
+        self.next = self.cases.len() + (self.cases.len() / 20).max(1);
+        let estimate = overall(&self.name, &self.cases, self.seed, 0);
+        Some(format!("{} {}", self.name, shown(&self.name, estimate.as_ref())))
+    }
+}
+
+fn shown(name: &str, estimate: Option<&Estimate>) -> String {
+    let Some(estimate) = estimate else { return "–".to_owned() };
+    match (estimate.low, estimate.high) {
+        (Some(low), Some(high)) => {
+            format!("{} ({}–{})", number(name, estimate.value), number(name, low), number(name, high))
+        }
+        _ => number(name, estimate.value),
+    }
+}
+
+fn number(name: &str, value: f64) -> String {
+    if sense(name).kind == Kind::Rate {
+        return format!("{} %", percent(value));
+    }
+    let size = value.abs();
+    if size == 0.0 || (0.01..1e5).contains(&size) {
+        // Four digits that count.
+        let digits = if size >= 1000.0 {
+            0
+        } else if size >= 100.0 {
+            1
+        } else if size >= 10.0 {
+            2
+        } else if size >= 1.0 {
+            3
+        } else {
+            4
+        };
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.2e}")
+    }
+}

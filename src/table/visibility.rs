@@ -1,0 +1,227 @@
+//! What a person reads of requirements: the verification table and the curves, on screen and as Markdown.
+use visibility::{Status, Verdict, VisibilityReport, digits};
+
+use crate::table::far_range::{finish, plain_table};
+
+/// Points of a curve that are shown, about.
+const SHOWN: usize = 9;
+
+/// A heading, columns, rows.
+struct Sheet {
+    title: String,
+    head: Vec<&'static str>,
+    rows: Vec<Vec<String>>,
+}
+
+/// The report as text; letters are set bold with terminal codes when `styled`. Ends with a line feed.
+pub fn visibility_table(report: &VisibilityReport, styled: bool) -> String {
+    let mut text = format!("{}: {}\n{}\n", report.name, report.title, in_figures(report));
+    for verdict in &report.requirements {
+        let [id, says, status, margin, evidence] = requirement(verdict);
+        text.push_str(&format!("\n{id}  {status}  (margin {margin})\n    {says}\n    {evidence}\n"));
+    }
+    for sheet in curves(report) {
+        text.push_str(&format!("\n{}\n", sheet.title));
+        let mut table = plain_table(styled);
+        table.set_header(sheet.head);
+        for row in sheet.rows {
+            table.add_row(row);
+        }
+        text.push_str(&finish(table));
+    }
+    for line in remarks(report) {
+        text.push_str(&format!("\n{line}\n"));
+    }
+    text
+}
+
+/// The report in Markdown.
+pub fn visibility_markdown(report: &VisibilityReport) -> String {
+    let mut text = format!("# {}\n\n{}\n", report.title, in_figures(report));
+    let requirements = Sheet {
+        title: "Requirements".to_owned(),
+        head: vec!["ID", "requirement", "", "margin", "evidence"],
+        rows: report.requirements.iter().map(|verdict| requirement(verdict).to_vec()).collect(),
+    };
+    let first = (!report.requirements.is_empty()).then_some(requirements);
+    for sheet in first.into_iter().chain(curves(report)) {
+        text.push_str(&format!("\n## {}\n\n| {} |\n|", sheet.title, sheet.head.join(" | ")));
+        text.push_str(&" --- |".repeat(sheet.head.len()));
+        text.push('\n');
+        for row in sheet.rows {
+            // A bar would end the cell.
+            let cells: Vec<_> = row.iter().map(|cell| cell.replace('|', "\\|")).collect();
+            text.push_str(&format!("| {} |\n", cells.join(" | ")));
+        }
+    }
+    for line in remarks(report) {
+        text.push_str(&format!("\n{line}\n"));
+    }
+    text
+}
+
+fn in_figures(report: &VisibilityReport) -> String {
+    let camera = &report.camera;
+    let field = camera.field_deg.map_or_else(String::new, |[x, y]| format!("field {x:.1}° × {y:.1}°, "));
+    format!(
+        "{field}{} e⁻/s from V = 0, threshold {} DN, background {} e⁻/s a pixel, saturation {} e⁻, nominal exposure {} s (stars trail {:.2} px)",
+        digits(camera.zero_point_e_per_s),
+        camera.threshold_dn,
+        digits(camera.background_e_per_s),
+        digits(camera.saturation_e),
+        digits(camera.nominal_s),
+        camera.star_trail_px
+    )
+}
+
+fn curves(report: &VisibilityReport) -> Vec<Sheet> {
+    let mut sheets = Vec::new();
+    let asked = format!("{:.0} %", 100.0 * report.camera.probability);
+    if !report.detection_simulated.is_empty() {
+        let rows = report.detection_simulated.iter().map(|point| {
+            vec![
+                format!("{:.1}", point.magnitude),
+                percent(point.analytic),
+                format!("{} of {}", point.count, point.of),
+                format!(
+                    "{} ({} to {})",
+                    percent(point.count as f64 / point.of as f64),
+                    percent(point.low),
+                    percent(point.high)
+                ),
+            ]
+        });
+        sheets.push(Sheet {
+            title: "Detection of stars at the nominal exposure".to_owned(),
+            head: vec!["V ± 0.05", "analytic, %", "simulated", "% (95 %)"],
+            rows: rows.collect(),
+        });
+    }
+    let rows = thinned(&report.limiting_magnitude).map(|point| {
+        let magnitude = |value: Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.2}"));
+        vec![
+            digits(point.exposure_s),
+            magnitude(point.half),
+            magnitude(point.asked),
+            format!("{:.1}", point.stars),
+            percent(point.probability),
+        ]
+    });
+    sheets.push(Sheet {
+        title: format!("Exposure: V detected with 50 % and {asked}, stars over the sky"),
+        head: vec!["exposure, s", "V, 50 %", "V, asked", "stars", "enough, %"],
+        rows: rows.collect(),
+    });
+    let rows = report.sky.worst.iter().map(|pointing| {
+        vec![
+            format!("{:.1}", pointing.ra_deg),
+            format!("{:+.1}", pointing.dec_deg),
+            pointing.in_field.to_string(),
+            format!("{:.1}", pointing.stars),
+            percent(pointing.probability),
+        ]
+    });
+    sheets.push(Sheet {
+        title: "Worst pointings at the nominal exposure".to_owned(),
+        head: vec!["RA, °", "Dec, °", "bright enough", "detected", "enough, %"],
+        rows: rows.collect(),
+    });
+    if !report.exposure_window.is_empty() {
+        let rows = thinned(&report.exposure_window).map(|point| {
+            vec![
+                digits(point.range_km),
+                digits(point.longest_s),
+                point.shortest_s.map_or("–".to_owned(), digits),
+                if point.is_open { "open".to_owned() } else { "closed".to_owned() },
+                digits(point.median_s),
+                format!("{:.1}", point.stars),
+                percent(point.probability),
+            ]
+        });
+        sheets.push(Sheet {
+            title: "Exposures that spare the target and leave enough stars".to_owned(),
+            head: vec!["range, km", "longest, s", "shortest, s", "", "median, s", "stars", "enough, %"],
+            rows: rows.collect(),
+        });
+    }
+    if !report.target_range.is_empty() {
+        let km = |value: Option<f64>| value.map_or("–".to_owned(), digits);
+        let rows = report.target_range.iter().map(|row| {
+            let [low, high] = row.phases_deg;
+            let phases = if low == high { format!("{low:.0}") } else { format!("{low:.0} to {high:.0}") };
+            vec![phases, km(row.nominal_km), km(row.longest_km)]
+        });
+        sheets.push(Sheet {
+            title: format!("Greatest range of the target, with {asked}"),
+            head: vec!["phase, °", "nominal exposure, km", "longest, km"],
+            rows: rows.collect(),
+        });
+    }
+    sheets
+}
+
+/// ID, text, status, margin, evidence.
+fn requirement(verdict: &Verdict) -> [String; 5] {
+    let margin = verdict.margin.map_or("–".to_owned(), |margin| {
+        let sign = if margin >= 0.0 { "+" } else { "" };
+        format!("{sign}{} {}", digits(margin), verdict.margin_unit)
+    });
+    let mut evidence = verdict.evidence.clone();
+    if let Some(binds) = &verdict.binds {
+        evidence.push_str(&format!("; {binds}"));
+    }
+    [verdict.id.clone(), verdict.text.clone(), verdict.status.words().to_owned(), margin, evidence]
+}
+
+fn remarks(report: &VisibilityReport) -> Vec<String> {
+    let sky = &report.sky;
+    let [sun, moon, earth] = sky.excluded;
+    let mut lines = vec![format!(
+        "Sky: {} of {} pointings count ({sun} excluded by the Sun, {moon} by the Moon, {earth} by the Earth); {:.1} stars in the mean, {:.1}, {:.1} and {:.1} \
+         in the worst 1, 10 and 50 %; {} % have {} stars, and {} % of the pointings have them with {} % or more.",
+        sky.counted,
+        sky.pointings,
+        sky.stars,
+        sky.quantiles[0],
+        sky.quantiles[1],
+        sky.quantiles[2],
+        percent(sky.probability),
+        report.camera.n_min,
+        percent(sky.share),
+        percent(report.camera.probability)
+    )];
+    if let Some(lost) = &report.stars_lost {
+        let nearer = |range: Option<f64>, what: &str| {
+            range.map_or_else(
+                || format!("at no range of the curve or at all {what}"),
+                |km| format!("nearer than {} km {what}", digits(km)),
+            )
+        };
+        lines.push(format!(
+            "Fewer than {} stars remain: {}; {}.",
+            lost.n_min,
+            nearer(lost.half_of_frames_km, "in half of the frames"),
+            nearer(lost.window_closes_km, "no exposure gives both with the probability asked for")
+        ));
+    }
+    let count = |status| report.requirements.iter().filter(|verdict| verdict.status == status).count();
+    if !report.requirements.is_empty() {
+        lines.push(format!(
+            "{} met, {} not met, {} impossible. Simulated rates with one-sided bounds; of stars with two-sided limits of 95 %.",
+            count(Status::Met),
+            count(Status::NotMet),
+            count(Status::Impossible)
+        ));
+    }
+    lines
+}
+
+/// Some points of a curve, its ends among them.
+fn thinned<T>(points: &[T]) -> impl Iterator<Item = &T> {
+    let step = points.len().saturating_sub(1).div_ceil(SHOWN - 1).max(1);
+    points.iter().step_by(step)
+}
+
+fn percent(share: f64) -> String {
+    crate::table::far_range::percent(share)
+}

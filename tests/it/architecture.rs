@@ -1,0 +1,222 @@
+//! Dependencies between our crates point down, and no reader of input can panic.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use cargo_metadata::{Metadata, MetadataCommand, Target};
+
+/// Each of our crates, and those of our crates that it may name. The pipelines know the contract alone: what they do not depend on
+/// they cannot share with the simulator.
+const ARROWS: [(&str, &str); 19] = [
+    ("contract", ""),
+    ("sim", "contract"),
+    ("pipeline", "contract"),
+    ("statistics", "sim"),
+    ("score", "contract sim statistics"),
+    ("files", "contract pipeline score sim"),
+    ("scenario", "contract files pipeline sim"),
+    ("mitsuba", "contract files sim"),
+    ("run", "contract files mitsuba pipeline scenario score sim"),
+    ("study", "contract files pipeline run scenario score sim statistics"),
+    ("gate", "contract files run scenario score sim statistics study"),
+    ("visibility", "contract files pipeline scenario sim statistics"),
+    ("show", "contract"),
+    ("report", "contract files gate run scenario score sim study visibility"),
+    ("monitor", "contract files run scenario score sim"),
+    (
+        "boresight",
+        "contract files gate mitsuba monitor pipeline report research run scenario score show sim statistics study visibility",
+    ),
+    ("python", "boresight contract pipeline sim"),
+    ("fuzz", "boresight contract pipeline sim"),
+    ("research", "boresight contract pipeline sim"),
+];
+
+/// The packages of the workspace, as their manifests declare them.
+fn workspace() -> Metadata {
+    MetadataCommand::new()
+        .manifest_path(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"))
+        .no_deps()
+        .exec()
+        .expect("cargo metadata runs wherever cargo test does")
+}
+
+#[test]
+fn dependencies_point_down_and_nowhere_else() {
+    let metadata = workspace();
+    let ours: BTreeSet<String> = metadata.packages.iter().map(|p| p.name.to_string()).collect();
+    // All kinds of dependencies: a test that reached across would share mathematics as well.
+    let arrows: BTreeMap<String, BTreeSet<String>> = metadata
+        .packages
+        .iter()
+        .map(|package| {
+            let targets =
+                package.dependencies.iter().map(|d| d.name.clone()).filter(|name| ours.contains(name));
+            (package.name.to_string(), targets.collect())
+        })
+        .collect();
+    let prefixed = |name: &str| match name {
+        "boresight" => name.to_owned(),
+        name => format!("boresight-{name}"),
+    };
+    let expected: BTreeMap<String, BTreeSet<String>> = ARROWS
+        .iter()
+        .map(|(from, to)| (prefixed(from), to.split_whitespace().map(prefixed).collect()))
+        .collect();
+    assert_eq!(arrows, expected);
+}
+
+/// Arrow was a fifth of the release build. The tables are flat; Python alone needs it, to hand them over.
+#[test]
+fn only_the_python_package_depends_on_arrow() {
+    for package in workspace().packages {
+        for dependency in &package.dependencies {
+            let is_arrow = dependency.name.starts_with("arrow");
+            assert!(
+                !is_arrow || package.name.as_str() == "boresight-python",
+                "{} {}",
+                package.name,
+                dependency.name
+            );
+            if dependency.name == "parquet" {
+                assert!(!dependency.uses_default_features, "{}: they have `arrow`", package.name);
+                assert_eq!(dependency.features, ["snap"], "{}", package.name);
+            }
+        }
+    }
+}
+
+/// What a panic is made of; `unwrap_used` and `todo` are denied everywhere.
+const LINTS: [&str; 5] = ["indexing_slicing", "string_slice", "expect_used", "panic", "unreachable"];
+
+/// What reads bytes that it did not write.
+const READS: [&str; 21] = [
+    "File::open(",
+    "fs::read(",
+    "fs::read_to_string(",
+    "regular_file::read",
+    "toml_file::parse",
+    "serde_json::from_",
+    "csv::Reader",
+    "ParquetFile::open(",
+    "open_regular(",
+    "TableReader::",
+    "Dataset::open(",
+    "FieldSource::open(",
+    "read_field_measurements(",
+    "read_field_telemetry(",
+    "read_measurements(",
+    "read_motion(",
+    "read_radiance(",
+    "read_stars(",
+    "read_telemetry(",
+    "read_until(",
+    "stdin()",
+];
+/// Files of exempt modules that contain one of these calls and read no input, each with the reason.
+const NO_READERS: [(&str, &str); 1] = [("sim/src/docking/simulator.rs", "passes the text to serde")];
+
+/// Programs of the developers, whose input is their own.
+const TOOLS: [&str; 2] = ["boresight-fuzz", "boresight-research"];
+
+/// The lints hold for whole crates. Modules of arithmetic are exempt, with a reason; a reader among them denies the lints again.
+#[test]
+fn no_reader_can_panic() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let name = |path: &Path| path.strip_prefix(root).expect("inside").to_string_lossy().replace('\\', "/");
+    let mut exempt_files = 0;
+    for package in workspace().packages.iter().filter(|package| !TOOLS.contains(&package.name.as_str())) {
+        let is_library = |target: &&Target| target.is_lib() || target.is_cdylib();
+        let library = package.targets.iter().find(is_library).expect("every crate has a library");
+        let library = library.src_path.as_std_path();
+        assert!(denies_panics(&read(library)), "{}: the lints against panics are not denied", name(library));
+        for file in sources(library.parent().expect("a folder")) {
+            for exempt in exempt_modules(&file).iter().flat_map(|path| files_of(path)) {
+                exempt_files += 1;
+                let text = read(&exempt);
+                let code = text.split("#[cfg(test)]").next().unwrap_or_default();
+                let code = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+                let call = code.flat_map(|line| READS.iter().filter(|call| line.contains(**call))).next();
+                let name = name(&exempt);
+                let is_known = NO_READERS.iter().any(|(known, _)| *known == name);
+                assert!(
+                    call.is_none() || is_known || is_test(&name) || denies_panics(&text),
+                    "{name} calls {call:?} in a module that may panic: deny the lints in it"
+                );
+            }
+        }
+    }
+    assert!(
+        exempt_files > 100,
+        "{exempt_files} files of arithmetic were found, expected those of sim and pipeline"
+    );
+}
+
+#[test]
+fn an_exemption_is_found_however_it_is_written() {
+    let folder = tempfile::tempdir().expect("a temporary directory");
+    let file = folder.path().join("lib.rs");
+    let text = "#[allow(\n    clippy::indexing_slicing,\n    reason = \"a\"\n)]\npub mod a;\nmod b;\n#[allow(clippy::panic)]\nmod c;\n";
+    std::fs::write(&file, text).expect("written");
+    let names: Vec<_> = exempt_modules(&file).iter().map(|p| p.file_name().map(|n| n.to_owned())).collect();
+    assert_eq!(names, [Some("a".into()), Some("c".into())]);
+    std::fs::write(&file, "#![allow(clippy::panic)]\n").expect("written");
+    assert!(std::panic::catch_unwind(|| exempt_modules(&file)).is_err(), "a file cannot exempt itself");
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn is_test(name: &str) -> bool {
+    name.ends_with("tests.rs") || name.contains("/tests/")
+}
+
+/// Returns true if a file denies every lint of [`LINTS`] for itself and the modules below it.
+fn denies_panics(text: &str) -> bool {
+    let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+    let list = text.split_once("#![cfg_attr(not(test),deny(").and_then(|(_, rest)| rest.split_once("))]"));
+    let list = list.map_or("", |(list, _)| list);
+    LINTS.iter().all(|lint| list.split(',').any(|name| name.strip_prefix("clippy::") == Some(lint)))
+}
+
+/// The paths, without extension, of the modules that a file declares and exempts from a lint of [`LINTS`].
+fn exempt_modules(file: &Path) -> Vec<PathBuf> {
+    let text = read(file);
+    let is_lint = |attribute: &str| LINTS.iter().any(|lint| attribute.contains(&format!("clippy::{lint}")));
+    let is_root = ["lib.rs", "mod.rs"].iter().any(|root| file.ends_with(root));
+    let folder = if is_root { file.with_file_name("") } else { file.with_extension("") };
+    let mut exempt = Vec::new();
+    for attribute in text.split("#![allow(").skip(1) {
+        let attribute = attribute.split(")]").next().unwrap_or_default();
+        assert!(!is_lint(attribute), "{}: exempt the module where it is declared", file.display());
+    }
+    for attribute in text.split("#[allow(").skip(1) {
+        let Some((attribute, item)) = attribute.split_once(")]") else { continue };
+        let item = item.trim_start().lines().next().unwrap_or_default();
+        let module = item.strip_suffix(';').and_then(|item| item.rsplit_once("mod "));
+        if let Some((_, module)) = module.filter(|_| is_lint(attribute)) {
+            exempt.push(folder.join(module));
+        }
+    }
+    exempt
+}
+
+/// The files of a module, by its path without extension.
+fn files_of(module: &Path) -> Vec<PathBuf> {
+    let file = module.with_extension("rs");
+    let mut files = if module.is_dir() { sources(module) } else { Vec::new() };
+    files.extend(file.is_file().then_some(file));
+    assert!(!files.is_empty(), "{}: no such module", module.display());
+    files
+}
+
+/// The Rust files under a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder of sources");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    paths
+        .flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] })
+        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
+        .collect()
+}

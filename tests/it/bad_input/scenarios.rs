@@ -1,0 +1,133 @@
+//! Scenario files that are missing, malformed or out of range.
+
+use boresight::scenario::{BUILT_IN, STARTING_POINT};
+
+use super::check_refused;
+use crate::support::Bench;
+
+/// A scenario file with a text replaced is refused, at the line of the new text.
+fn check_edited(old: &str, new: &str, parts: &[&str]) {
+    let text = STARTING_POINT.split(old).next().unwrap();
+    let place = format!("mine.toml:{}:", 1 + text.matches('\n').count());
+    check_mistake(old, new, &[&[place.as_str()], parts].concat());
+}
+
+/// A scenario file with a text replaced is refused by the commands that would use it, and by the one that checks it.
+fn check_mistake(old: &str, new: &str, parts: &[&str]) {
+    let bench = Bench::new();
+    bench.boresight("scenario new mine.toml").done();
+    bench.edit("mine.toml", old, new);
+    check_refused(&bench, "run mine.toml --frames 0..2 --out run", parts);
+    check_refused(&bench, "render mine.toml --frames 0..2 --out set", parts);
+    let check = bench.boresight("scenario check mine.toml");
+    assert_eq!(check.status, Some(1), "{}", check.stderr);
+    assert!(parts.iter().all(|part| check.stdout.contains(part)), "{parts:?} in\n{}", check.stdout);
+    let check = bench.boresight("scenario check mine.toml --json");
+    assert_eq!(check.status, Some(1), "{}", check.stderr);
+    assert_eq!(check.json()["ok"], false);
+}
+
+#[test]
+fn a_file_that_is_not_there_is_named_and_the_built_in_scenarios_are_told() {
+    let bench = Bench::new();
+    check_refused(&bench, "run nowhere.toml", &["`nowhere.toml`", "argon", "starting-point"]);
+}
+
+#[test]
+fn a_name_that_is_unknown_gets_the_nearest() {
+    let bench = Bench::new();
+    for words in ["run argonn --out run", "render argonn --out set", "scenario check argonn"] {
+        check_refused(&bench, words, &["`argonn`", "did you mean `argon`?"]);
+    }
+}
+
+#[test]
+fn a_directory_is_no_scenario() {
+    check_refused(&Bench::new(), "run . --out run", &["`.` is neither a built-in scenario nor a TOML file"]);
+}
+
+#[test]
+fn bytes_that_are_not_text_are_refused() {
+    let bench = Bench::new();
+    bench.write("mine.toml", [0xff, 0xfe, 0x00]);
+    check_refused(&bench, "run mine.toml --out run", &["`mine.toml`", "UTF-8"]);
+}
+
+#[test]
+fn text_that_is_not_toml_has_line_and_column() {
+    check_edited("seed = 1 #", "seed = = 1 #", &[":8: "]);
+    check_edited("[psf]", "[psf", &[":5: "]);
+}
+
+#[test]
+fn an_unknown_key_gets_the_nearest_name() {
+    check_edited(
+        "gain_e_per_dn = 10.0",
+        "gian_e_per_dn = 10.0",
+        &["`gian_e_per_dn`", "did you mean `gain_e_per_dn`?"],
+    );
+    check_edited("[shutter]", "[shuter]", &["`shuter`", "did you mean `shutter`?"]);
+}
+
+#[test]
+fn a_missing_key_is_named_with_its_table() {
+    // The place is that of the table.
+    check_mistake("sigma_px = 0.8\n", "", &["mine.toml:43:1: psf", "`sigma_px`"]);
+}
+
+#[test]
+fn a_value_of_the_wrong_type_is_named() {
+    check_edited("seed = 1 #", "seed = \"one\" #", &["seed", "string \"one\"", "a whole number"]);
+    check_edited("kind = \"gaussian\"", "kind = \"square\"", &["`square`", "`gaussian`"]);
+}
+
+#[test]
+fn a_value_out_of_its_range_is_named_with_its_line_and_its_range() {
+    for (old, new, parts) in [
+        ("gain_e_per_dn = 10.0", "gain_e_per_dn = -1.0", ["sensor.gain_e_per_dn", "is -1, expected"]),
+        ("bit_depth = 12", "bit_depth = 17", ["sensor.bit_depth", "is 17, expected"]),
+        ("bias_dn = 40.0", "bias_dn = 5000.0", ["sensor.bias_dn", "is 5000, expected"]),
+        ("magnitude_limit = 6.5", "magnitude_limit = 99", ["star_list.magnitude_limit", "is 99, expected"]),
+        ("columns = 752", "columns = 0", ["camera.columns", "is 0, expected"]),
+        ("sigma_px = 0.8", "sigma_px = nan", ["psf.sigma_px", "is NaN, expected"]),
+        ("cadence_s = 15.0", "cadence_s = 0.0", ["schedule[0].cadence_s", "is 0, expected"]),
+        ("eccentricity = 0.003", "eccentricity = 1.5", ["orbit.target.eccentricity", "is 1.5, expected"]),
+        ("radius_m = 0.4", "radius_m = -0.4", ["target.radius_m", "is -0.4, expected"]),
+        ("lag_s = 30.0", "lag_s = -30.0", ["shutter.lag_s", "is -30, expected"]),
+        ("min_s = 0.001", "min_s = 0.0", ["shutter.min_s", "is 0, expected"]),
+        ("latency_s = 0.0", "latency_s = inf", ["knowledge.latency_s", "is inf, expected"]),
+    ] {
+        check_edited(old, new, &parts);
+    }
+}
+
+#[test]
+fn a_time_that_is_none_is_refused() {
+    check_edited(
+        "start_utc = \"2012-04-25T00:10:00Z\"",
+        "start_utc = \"yesterday\"",
+        &["schedule[0].start_utc", "yesterday"],
+    );
+}
+
+#[test]
+fn a_mistake_in_a_later_group_or_manoeuvre_is_found_there() {
+    let argon = BUILT_IN.iter().find(|scenario| scenario.name == "argon").unwrap().text;
+    for (old, new, path) in [
+        ("count = 5415", "count = 0", "schedule[3].count"),
+        ("time_utc = \"2012-04-25T22:24:07Z\"", "time_utc = \"later\"", "orbit.manoeuvres[6].time_utc"),
+    ] {
+        let bench = Bench::new();
+        bench.write("mine.toml", argon.replace(old, new));
+        let line = 1 + argon.split(old).next().unwrap().matches('\n').count();
+        check_refused(&bench, "run mine.toml --out run", &[&format!("mine.toml:{line}:"), path]);
+    }
+}
+
+#[test]
+fn a_new_scenario_does_not_overwrite_a_file() {
+    let bench = Bench::new();
+    bench.write("mine.toml", "precious");
+    check_refused(&bench, "scenario new mine.toml", &["mine.toml", "exists"]);
+    check_refused(&bench, "scenario new nowhere/mine.toml", &["nowhere/mine.toml", "No such file"]);
+}

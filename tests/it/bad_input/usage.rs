@@ -1,0 +1,65 @@
+//! Arguments of the command line.
+
+use super::{check_refused, check_refused_words, dataset};
+use crate::support::Bench;
+
+#[test]
+fn frames_outside_the_scenario_are_refused() {
+    let bench = Bench::new();
+    for command in ["run", "render"] {
+        let words = format!("{command} starting-point --frames 399..401 --out out");
+        check_refused(&bench, &words, &["--frames is 399..401", "0..400"]);
+    }
+}
+
+#[test]
+fn a_range_of_frames_that_is_empty_or_none_is_refused() {
+    for range in ["5..5", "9..3", "5", "..5", "a..b", "-1..3"] {
+        let words = format!("run argon --frames={range} --out out");
+        check_refused(&Bench::new(), &words, &["--frames", &format!("`{range}`"), "A..B with A < B"]);
+    }
+}
+
+#[test]
+fn a_pipeline_that_is_unknown_gets_the_nearest() {
+    let bench = Bench::new();
+    let words = "run argon --frames 0..2 --out run --pipeline far_rnage";
+    check_refused(&bench, words, &["`far_rnage`", "`exec:COMMAND`", "did you mean `far_range`?"]);
+    check_refused(&bench, &words.replace("far_rnage", "docking"), &["`docking`", "`far_range`"]);
+}
+
+#[test]
+fn a_command_that_is_none_is_refused_before_anything_is_written() {
+    let bench = dataset();
+    for (command, part) in [("exec:", "empty"), ("exec:python3 'a", "quotation")] {
+        let run = ["run", "argon", "--frames", "0..2", "--out", "run", "--pipeline", command];
+        check_refused_words(&bench, &run, &[part]);
+        check_refused_words(&bench, &["process", "set", "--pipeline", command], &[part]);
+    }
+}
+
+#[test]
+fn a_timeout_that_is_none_is_refused_before_anything_is_written() {
+    for timeout in ["0", "-1", "nan", "inf"] {
+        let words = format!("run argon --frames 0..2 --out run --pipeline exec:true --timeout-s={timeout}");
+        check_refused(&Bench::new(), &words, &["timeout", "expected above 0"]);
+    }
+}
+
+#[test]
+fn arguments_out_of_their_range_are_refused() {
+    let bench = Bench::new();
+    for (argument, parts) in [
+        ("--jobs 0", ["--jobs", "'0'"]),
+        ("--jobs many", ["--jobs", "'many'"]),
+        ("--seed -1", ["-1", "unexpected"]),
+        ("--seed 1.5", ["--seed", "'1.5'"]),
+        ("--save-frames jpg", ["--save-frames", "fits, png or exr"]),
+        ("--job 2", ["--job", "--jobs"]),
+    ] {
+        check_refused(&bench, &format!("run argon --frames 0..2 --out run {argument}"), &parts);
+    }
+    check_refused(&bench, "fly argon", &["fly"]);
+    check_refused(&bench, "run", &["SCENARIO"]);
+    check_refused(&bench, "render argon", &["--out"]);
+}

@@ -1,0 +1,57 @@
+//! Are the errors of the docking motion as large as σ says? A small part of what `docking_consistency` of the research programs measures.
+
+use boresight_research::docking_consistency::approaches::{Estimator, Flown, Lens, Plan, fly};
+use boresight_research::docking_consistency::tally::{GROUPS, Tally, errors};
+use rayon::prelude::*;
+
+/// Approaches of constant velocity, three portions each; how many of them are flown again with twice the noise, two portions each.
+const APPROACHES: u64 = 24;
+const DOUBLED: u64 = 8;
+
+/// Place of ρ among the parameters.
+const RANGE: usize = 12;
+
+fn flown(approaches: u64, portions: u64, noise_dn: f64) -> Vec<Flown> {
+    let plan = Plan::noise_only(1, portions, noise_dn);
+    (0..approaches).into_par_iter().map(|number| fly(&plan, number).unwrap()).collect()
+}
+
+#[test]
+fn errors_are_as_large_as_sigma_says_and_sigma_follows_noise_and_range() {
+    let (once, twice) = (flown(APPROACHES, 3, 2.0), flown(DOUBLED, 2, 4.0));
+    let tally = Tally::of(&once, Estimator::Exact);
+    assert_eq!(tally.portions, 2 * APPROACHES as usize);
+    // The standard error of the fields' mean, from the scatter between these approaches, is 0.026: five of it.
+    let of_field = tally.field_nees.unwrap().value;
+    assert!((0.87..1.13).contains(&of_field), "{of_field}");
+    // 0.7 to 1.3 are wanted of 200 approaches, whose mean has a standard error of 0.05; that of 24 has 0.14: three of it.
+    for (group, nees) in GROUPS.iter().zip(tally.nees) {
+        let nees = nees.unwrap().value;
+        assert!((0.7 - 0.42..1.3 + 0.42).contains(&nees), "{group}: {nees}");
+    }
+    // 98.5 % are wanted at least; the share of these approaches has a standard error of 0.6 %: three of it.
+    let within = tally.within_all.unwrap().value;
+    assert!(within >= 0.985 - 0.018, "{within}");
+
+    let sigmas = |flown: &Flown| errors(flown, Estimator::Exact)[0].sigmas;
+    for parameter in 0..16 {
+        let mut ratios: Vec<f64> =
+            once.iter().zip(&twice).map(|(a, b)| sigmas(b)[parameter] / sigmas(a)[parameter]).collect();
+        ratios.sort_by(f64::total_cmp);
+        // Rounding to DN adds 1/12 DN²: √(16.08/4.08) = 1.985. Marks that one run rejects and the other does not.
+        let ratio = 0.5 * (ratios[3] + ratios[4]);
+        assert!((1.85..2.15).contains(&ratio), "{parameter}: {ratio}");
+    }
+    for lens in Lens::ALL {
+        let mut by_range: Vec<(f64, f64)> = once
+            .iter()
+            .filter(|flown| flown.lens == lens)
+            .map(|flown| (flown.portions[1].truth.range_m(), sigmas(flown)[RANGE]))
+            .collect();
+        by_range.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (near, far) = (by_range[0], by_range[by_range.len() - 1]);
+        // σ of the range goes with its square at least: fewer pixels show the same edges from farther off.
+        let expected = (far.0 / near.0) * (far.0 / near.0);
+        assert!(far.1 / near.1 > 0.7 * expected, "{}: {by_range:?}", lens.name);
+    }
+}

@@ -1,0 +1,366 @@
+//! Programs in the place of the pipeline that do the worst they can: each costs its frames and has its reason, within limits of time and
+//! memory, and nothing of it is left. In `run` and `process` of both worlds, and in studies.
+
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use crate::support::{Answer, Bench};
+
+/// What every program of this suite begins with: `note` keeps the numbers of its processes, `hello` greets as it should, `ask` gives
+/// the number of the next frame, `none` answers it.
+const PRELUDE: &str = r#"
+import json, os, signal, subprocess, sys, time
+def note(pid):
+    with open(os.environ["PIDS"], "a") as file:
+        file.write(f"{pid}\n")
+note(os.getpid())
+def ask():
+    line = sys.stdin.readline()
+    if not line:
+        sys.exit()
+    request = json.loads(line)
+    return request.get("frame", request.get("field"))
+def say(text):
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
+def hello():
+    ask()
+    say('{"boresight_pipeline": 1, "name": "faulty"}')
+def none(number):
+    say(json.dumps({KEY: number, "status": "no_target"}))
+"#;
+
+/// A program that does wrong, and what is said of it.
+struct Faulty {
+    name: &'static str,
+    body: &'static str,
+    reason: &'static str,
+}
+
+const fn faulty(name: &'static str, body: &'static str, reason: &'static str) -> Faulty {
+    Faulty { name, body, reason }
+}
+
+const LATE: &str = "it gave no answer within 1 s";
+
+impl Faulty {
+    /// Short for those that give no answer; long for those that end by themselves, on a busy machine.
+    fn timeout_s(&self) -> &'static str {
+        if self.reason.starts_with(LATE) { "1" } else { "30" }
+    }
+}
+
+/// Each answers no frame.
+const PROGRAMS: [Faulty; 14] = [
+    faulty("hangs", "hello()\nask()\ntime.sleep(100)", LATE),
+    faulty(
+        "hangs on every signal but one",
+        "for s in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGPIPE):\n    signal.signal(s, signal.SIG_IGN)\nhello()\nask()\nwhile True:\n    time.sleep(100)",
+        LATE,
+    ),
+    faulty(
+        "crashes",
+        "hello()\nask()\nsys.exit('the film is full')",
+        "exit status: 1; its last words: the film is full",
+    ),
+    faulty(
+        "dies of a signal",
+        "hello()\nask()\nos.kill(os.getpid(), signal.SIGABRT)",
+        "it ended with signal: 6",
+    ),
+    faulty(
+        "says garbage before it dies",
+        "hello()\nask()\nsay('\\x00\\x07 Paris')\nsys.exit(0)",
+        "cannot be read",
+    ),
+    faulty(
+        "floods its output with one endless line",
+        "hello()\nask()\nwhile True:\n    sys.stdout.write('x' * 65536)",
+        "it wrote a line longer than 1048576 bytes",
+    ),
+    faulty(
+        "floods its error output and does not answer",
+        "hello()\nask()\nwhile True:\n    sys.stderr.write('grumble ' * 8192 + '\\n')",
+        LATE,
+    ),
+    faulty("answers far too late", "hello()\nn = ask()\ntime.sleep(3)\nnone(n)\ntime.sleep(100)", LATE),
+    faulty(
+        "speaks before it is asked",
+        "hello()\nsay('{}')\nsay('{}')\ntime.sleep(100)",
+        "it wrote a line without being asked",
+    ),
+    faulty(
+        "closes its output and lives on",
+        "hello()\nask()\nos.close(1)\ntime.sleep(100)",
+        "it closed its output",
+    ),
+    faulty("never reads what it is asked", "hello()\ntime.sleep(100)", LATE),
+    faulty(
+        "leaves a child that holds its pipes",
+        "hello()\nask()\nnote(subprocess.Popen(['sleep', '100']).pid)\nos._exit(3)",
+        "it gave no answer within 1 s, and had ended with exit status: 3",
+    ),
+    faulty(
+        "moves into the group of whoever started it",
+        "hello()\nask()\nos.setpgid(0, os.getpgid(os.getppid()))\ntime.sleep(100)",
+        LATE,
+    ),
+    faulty(
+        "takes all the memory there is",
+        "hello()\nask()\nhoard = []\nfor i in range(300):\n    hoard.append(bytearray(10_000_000))\ntime.sleep(100)",
+        "MemoryError",
+    ),
+];
+
+/// Memory of a program, MB: enough for Python, less than the hoarder would have.
+const MEMORY_MB: &str = "500";
+
+struct World {
+    key: &'static str,
+    scenario: &'static str,
+    frames: &'static str,
+    count: usize,
+}
+
+const FAR_RANGE: World = World { key: "frame", scenario: "starting-point", frames: "100..103", count: 3 };
+const DOCKING: World = World { key: "field", scenario: "docking", frames: "18000..18003", count: 3 };
+
+fn write_program(bench: &Bench, world: &World, body: &str) {
+    bench.write("program.py", format!("KEY = \"{}\"\n{PRELUDE}\n{body}\n", world.key));
+}
+
+/// Runs the command with the program in the place of the pipeline; whatever was started is gone when it ends.
+fn with_program(bench: &Bench, words: &[&str], timeout_s: &str) -> Answer {
+    bench.write("pids", "");
+    let limits = ["--timeout-s", timeout_s, "--memory-mb", MEMORY_MB];
+    // By `env`, as the suites share one way of starting the command.
+    let pipeline = format!("exec:env PIDS={} python3 program.py", bench.path("pids").display());
+    let begun = Instant::now();
+    let words = [words, &["--pipeline", &pipeline], &limits].concat();
+    let answer = bench.boresight_words(&words);
+    // Start, greeting and as many limits as there are frames, on a busy machine.
+    assert!(begun.elapsed() < Duration::from_secs(60), "{words:?} took {:?}", begun.elapsed());
+    check_none_left(bench);
+    answer
+}
+
+/// No process of those that the programs noted is running.
+fn check_none_left(bench: &Bench) {
+    let pids = bench.read("pids");
+    assert!(!pids.is_empty(), "the program was not started");
+    let deadline = Instant::now() + Duration::from_secs(5);
+    for pid in pids.lines() {
+        while is_running(pid) {
+            assert!(Instant::now() < deadline, "the process {pid} of {pids:?} was left");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+/// Whether a process runs; a zombie that whoever adopts orphans has not reaped does not.
+fn is_running(pid: &str) -> bool {
+    let output = Command::new("ps").args(["-o", "stat=", "-p", pid]).output().unwrap();
+    let state = String::from_utf8(output.stdout).unwrap();
+    !state.trim().is_empty() && !state.trim_start().starts_with('Z')
+}
+
+/// Every frame has its row, and each is a failure for the reason.
+fn check_rows(bench: &Bench, name: &str, measurements: &str, world: &World, reason: &str) {
+    let rows = bench.csv(measurements);
+    assert_eq!(rows.len(), world.count, "{name}");
+    for row in rows {
+        let status = &row["status"];
+        assert!(status.starts_with("failed: "), "{name}: {status}");
+        // What it says before it dies costs one frame, its death the others.
+        assert!(status.contains(reason) || status.contains("it ended with"), "{name}: {status}");
+    }
+    assert!(bench.read(measurements).contains(reason), "{name}: {}", bench.read(measurements));
+}
+
+/// Checks each program, some at a time: most of the time they are waited for.
+fn with_each(check: impl Fn(&Faulty) + Sync) {
+    const AT_A_TIME: usize = 4;
+    std::thread::scope(|scope| {
+        for first in 0..AT_A_TIME {
+            let check = &check;
+            scope.spawn(move || PROGRAMS.iter().skip(first).step_by(AT_A_TIME).for_each(check));
+        }
+    });
+}
+
+fn check_runs(world: &World) {
+    with_each(|faulty @ Faulty { name, body, reason }| {
+        let bench = Bench::new();
+        write_program(&bench, world, body);
+        let answer = with_program(
+            &bench,
+            &["run", world.scenario, "--frames", world.frames, "--out", "run", "--no-report"],
+            faulty.timeout_s(),
+        );
+        assert!(answer.stderr.contains("the pipeline failed, first at frame"), "{name}: {}", answer.stderr);
+        answer.done();
+        check_rows(&bench, name, "run/measurements.csv", world, reason);
+        let score = bench.json("run/score.json");
+        assert_eq!(score["frames"], world.count, "{name}");
+    });
+}
+
+#[test]
+fn in_a_far_range_run_each_is_an_outcome_with_its_reason_and_nothing_is_left() {
+    check_runs(&FAR_RANGE);
+}
+
+#[test]
+fn in_a_docking_run_each_is_an_outcome_with_its_reason_and_nothing_is_left() {
+    check_runs(&DOCKING);
+}
+
+#[test]
+fn over_a_dataset_each_is_an_outcome_with_its_reason_and_nothing_is_left() {
+    for world in [FAR_RANGE, DOCKING] {
+        let rendered = Bench::new();
+        let words = format!("render {} --frames {} --format png --out set", world.scenario, world.frames);
+        rendered.boresight(&words).done();
+        let set = rendered.path("set").to_str().unwrap().to_owned();
+        with_each(|faulty @ Faulty { name, body, reason }| {
+            let bench = Bench::new();
+            write_program(&bench, &world, body);
+            let out = "answers/measurements.csv";
+            std::fs::create_dir(bench.path("answers")).unwrap();
+            with_program(&bench, &["process", &set, "--out", out], faulty.timeout_s()).done();
+            check_rows(&bench, name, out, &world, reason);
+        });
+    }
+}
+
+/// A study goes on over a program that fails, says of which cases, and is the same study when it is run again.
+#[test]
+fn in_a_study_each_is_a_failed_case_and_the_study_goes_on() {
+    with_each(|faulty @ Faulty { name, body, .. }| {
+        let bench = Bench::new();
+        bench.write(
+            "study.toml",
+            "title = \"two frames\"\nscenario = \"starting-point\"\nseed = 5\nframes = \"100..102\"\n[stop]\ncases = 2\n\
+             [[vary]]\npath = \"psf.sigma_px\"\nlaw = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
+        );
+        write_program(&bench, &FAR_RANGE, body);
+        let answer = with_program(
+            &bench,
+            &["study", "run", "study.toml", "--out", "study", "--json", "--no-report"],
+            faulty.timeout_s(),
+        );
+        assert!(answer.stderr.contains("the pipeline failed, first in case 0"), "{name}: {}", answer.stderr);
+        let summary = answer.done().json();
+        assert_eq!((&summary["cases"], &summary["failed_cases"]), (&2.into(), &2.into()), "{name}");
+        assert_eq!(summary["figures"]["hit_rate"]["all"]["value"], 0.0, "{name}");
+    });
+}
+
+/// An answer that cannot be used costs its frame and no other.
+#[test]
+fn garbage_costs_its_frame_alone_in_both_worlds() {
+    let body = "hello()\nfor text in ('Paris', '[1, 2', '{\"KEY\": 99, \"status\": \"no_target\"}'):\n    n = ask()\n    \
+                say(text.replace('KEY', KEY))\nwhile True:\n    none(ask())";
+    for (world, frames) in [(FAR_RANGE, "100..105"), (DOCKING, "18000..18005")] {
+        let bench = Bench::new();
+        write_program(&bench, &world, body);
+        let words = ["run", world.scenario, "--frames", frames, "--out", "run", "--no-report"];
+        with_program(&bench, &words, "30").done();
+        let rows = bench.csv("run/measurements.csv");
+        let statuses: Vec<&str> = rows.iter().map(|row| row["status"].as_str()).collect();
+        for (status, part) in statuses.iter().zip(["Paris", "[1, 2", "99"]) {
+            assert!(status.starts_with("failed: ") && status.contains(part), "{status}");
+        }
+        assert_eq!(statuses[3..], ["no_target", "no_target"]);
+    }
+}
+
+/// Endless lines fill four places and then the pipe; an endless line ends at a mebibyte. The command itself has 700 MB here: it would
+/// take seconds to have read more than that from a program that writes as fast as it can.
+#[test]
+fn a_flood_takes_no_memory() {
+    for (body, reason) in [
+        ("hello()\nask()\nwhile True:\n    os.write(1, b'x' * 65536)", "it wrote a line longer"),
+        ("hello()\nask()\nwhile True:\n    os.write(1, b'{}\\n' * 20000)", "cannot be read"),
+        (
+            "hello()\nask()\nwhile True:\n    os.write(2, b'grumble\\n' * 8000)",
+            "it gave no answer within 3 s",
+        ),
+        ("while True:\n    os.write(1, b'x' * 65536)", "at its greeting, it wrote a line longer"),
+    ] {
+        let bench = Bench::new();
+        write_program(&bench, &FAR_RANGE, body);
+        bench.write("pids", "");
+        let script = format!(
+            "ulimit -d 700000 && exec '{}' run starting-point --frames 100..103 --jobs 1 --no-report --out run \
+             --timeout-s 3 --pipeline 'exec:env PIDS={} python3 program.py'",
+            assert_cmd::cargo::cargo_bin!("boresight").display(),
+            bench.path("pids").display(),
+        );
+        let output = Command::new("sh").args(["-c", &script]).current_dir(bench.path("")).output().unwrap();
+        assert!(output.status.success(), "{body}\n{}", String::from_utf8_lossy(&output.stderr));
+        check_none_left(&bench);
+        let status = bench.csv("run/measurements.csv")[0]["status"].clone();
+        assert!(status.contains(reason), "{body}: {status}");
+    }
+}
+
+/// The limit is of the program's own choice where it is given, and holds for its children too.
+#[test]
+fn memory_is_limited_as_told_in_children_too() {
+    let hoard = "hello()\nn = ask()\nhoard = bytearray(200_000_000)\nnone(n)\nwhile True:\n    none(ask())";
+    let child = "hello()\nn = ask()\nchild = subprocess.run([sys.executable, '-c', 'bytearray(200_000_000)'])\n\
+                 if child.returncode:\n    sys.exit('the child had no memory')\nnone(n)\nwhile True:\n    none(ask())";
+    for body in [hoard, child] {
+        for (memory_mb, has_failed) in [("100", true), ("1000", false)] {
+            let bench = Bench::new();
+            write_program(&bench, &FAR_RANGE, body);
+            bench.write("pids", "");
+            let pipeline = format!("exec:env PIDS={} python3 program.py", bench.path("pids").display());
+            let words = ["run", "starting-point", "--frames", "100..102", "--out", "run", "--no-report"];
+            let more = ["--pipeline", &pipeline, "--memory-mb", memory_mb];
+            bench.boresight_words(&[words.as_slice(), &more].concat()).done();
+            let statuses = bench.read("run/measurements.csv");
+            assert_eq!(statuses.contains("failed: "), has_failed, "{memory_mb} MB: {statuses}");
+            assert!(!has_failed || statuses.contains("emory"), "{memory_mb} MB: {statuses}");
+        }
+    }
+    let bench = Bench::new();
+    for memory_mb in ["0", "1000001"] {
+        let words = format!(
+            "run starting-point --frames 0..2 --out run --pipeline exec:true --memory-mb {memory_mb}"
+        );
+        bench.boresight(&words).refused(&["memory_mb", memory_mb, "1 to 1e6"]);
+    }
+    assert!(!bench.path("run").exists());
+}
+
+/// Asked to end, the command takes its programs along, hanging ones with their children too, which get no interrupt of a terminal.
+#[test]
+fn programs_end_with_a_command_that_is_interrupted() {
+    for signal in ["INT", "TERM", "HUP"] {
+        let bench = Bench::new();
+        let body = "signal.signal(signal.SIGINT, signal.SIG_IGN)\nhello()\nask()\n\
+                    note(subprocess.Popen(['sleep', '100']).pid)\nnote(os.getpid())\ntime.sleep(100)";
+        write_program(&bench, &FAR_RANGE, body);
+        bench.write("pids", "");
+        let pipeline = format!("exec:env PIDS={} python3 program.py", bench.path("pids").display());
+        let mut child = Command::new(assert_cmd::cargo::cargo_bin!("boresight"))
+            .args(["run", "starting-point", "--frames", "100..103", "--out", "run", "--timeout-s", "100"])
+            .args(["--pipeline", &pipeline])
+            .current_dir(bench.path(""))
+            .spawn()
+            .unwrap();
+        let deadline = Instant::now() + Duration::from_secs(30);
+        while bench.read("pids").lines().count() < 3 {
+            assert!(Instant::now() < deadline, "the program did not come so far");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let sent =
+            Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        let status = child.wait().unwrap();
+        assert!(status.code().is_some_and(|code| code > 128), "{signal}: {status}");
+        check_none_left(&bench);
+    }
+}

@@ -1,0 +1,203 @@
+//! Commands that are killed half way: what they leave is whole or is refused, and what comes next says so.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use super::kill::{Dice, End, Moment, kill_at};
+use super::{command, small, whole_files};
+use crate::support::{Answer, Bench, check_same_files};
+
+fn small_bench() -> Bench {
+    let bench = Bench::new();
+    small(&bench);
+    bench
+}
+
+/// A reader of what a command leaves gives the answer that it gives of the whole, or refuses.
+fn check_answer_or_refusal(bench: &Bench, words: &str, whole: &Answer, moment: Moment) {
+    let answer = bench.boresight(words);
+    match answer.status {
+        Some(0) => assert_eq!(answer.stdout, whole.stdout, "{words} after {moment:?}"),
+        _ => {
+            let answer = answer.refused(&[]);
+            assert!(
+                answer.stderr.contains("half"),
+                "{words} after {moment:?} names no file: {}",
+                answer.stderr
+            );
+        }
+    }
+}
+
+/// Kills a command that makes a directory; `readers` are commands on the directory `half`, whose answers on the whole one are known.
+fn check_directory(bench: &Bench, making: &str, files: u64, readers: &[&str], seed: u64) {
+    let begun = Instant::now();
+    bench.boresight(&format!("{making} --out whole")).done();
+    let life = begun.elapsed();
+    std::fs::rename(bench.path("whole"), bench.path("half")).unwrap();
+    let answers: Vec<Answer> = readers.iter().map(|words| bench.boresight(words).done()).collect();
+    std::fs::rename(bench.path("half"), bench.path("whole")).unwrap();
+    let whole = bench.tree("whole");
+    let mut dice = Dice::new(seed);
+    let mut killed = 0;
+    for round in 0..10 {
+        let places: Vec<PathBuf> = ["half", "half/truth"].map(|name| bench.path(name)).to_vec();
+        let moment = Moment::draw(&mut dice, life, files);
+        let end = kill_at(command(bench, &format!("{making} --out half")), moment, &places);
+        killed += u32::from(end == End::Killed);
+        if bench.path("half").exists() {
+            for (path, bytes) in whole_files(bench, "half") {
+                // An image that is being written is no matter: without telemetry no reader comes to it.
+                if !path.starts_with("frames") {
+                    assert!(
+                        whole[&path] == bytes,
+                        "{} after {moment:?} is there and not whole",
+                        path.display()
+                    );
+                }
+            }
+            for (words, answer) in readers.iter().zip(&answers) {
+                check_answer_or_refusal(bench, words, answer, moment);
+            }
+            // What is there is not touched, and the message says that there is something.
+            let before = bench.tree("half");
+            let again = bench.boresight(&format!("{making} --out half"));
+            if again.status != Some(0) {
+                again.refused(&["half", "nothing is overwritten", "--out"]);
+                check_same_files(&before, &bench.tree("half"));
+            }
+            std::fs::remove_dir_all(bench.path("half")).unwrap();
+        }
+        assert!(round < 9 || killed >= 3, "of ten kills {killed} came in time");
+    }
+}
+
+#[test]
+fn a_run_that_is_killed_is_whole_or_refused() {
+    let readers = [
+        "score half half/measurements.csv --json",
+        "report half --out page.html --json",
+        "gate baseline half --out base --reason x --replace --block-length 2 --json",
+    ];
+    check_directory(
+        &small_bench(),
+        "run small.toml --frames 20..60 --save-frames fits --no-report",
+        10,
+        &readers,
+        3,
+    );
+}
+
+#[test]
+fn a_dataset_that_is_killed_is_whole_or_refused() {
+    for format in ["fits", "png"] {
+        let making = format!("render small.toml --frames 20..60 --format {format} --jobs 1");
+        check_directory(&small_bench(), &making, 6, &["process half --out half/a.csv --json"], 5);
+    }
+}
+
+#[test]
+fn a_docking_run_that_is_killed_is_whole_or_refused() {
+    let bench = Bench::new();
+    let readers = ["score half half/measurements.csv --json", "report half --out page.html --json"];
+    check_directory(
+        &bench,
+        "run docking --frames 18000..18010 --save-frames png --no-report",
+        8,
+        &readers,
+        6,
+    );
+}
+
+#[test]
+fn a_docking_dataset_that_is_killed_is_whole_or_refused() {
+    for format in ["png", "y4m"] {
+        let making = format!("render docking --frames 18000..18010 --format {format}");
+        check_directory(&Bench::new(), &making, 4, &["process half --out half/a.csv --json"], 7);
+    }
+}
+
+/// The measurements of a `process` that is killed are whole or not there, and the next one gives them.
+#[test]
+fn a_process_that_is_killed_is_done_again() {
+    let bench = small_bench();
+    bench.boresight("render small.toml --frames 20..60 --format png --out set").done();
+    let begun = Instant::now();
+    bench.boresight("process set").done();
+    let life = begun.elapsed();
+    let whole = whole_files(&bench, "set");
+    let mut dice = Dice::new(8);
+    let mut killed = 0;
+    for _ in 0..8 {
+        for name in ["measurements.csv", "clusters.parquet"] {
+            let _ = std::fs::remove_file(bench.path("set").join(name));
+        }
+        let moment = Moment::draw(&mut dice, life, 2);
+        let end = kill_at(command(&bench, "process set"), moment, &[bench.path("set")]);
+        killed += u32::from(end == End::Killed);
+        let left = whole_files(&bench, "set");
+        let is_named = |name: &str| left.contains_key(std::path::Path::new(name));
+        for name in ["measurements.csv", "clusters.parquet"] {
+            let path = PathBuf::from(name);
+            assert!(left.get(&path).is_none_or(|bytes| *bytes == whole[&path]), "{name} after {moment:?}");
+        }
+        let again = bench.boresight("process set");
+        if is_named("measurements.csv") || is_named("clusters.parquet") {
+            again.refused(&["exists; nothing is overwritten"]);
+        } else {
+            again.done();
+            check_same_files(&whole, &whole_files(&bench, "set"));
+        }
+    }
+    assert!(killed >= 2, "of eight kills {killed} came in time");
+}
+
+/// What a gate writes, a baseline and its reports, is whole or not there.
+#[test]
+fn a_gate_that_is_killed_leaves_nothing_half_written() {
+    let bench = small_bench();
+    bench.boresight("run small.toml --frames 0..300 --out run --no-report").done();
+    bench.boresight("gate baseline run --out whole --reason first").done();
+    let gate = "gate whole run --junit out/gate.xml --report out/gate.html";
+    std::fs::create_dir(bench.path("out")).unwrap();
+    bench.boresight(gate).done();
+    let (baseline, reports) = (bench.tree("whole"), bench.tree("out"));
+    let mut killed = 0;
+    for files in 0..3 {
+        let making = "gate baseline run --out base --reason first";
+        let end = kill_at(command(&bench, making), Moment::Writing(files), &[bench.path("base")]);
+        killed += u32::from(end == End::Killed);
+        for (path, bytes) in whole_files(&bench, "base") {
+            assert!(baseline[&path] == bytes, "{}", path.display());
+        }
+        let compared = bench.boresight("gate base run --json");
+        if compared.status != Some(0) {
+            compared.refused(&["base"]);
+        }
+        bench.boresight(&format!("{making} --replace")).done();
+        check_same_files(&baseline, &whole_files(&bench, "base"));
+        std::fs::remove_dir_all(bench.path("base")).unwrap();
+
+        std::fs::remove_dir_all(bench.path("out")).unwrap();
+        std::fs::create_dir(bench.path("out")).unwrap();
+        kill_at(command(&bench, gate), Moment::Writing(files), &[bench.path("out")]);
+        for (path, bytes) in whole_files(&bench, "out") {
+            assert!(reports[&path] == bytes, "{}", path.display());
+        }
+    }
+    assert!(killed >= 2, "of three kills {killed} came in time");
+}
+
+#[test]
+fn an_unfinished_run_says_that_it_is_one() {
+    let bench = small_bench();
+    let places = [bench.path("out/truth")];
+    let words = "run small.toml --frames 0..300 --out out";
+    assert_eq!(kill_at(command(&bench, words), Moment::Writing(1), &places), End::Killed);
+    let reason = "holds a run that was killed, failed, or still goes on; nothing is overwritten";
+    bench.boresight(words).refused(&["out", reason, "--out"]);
+    bench.boresight("process out").refused(&["out/telemetry.csv"]);
+    bench.write("mine.csv", "frame,status,x_px,y_px\n0,no_target,,\n");
+    bench.boresight("score out mine.csv").refused(&["out/truth/objects.parquet"]);
+    bench.boresight("report out").refused(&["out/"]);
+}

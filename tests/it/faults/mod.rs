@@ -1,0 +1,60 @@
+//! Faults of the world around: processes that are killed, disks that are full, files that are damaged, two at the same place. Each is a
+//! clear error or nothing at all; nothing is lost, and nothing is silently wrong.
+
+mod damage;
+mod disk;
+mod kill;
+mod killed_commands;
+mod killed_study;
+mod streams;
+mod together;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use crate::support::Bench;
+
+/// A scenario of small frames, whose star list is short: what is tried here is done many times.
+fn small(bench: &Bench) {
+    bench.scenario("small.toml", "starting-point", |table| {
+        let camera = table["camera"].as_table_mut().unwrap();
+        for (key, value) in [("columns", 160), ("rows", 120)] {
+            camera.insert(key.to_owned(), value.into());
+        }
+        for (key, value) in [("principal_x_px", 79.5), ("principal_y_px", 59.5)] {
+            camera.insert(key.to_owned(), value.into());
+        }
+        table["star_list"].as_table_mut().unwrap().insert("magnitude_limit".to_owned(), 5.0.into());
+    });
+}
+
+/// The program of the command.
+fn program() -> &'static Path {
+    assert_cmd::cargo::cargo_bin!("boresight")
+}
+
+/// The command with these words, which blanks separate, not started yet.
+fn command(bench: &Bench, words: &str) -> Command {
+    let mut command = Command::new(program());
+    command.args(words.split_whitespace()).current_dir(bench.path(""));
+    command
+}
+
+/// Runs a line of a shell in which `$BORESIGHT` is the program.
+fn shell(bench: &Bench, line: &str) -> Output {
+    let mut command = Command::new("sh");
+    command.args(["-c", line]).env("BORESIGHT", program()).current_dir(bench.path(""));
+    command.output().unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// The files of a directory that have their names; what a killed process left unfinished is none of them.
+fn whole_files(bench: &Bench, directory: &str) -> BTreeMap<PathBuf, Vec<u8>> {
+    let is_partial =
+        |path: &Path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".partial-"));
+    bench.tree(directory).into_iter().filter(|(path, _)| !is_partial(path)).collect()
+}

@@ -1,0 +1,189 @@
+//! Runs for the gate to judge: made up, and real; with faults of a stated size.
+
+use boresight::gate::{
+    Baseline, CompareOptions, FigureVerdict, Identity, Pairing, Sample, SourceKind, compare,
+};
+use boresight::score::{Cause, FrameVerdict, LineOfSightError, Taken, UnitTable, Verdict};
+use contract::{Angle, AttitudeSource};
+use sim::randomness::{Effect, Seed, Stream, normal, uniform};
+
+/// A pixel, degrees.
+const PIXEL_DEG: f64 = 0.024;
+
+/// A fault in a pipeline, of a stated size.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Fault {
+    /// So much of what was detected is missed.
+    LostHits(f64),
+    /// All measurements are shifted along the columns, px.
+    Shift(f64),
+    /// All errors are larger by this factor.
+    LargerErrors(f64),
+    /// All measurements are shifted along the rows, px, away from nought: in the direction of the bias that they have.
+    Bias(f64),
+    /// So much of all frames is wrong more.
+    MoreWrong(f64),
+    /// Attitude is no longer solved in so much of the frames.
+    FewerAttitudes(f64),
+}
+
+/// Those that a gate of 900 frames is to catch.
+pub(crate) const FAULTS: [Fault; 6] = [
+    Fault::LostHits(0.03),
+    Fault::Shift(0.5),
+    Fault::LargerErrors(1.2),
+    Fault::Bias(0.1),
+    Fault::MoreWrong(0.025),
+    Fault::FewerAttitudes(0.03),
+];
+
+impl Fault {
+    /// The run of a pipeline that has the fault.
+    pub(crate) fn plant(self, frames: &[FrameVerdict], seed: u64) -> Vec<FrameVerdict> {
+        let random = &mut Seed { seed, case: 1 }.stream(0, Effect::CaseSeed, 0);
+        let correct = frames.iter().filter(|frame| matches!(frame.verdict, Verdict::Correct { .. })).count();
+        let correct = correct as f64 / frames.len() as f64;
+        let dec_of = |frame: &FrameVerdict| match frame.verdict {
+            Verdict::Correct { error } => error.dec.degrees(),
+            _ => 0.0,
+        };
+        let away = frames.iter().map(dec_of).sum::<f64>().signum() * PIXEL_DEG;
+        let mut faulty = frames.to_vec();
+        for frame in &mut faulty {
+            let u = uniform(random);
+            frame.verdict = match (frame.verdict, self) {
+                (Verdict::Correct { .. } | Verdict::Wrong { .. }, Self::LostHits(share)) if u < share => {
+                    Verdict::Missed { cause: Cause::NotLinked }
+                }
+                (Verdict::Correct { error }, Self::MoreWrong(share)) if u < share / correct => {
+                    Verdict::Wrong { error, taken: Taken::Nothing, cause: Cause::LostMotionTest }
+                }
+                (verdict, Self::Shift(px)) => with_error(verdict, |ra, dec| (ra + px * PIXEL_DEG, dec)),
+                (verdict, Self::Bias(px)) => with_error(verdict, |ra, dec| (ra, dec + px * away)),
+                (verdict, Self::LargerErrors(factor)) => {
+                    with_error(verdict, |ra, dec| (ra * factor, dec * factor))
+                }
+                (verdict, _) => verdict,
+            };
+            if let Self::FewerAttitudes(share) = self
+                && u < share
+            {
+                frame.attitude_source = Some(AttitudeSource::NoStars);
+            }
+        }
+        faulty
+    }
+}
+
+/// A verdict with another error, degrees.
+fn with_error(verdict: Verdict, change: impl Fn(f64, f64) -> (f64, f64)) -> Verdict {
+    let changed = |error: LineOfSightError| {
+        let (ra, dec) = change(error.ra.degrees(), error.dec.degrees());
+        LineOfSightError { ra: Angle::from_degrees(ra), dec: Angle::from_degrees(dec) }
+    };
+    match verdict {
+        Verdict::Correct { error } => Verdict::Correct { error: changed(error) },
+        Verdict::Wrong { error, taken, cause } => Verdict::Wrong { error: changed(error), taken, cause },
+        missed => missed,
+    }
+}
+
+/// The run of one of several pipelines that are as good as one another: a tenth of a pixel of noise of its own in every error, and of one
+/// frame in fifty the verdict of another one.
+pub(crate) fn harmless(frames: &[FrameVerdict], seed: u64, pipeline: u64) -> Vec<FrameVerdict> {
+    let random = &mut Seed { seed, case: 2 + pipeline }.stream(0, Effect::CaseSeed, 0);
+    let mut changed = frames.to_vec();
+    for frame in &mut changed {
+        if uniform(random) < 0.02 {
+            let other = ((uniform(random) * frames.len() as f64) as usize).min(frames.len() - 1);
+            frame.verdict = frames[other].verdict;
+        }
+        let [a, b] = [(); 2].map(|()| 0.1 * PIXEL_DEG * normal(random));
+        frame.verdict = with_error(frame.verdict, |ra, dec| (ra + a, dec + b));
+    }
+    changed
+}
+
+/// A made-up far-range run with a memory: hits, wrong answers and errors of a frame go with those of its neighbours.
+pub(crate) struct Synthetic {
+    pub(crate) stretches: u64,
+    pub(crate) frames: u64,
+}
+
+impl Synthetic {
+    pub(crate) fn run(&self, seed: u64) -> Vec<FrameVerdict> {
+        let random = &mut Seed { seed, case: 0 }.stream(0, Effect::CaseSeed, 0);
+        (0..self.stretches).flat_map(|stretch| self.stretch(stretch, random)).collect()
+    }
+
+    fn stretch(&self, stretch: u64, random: &mut Stream) -> Vec<FrameVerdict> {
+        let group: std::sync::Arc<str> = format!("stretch {stretch}").into();
+        let [mut hit, mut right, mut ra, mut dec] = [(); 4].map(|()| normal(random));
+        let mut next = |x: &mut f64, rho: f64| {
+            *x = rho * *x + (1.0 - rho * rho).sqrt() * normal(random);
+            *x
+        };
+        (0..self.frames)
+            .map(|frame| {
+                let error = LineOfSightError {
+                    ra: Angle::from_degrees(0.014 * next(&mut ra, 0.6)),
+                    dec: Angle::from_degrees(0.014 * next(&mut dec, 0.6)),
+                };
+                // 95 % detected, 7 % of them wrong.
+                let (is_hit, is_wrong) = (next(&mut hit, 0.7) < 1.645, next(&mut right, 0.7) > 1.476);
+                let verdict = match (is_hit, is_wrong) {
+                    (false, _) => Verdict::Missed { cause: Cause::BelowThreshold },
+                    (true, true) => {
+                        Verdict::Wrong { error, taken: Taken::HotPixel(3), cause: Cause::LostMotionTest }
+                    }
+                    (true, false) => Verdict::Correct { error },
+                };
+                FrameVerdict {
+                    frame: stretch * self.frames + frame,
+                    group: std::sync::Arc::clone(&group),
+                    verdict,
+                    n_stars: Some((22.0 + 2.0 * ra).round() as u32),
+                    attitude_source: Some(AttitudeSource::Stars),
+                }
+            })
+            .collect()
+    }
+}
+
+/// A run as the gate reads it; runs of a seed are of the same frames.
+pub(crate) fn sample_of(seed: u64, frames: &[FrameVerdict]) -> Sample {
+    Sample::new(identity("far_range", seed), UnitTable::of_frames(frames))
+}
+
+/// The same of a docking run.
+pub(crate) fn docking_sample(seed: u64, table: UnitTable) -> Sample {
+    Sample::new(identity("docking", seed), table)
+}
+
+fn identity(world: &str, seed: u64) -> Identity {
+    Identity {
+        kind: SourceKind::Run,
+        world: world.to_owned(),
+        name: "test".to_owned(),
+        seed,
+        version: "0.1.0".to_owned(),
+        catalog_sha256: None,
+        inject: None,
+        renderer: None,
+        scenario_sha256: String::new(),
+        frames_sha256: seed.to_string(),
+        pipeline: toml::Table::new(),
+        scenario: toml::Table::new(),
+    }
+}
+
+pub(crate) fn baseline_of(sample: Sample) -> Baseline {
+    Baseline::new(sample, "a test", None).unwrap()
+}
+
+/// Whether the gate shuts, for two samples that go together in this way.
+pub(crate) fn rejects(baseline: &Baseline, result: &Sample, pairing: Pairing) -> bool {
+    let report = compare(baseline, result, &CompareOptions::default()).unwrap();
+    assert_eq!(report.pairing, pairing);
+    report.verdict == FigureVerdict::Worse
+}

@@ -1,0 +1,86 @@
+//! `boresight run --inject`: the truth in the place of one stage's result.
+
+use serde_json::Value;
+
+use crate::support::{Bench, figure};
+
+/// A slice of the fourth day: a cut target, stars enough, hot pixels that nobody knows at first.
+const SLICE: &str = "12000..12060";
+
+fn run(bench: &Bench, stage: &str) -> Value {
+    let inject = if stage.is_empty() { String::new() } else { format!("--inject {stage}") };
+    bench.boresight(&format!("run argon --frames {SLICE} --out run-{stage} --json {inject}")).done().json()
+}
+
+#[test]
+fn each_stage_takes_its_own_error_away_and_is_told_in_every_file() {
+    let bench = Bench::new();
+    let own = run(&bench, "");
+    assert!(own.get("inject").is_none());
+    assert!(!bench.read("run-/run.toml").contains("inject"));
+    let injected = |stage: &str| {
+        let score = run(&bench, stage);
+        assert_eq!(score["inject"], stage);
+        assert_eq!(bench.json(&format!("run-{stage}/score.json")), score);
+        assert!(bench.read(&format!("run-{stage}/run.toml")).contains(&format!("inject = \"{stage}\"")));
+        // Scored again, it still says so.
+        let again = bench.boresight(&format!("score run-{stage} run-{stage}/measurements.csv --json")).done();
+        assert_eq!(again.json(), score);
+        score
+    };
+
+    // The region cuts the image: Dec is off by more than half a pixel (0.012°) until the centre is the true one.
+    let centroids = injected("centroids");
+    assert!(figure(&centroids, "dec_rms_deg") < 0.8 * figure(&own, "dec_rms_deg"));
+    let whole = injected("roi");
+    assert!(figure(&whole, "dec_rms_deg") < 0.8 * figure(&own, "dec_rms_deg"));
+    let is_cut = |run: &str| bench.objects(run).iter().any(|object| object.cut > 0.0);
+    assert!(is_cut("run-") && !is_cut("run-roi"));
+
+    // Hot pixels and unlisted stars no longer win: hardly a wrong answer is left.
+    let identities = injected("identities");
+    assert!(figure(&identities, "wrong_rate") < 0.5 * figure(&own, "wrong_rate"));
+
+    // What is left across the columns, where nothing is cut, is the centroid's own error.
+    let attitude = injected("attitude");
+    assert!(figure(&attitude, "ra_rms_deg") < 0.5 * figure(&own, "ra_rms_deg"));
+
+    // At most 0.3″ are taken away: the answers change, and hardly.
+    let aberration = injected("aberration");
+    let change = figure(&aberration, "ra_rms_deg") - figure(&own, "ra_rms_deg");
+    assert!(change != 0.0 && change.abs() < 5e-4, "{change}");
+}
+
+#[test]
+fn the_frames_of_an_injected_run_are_those_of_the_honest_one() {
+    let bench = Bench::new();
+    for inject in ["", "--inject attitude"] {
+        let out = inject.replace("--inject ", "");
+        bench.boresight(&format!("run argon --frames 3..6 --save-frames png --out run{out} {inject}")).done();
+    }
+    assert_eq!(bench.tree("run/frames"), bench.tree("runattitude/frames"));
+    assert_eq!(bench.frames("run"), bench.frames("runattitude"));
+    bench.check_same("run/telemetry.csv", "runattitude/telemetry.csv");
+}
+
+#[test]
+fn an_injected_run_says_so_under_its_table() {
+    let answer = Bench::new().boresight("run argon --frames 0..3 --inject attitude --out run").done();
+    assert!(answer.stdout.contains("the truth was injected for attitude"), "{}", answer.stdout);
+}
+
+#[test]
+fn what_cannot_be_injected_is_refused_before_anything_is_written() {
+    let bench = Bench::new();
+    let refused = |words: &str, parts: &[&str]| {
+        bench.boresight(&format!("run {words} --out run")).refused(parts);
+        assert!(!bench.path("run").exists(), "{words}");
+    };
+    refused("argon --inject attitud", &["'attitud'", "--inject", "attitude", "centroids"]);
+    refused("argon --inject all", &["'all'", "--inject"]);
+    refused("starting-point --inject roi", &["--inject is roi", "`starting-point` has no [roi]"]);
+    refused(
+        "argon --inject attitude --pipeline exec:cat",
+        &["--inject is attitude", "expected with the built-in pipeline `far_range`"],
+    );
+}

@@ -1,0 +1,46 @@
+//! The end-to-end tests of the command and its library, one module per suite: `cargo test --test it study_dask::` runs one suite.
+
+#![allow(clippy::unwrap_used, reason = "a panic is how a test fails, in its helpers too")]
+
+mod support;
+
+mod architecture;
+mod argon;
+mod bad_input;
+mod best_mode;
+mod docking;
+mod docking_artefacts;
+mod docking_consistency;
+mod docking_pose;
+mod docking_sequences;
+mod docking_vision;
+#[cfg(unix)]
+mod external_faults;
+mod external_pipeline;
+#[cfg(unix)]
+mod faults;
+mod files_astropy;
+mod files_by_hand;
+mod files_dataset;
+mod files_truth;
+mod gate;
+mod golden_docking;
+mod inject;
+#[cfg(unix)]
+mod mitsuba;
+mod mitsuba_live;
+mod monitor;
+mod named_suites;
+mod real_images;
+mod report;
+mod round_trip;
+mod run;
+mod scenarios;
+mod shell;
+mod show;
+#[cfg(unix)]
+mod study;
+mod study_dask;
+mod study_rows;
+mod supply_chain;
+mod visibility;

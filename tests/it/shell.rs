@@ -1,0 +1,122 @@
+//! `boresight completions` and `boresight man`, and the book: made of the command itself and of files that are there.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use crate::support::Bench;
+
+#[test]
+fn every_shell_has_completions_of_every_command() {
+    let bench = Bench::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = bench.boresight(&format!("completions {shell}")).done().stdout;
+        for word in ["visibility", "save-frames", "replay"] {
+            assert!(script.contains(word), "{shell} has no {word}");
+        }
+    }
+    bench.boresight("completions bash --json").refused(&["completions", "--json"]);
+    bench.boresight("completions tcsh").refused(&["tcsh", "bash"]);
+}
+
+#[test]
+fn every_command_has_a_manual_page() {
+    let bench = Bench::new();
+    let pages = bench.boresight("man --out pages --json").done().json();
+    let names: BTreeSet<String> = pages
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|path| Path::new(path.as_str().unwrap()).file_name().unwrap().to_string_lossy().into_owned())
+        .collect();
+    for name in ["boresight.1", "boresight-run.1", "boresight-study-replay.1", "boresight-gate-baseline.1"] {
+        assert!(names.contains(name), "{names:?}");
+    }
+    let page = bench.read("pages/boresight-study-run.1");
+    assert!(page.contains(".TH boresight-study-run") && page.contains("\\-\\-shard"), "{page}");
+    // The synopsis says what an option takes.
+    let page = bench.read("pages/boresight-report.1");
+    assert!(page.contains("[\\-\\-budget <all|DIR>]"), "{page}");
+    // Again, into the same folder.
+    bench.boresight("man --out pages").done();
+}
+
+/// The pages that the book is made of.
+fn chapters() -> BTreeSet<String> {
+    let summary = std::fs::read_to_string(docs().join("SUMMARY.md")).unwrap();
+    summary.split("](").skip(1).map(|rest| rest.split(')').next().unwrap().to_owned()).collect()
+}
+
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
+}
+
+/// The text of a page as the book has it: with what it includes.
+fn page(name: &str) -> String {
+    let text = std::fs::read_to_string(docs().join(name)).unwrap();
+    let mut pieces = text.split("{{#include ");
+    let mut whole = pieces.next().unwrap().to_owned();
+    for piece in pieces {
+        let (file, rest) = piece.split_once("}}").unwrap();
+        whole += &std::fs::read_to_string(docs().join(file)).unwrap();
+        whole += rest;
+    }
+    whole
+}
+
+/// A chapter that is missing would be made empty, and a page that no chapter names would never be found.
+#[test]
+fn every_page_is_a_chapter_of_the_book() {
+    let entries = std::fs::read_dir(docs()).unwrap().map(|entry| entry.unwrap().file_name());
+    let pages: BTreeSet<String> = entries
+        .map(|name| name.to_string_lossy().into_owned())
+        .filter(|name| name.ends_with(".md") && name != "SUMMARY.md")
+        .collect();
+    assert_eq!(chapters(), pages);
+}
+
+/// Links from page to page, and to their headings, lead somewhere in the book: it has its chapters, and the files of `docs/` that are no
+/// pages.
+#[test]
+fn links_between_pages_lead_somewhere() {
+    let heading = |line: &str| -> String {
+        let kept = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = kept.chars().filter(|c| c.is_alphanumeric() || "_- ".contains(*c));
+        kept.collect::<String>().replace(' ', "-")
+    };
+    let chapters = chapters();
+    let leads = |from: &str, link: &str| {
+        let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+        let file = if file.is_empty() { from } else { file };
+        if !file.ends_with(".md") {
+            return anchor.is_empty() && !file.contains("..") && docs().join(file).is_file();
+        }
+        let has = |text: String| text.lines().any(|line| line.starts_with('#') && heading(line) == anchor);
+        chapters.contains(file) && (anchor.is_empty() || has(page(file)))
+    };
+    let mut broken = Vec::new();
+    for name in &chapters {
+        let text = page(name);
+        let links = text.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next());
+        let dead = links.filter(|link| !link.is_empty() && !link.contains("://") && !leads(name, link));
+        broken.extend(dead.map(|link| format!("{name}: {link}")));
+    }
+    assert_eq!(broken, Vec::<String>::new());
+}
+
+/// What a reader copies from a page is accepted.
+#[test]
+fn the_examples_of_the_pages_are_accepted() {
+    let bench = Bench::new();
+    let first = |page: &str| page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap().to_owned();
+    for name in ["tutorial-performance.md", "studies.md"] {
+        bench.write("study.toml", first(&page(name)));
+        bench.boresight("study check study.toml").done();
+    }
+    // The law alone, of fewer pointings than the page's.
+    let camera = first(&page("tutorial-camera.md")).replace("[sky]", "[sky]\npointings = 500");
+    bench.write("camera.toml", camera);
+    bench.boresight("visibility camera.toml --frames 0").done();
+    let text = page("tutorial-performance.md");
+    let stage = text.split("--inject ").nth(1).unwrap().split_whitespace().next().unwrap();
+    bench.boresight(&format!("run argon --frames 0..1 --no-report --inject {stage}")).done();
+}

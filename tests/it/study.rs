@@ -1,0 +1,326 @@
+//! `boresight study`: the same rows however they are made, whatever happens meanwhile, and nothing mixed.
+
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::support::{Bench, STUDY, check_same_files, figure};
+
+fn bench() -> Bench {
+    let bench = Bench::new();
+    bench.write("study.toml", STUDY);
+    bench
+}
+
+/// Rows of a study, as its file holds them.
+fn rows(bench: &Bench, out: &str) -> Vec<String> {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    let file = fs::File::open(bench.path(out).join("cases.parquet")).unwrap();
+    let reader = SerializedFileReader::new(file).unwrap();
+    reader.get_row_iter(None).unwrap().map(|row| row.unwrap().to_string()).collect()
+}
+
+fn shard(out: &str, name: &str) -> PathBuf {
+    PathBuf::from(out).join("shards").join(name)
+}
+
+#[test]
+fn rows_do_not_depend_on_shards_threads_or_order() {
+    let bench = bench();
+    bench.boresight("study run study.toml --out whole --shards 1 --jobs 2").done();
+    for i in [3, 1, 2] {
+        bench.boresight(&format!("study run study.toml --out parts --shard {i}/3 --jobs 1")).done();
+    }
+    bench.boresight("study merge study.toml --out parts").done();
+    assert_eq!(rows(&bench, "whole").len(), 6);
+    assert_eq!(rows(&bench, "whole"), rows(&bench, "parts"));
+    bench.check_same("whole/cases.parquet", "parts/cases.parquet");
+    bench.check_same("whole/summary.json", "parts/summary.json");
+}
+
+#[test]
+fn what_is_there_is_kept_and_what_is_missing_or_damaged_is_made_again() {
+    let bench = bench();
+    bench.boresight("study run study.toml --out out --shards 3").done();
+    let before = bench.tree("out");
+    let paths = [1, 2, 3].map(|i| bench.path("").join(shard("out", &format!("{i}-of-3.parquet"))));
+    let modified = |path: &PathBuf| fs::metadata(path).unwrap().modified().unwrap();
+    let first = modified(&paths[0]);
+    fs::remove_file(&paths[1]).unwrap();
+    let mut bytes = fs::read(&paths[2]).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0x10;
+    fs::write(&paths[2], &bytes).unwrap();
+    bench.boresight("study run study.toml --out out").done();
+    check_same_files(&before, &bench.tree("out"));
+    assert_eq!(modified(&paths[0]), first);
+
+    fs::write(&paths[2], &bytes[..middle]).unwrap();
+    let answer = bench.boresight("study merge study.toml --out out");
+    answer.refused(&["shards 3 of 3 are missing or were damaged"]);
+}
+
+#[test]
+fn a_run_that_is_killed_leaves_nothing_half_written_and_is_gone_on_with() {
+    let bench = bench();
+    bench.write("long.toml", STUDY.replace("cases = 6", "cases = 24").replace("2002", "2010"));
+    let mut child = Command::new(assert_cmd::cargo::cargo_bin!("boresight"))
+        .args(["study", "run", "long.toml", "--out", "out", "--shards", "8", "--jobs", "1"])
+        .current_dir(bench.path(""))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    let first = bench.path("").join(shard("out", "1-of-8.parquet"));
+    while !first.exists() && begun.elapsed() < Duration::from_secs(100) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    assert_eq!(child.wait().unwrap().signal(), Some(9), "it was done before it could be killed");
+    let kept = fs::metadata(&first).unwrap().modified().unwrap();
+    bench.boresight("study run long.toml --out out").done();
+    assert_eq!(fs::metadata(&first).unwrap().modified().unwrap(), kept);
+    bench.boresight("study run long.toml --out whole --shards 8").done();
+    bench.check_same("out/cases.parquet", "whole/cases.parquet");
+}
+
+#[test]
+fn two_studies_never_mix() {
+    let bench = bench();
+    bench.boresight("study run study.toml --out out --shards 2").done();
+    let tree = bench.tree("out");
+    bench.write("other.toml", STUDY.replace("mean = 0.8", "mean = 0.9"));
+    bench.boresight("study run other.toml --out out").refused(&["plan.json", "`hash`", "another study"]);
+    bench.boresight("study run study.toml --out out --shards 3").refused(&["`shards`", "`2`", "`3`"]);
+    bench.boresight("study run study.toml --out out --pipeline exec:true").refused(&["`hash`"]);
+    // The built-in pipeline by its name is the built-in pipeline.
+    bench.boresight("study run study.toml --out out --pipeline far_range").done();
+    check_same_files(&tree, &bench.tree("out"));
+
+    // A shard of another study under the right name is no shard of this one.
+    bench.boresight("study run other.toml --out theirs --shards 2").done();
+    let name = shard("out", "1-of-2.parquet");
+    fs::copy(bench.path("").join(shard("theirs", "1-of-2.parquet")), bench.path("").join(&name)).unwrap();
+    bench.boresight("study merge study.toml --out out").refused(&["shards 1 of 2"]);
+    bench.boresight("study run study.toml --out out").done();
+    check_same_files(&tree, &bench.tree("out"));
+    bench.write("out/shards/3-of-9.parquet", "");
+    bench.boresight("study merge study.toml --out out").refused(&["3-of-9.parquet", "none of the 2 shards"]);
+}
+
+#[test]
+fn a_replayed_case_is_the_case() {
+    let bench = bench();
+    let summary = bench.boresight("study run study.toml --out out --json").done().json();
+    let worst = &summary["worst"][0];
+    let case = worst["case"].as_u64().unwrap();
+    let command = worst["replay"].as_str().unwrap();
+    let words = command.strip_prefix("boresight ").unwrap();
+    let score = bench.boresight(&format!("{words} --out again --json")).done().json();
+    assert_eq!(figure(&score, "correct_rate"), worst["value"].as_f64().unwrap());
+    assert!(bench.path("again/frames/002000.png").exists());
+    // And the run directory alone makes the run again.
+    bench.boresight("run again/run.toml --frames 2000..2002 --out third").done();
+    bench.check_same("again/measurements.csv", "third/measurements.csv");
+    let refused = bench.boresight("study replay study.toml --case 6");
+    refused.refused(&["--case is 6", "0 to 5"]);
+    assert!(case < 6);
+}
+
+/// A program is known by the files among its words; a study says of which cases it failed, and each replays with it.
+#[test]
+fn programs_are_part_of_a_study() {
+    let bench = bench();
+    let run = |pipeline: &str, out: &str| {
+        bench.boresight_words(&["study", "run", "study.toml", "--out", out, "--json", "--pipeline", pipeline])
+    };
+    run("exec:no-such-program", "nothing").refused(&["there is no program `no-such-program`"]);
+    assert!(!bench.path("nothing").exists(), "nothing is begun for a program that is not there");
+
+    bench.write("my pipeline.py", "import sys\nsys.exit('it is broken')\n");
+    let words = "exec:python3 'my pipeline.py'";
+    let answer = run(words, "out");
+    assert!(
+        answer.stderr.contains("the pipeline failed, first in case 0 at frame 2000"),
+        "{}",
+        answer.stderr
+    );
+    let summary = answer.done().json();
+    assert_eq!(summary["failed_cases"], 6);
+    let replay = shlex::split(summary["worst"][0]["replay"].as_str().unwrap()).unwrap();
+    assert!(replay.contains(&words.to_owned()), "{replay:?}");
+    let replay: Vec<&str> = replay[1..].iter().map(String::as_str).chain(["--out", "again"]).collect();
+    bench.boresight_words(&replay).done();
+    assert!(bench.read("again/measurements.csv").contains("failed: "));
+
+    bench.write("my pipeline.py", "import sys\nsys.exit('it is broken in another way')\n");
+    run(words, "out").refused(&["`hash`", "another study"]);
+}
+
+#[test]
+fn a_sweep_has_the_same_draws_at_each_of_its_points() {
+    let bench = bench();
+    let sweep = "\n[[sweep]]\npath = \"sensor.read_noise_e\"\nvalues = [5.0, 30.0]\n";
+    bench.write("sweep.toml", STUDY.to_owned() + sweep);
+    let summary = bench.boresight("study run sweep.toml --out out --json").done().json();
+    let points = summary["sweep"].as_array().unwrap();
+    assert_eq!(points.len(), 2);
+    assert!(points.iter().all(|point| point["cases"] == 3));
+    let rows = rows(&bench, "out");
+    let cell = |row: &str, name: &str| -> String {
+        row.split(&format!("{name}: ")).nth(1).unwrap().split([',', '}']).next().unwrap().to_owned()
+    };
+    let row = |name: &str, noise: f64| -> Vec<String> {
+        let of = |row: &&String| cell(row, "set.sensor.read_noise_e").parse::<f64>().unwrap() == noise;
+        rows.iter().filter(of).map(|row| cell(row, name)).collect()
+    };
+    for name in ["set.psf.sigma_px", "set.sensor.hot_pixels.count", "seed"] {
+        assert_eq!(row(name, 5.0).len(), 3, "{name}");
+        assert_eq!(row(name, 5.0), row(name, 30.0), "{name}");
+    }
+}
+
+#[test]
+fn a_study_stops_when_its_figure_is_known_well_enough() {
+    let bench = bench();
+    let until = |half_width: &str| {
+        let until = format!("cases = 12\nuntil = {{ figure = \"hit_rate\", half_width = {half_width} }}");
+        STUDY.replace("cases = 6", &until)
+    };
+    bench.write("wide.toml", until("0.5"));
+    bench.write("narrow.toml", until("0.001"));
+    let cases = |name: &str, shards: u32| {
+        let words = format!("study run {name}.toml --out {name}-{shards} --shards {shards} --json");
+        let summary = bench.boresight(&words).done().json();
+        (summary["cases"].as_u64().unwrap(), summary["is_narrow_enough"].as_bool().unwrap())
+    };
+    // Where it stops does not depend on how it is cut, and what was not needed is not missing.
+    assert_eq!(cases("wide", 4), (8, true));
+    assert_eq!(cases("wide", 5), (8, true));
+    bench.check_same("wide-4/cases.parquet", "wide-5/cases.parquet");
+    bench.check_same("wide-4/summary.json", "wide-5/summary.json");
+    assert!(!bench.path("wide-4/shards/4-of-4.parquet").exists());
+    bench.boresight("study merge wide.toml --out wide-4").done();
+    bench.check_same("wide-4/cases.parquet", "wide-5/cases.parquet");
+    assert_eq!(cases("narrow", 3), (12, false));
+    bench.boresight("study run wide.toml --out x --shard 1/3").refused(&["--shard", "stop.until"]);
+    bench.boresight("study plan wide.toml").refused(&["stop.until"]);
+}
+
+#[test]
+fn docking_is_studied_too() {
+    let bench = Bench::new();
+    bench.write(
+        "docking.toml",
+        r#"
+        title = "four fields of an approach, over the Sun"
+        scenario = "docking"
+        seed = 2
+        frames = "18000..18004"
+        [stop]
+        cases = 4
+        [[vary]]
+        path = "television.noise.sigma_dn8"
+        law = { kind = "uniform", min = 0.5, max = 4.0 }
+        "#,
+    );
+    let summary = bench.boresight("study run docking.toml --out out --json").done().json();
+    assert_eq!(summary["figures"]["success_rate"]["all"]["value"], 1.0);
+    // A replayed case has the figures of its row, to the bit.
+    let score = bench.boresight("study replay docking.toml --case 2 --out again --json").done().json();
+    let row = rows(&bench, "out").remove(2);
+    let range_rms_m = row.split("range_rms_m: ").nth(1).unwrap().split(',').next().unwrap().to_owned();
+    assert_eq!(range_rms_m.parse::<f64>().unwrap(), figure(&score, "range_rms_m"));
+}
+
+#[test]
+fn the_plan_holds_the_command_of_every_shard() {
+    let bench = bench();
+    let plan: Value = bench.boresight("study plan study.toml --shards 4 --json").done().json();
+    let pieces = plan["pieces"].as_array().unwrap();
+    assert_eq!(pieces.iter().map(|piece| piece["cases"].as_u64().unwrap()).sum::<u64>(), 6);
+    for piece in pieces {
+        let words: Vec<&str> =
+            piece["arguments"].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+        let manifest =
+            bench.boresight_words(&[&words[..], &["--out", "out", "--json"]].concat()).done().json();
+        assert_eq!(manifest["first_case"], piece["first_case"]);
+        assert_eq!(manifest["study_hash"], plan["hash"]);
+    }
+    bench.boresight("study merge study.toml --out out").done();
+}
+
+/// The study of docs/studies.md that draws no dark pixels runs as it stands there, and is refused with thresholds below.
+#[test]
+fn whole_images_are_drawn_above_a_floor_by_one_word_and_never_looked_at_below() {
+    let bench = Bench::new();
+    let page = include_str!("../../docs/studies.md");
+    let study = page.split("```toml").find(|part| part.contains("zero_suppression_dn\"\nvalues")).unwrap();
+    let study = study.split("```").next().unwrap();
+    bench.write("study.toml", study);
+    bench.boresight("study check study.toml").done();
+    bench.boresight("study run study.toml --out out --no-report").done();
+    let summary: Value = serde_json::from_slice(&fs::read(bench.path("out/summary.json")).unwrap()).unwrap();
+    let hit_rate = &summary["figures"]["hit_rate"]["all"]["value"];
+    assert!(hit_rate.as_f64() > Some(0.9), "{hit_rate}");
+    let refused = |old: &str, new: &str, parts: &[&str]| {
+        assert_eq!(study.matches(old).count(), 1, "`{old}`");
+        bench.write("study.toml", study.replace(old, new));
+        bench.boresight("study check study.toml").refused(parts);
+        bench.boresight("study plan study.toml").refused(parts);
+        bench.boresight("study run study.toml --out never --no-report").refused(parts);
+        fs::remove_dir_all(bench.path("never")).unwrap();
+    };
+    refused("low = 0.0165", "low = 0.016", &["thresholds.low", "is 0.016, 65 DN"]);
+    refused("values = [67]", "values = [67, 100]", &["thresholds.low", "is 0.0165, 67 DN"]);
+    let constant = "{ mode = \"constant\", low = 0.0165, high = 0.03 }";
+    refused(constant, "{ mode = \"automatic\" }", &["thresholds.mode", "is automatic"]);
+}
+
+/// Every mistake names the file, the field, the value and what was expected.
+#[test]
+fn a_study_that_is_wrong_says_where() {
+    let bench = Bench::new();
+    let refused = |old: &str, new: &str, parts: &[&str]| {
+        assert_eq!(STUDY.matches(old).count(), 1, "`{old}`");
+        bench.write("study.toml", STUDY.replace(old, new));
+        let all = [&["study.toml"], parts].concat();
+        bench.boresight("study check study.toml").refused(&all);
+    };
+    refused("\"argon\"", "\"argom\"", &["scenario", "did you mean `argon`"]);
+    refused("psf.sigma_px", "psf.sigma", &["case 0", "psf", "sigma"]);
+    refused("psf.sigma_px", "psff.sigma_px", &["vary[0].path", "no `psff`"]);
+    refused("\"psf.sigma_px\"", "\"title\"", &["vary[0].path", "is `title`", "seed of its own"]);
+    refused("psf.sigma_px", "schedule[9].count", &["vary[0].path", "has 5 of these"]);
+    refused("psf.sigma_px", "sensor.hot_pixels", &["vary[1].path", "sensor.hot_pixels"]);
+    refused("sigma = 0.1", "sigma = -0.1", &["vary[0].law.sigma", "-0.1", "> 0"]);
+    refused("kind = \"normal\"", "kind = \"normale\"", &["normale"]);
+    refused("max = 40", "max = -1", &["max"]);
+    refused("cases = 6", "cases = 0", &["stop.cases", "is 0"]);
+    refused("frames = \"2000..2002\"", "frames = \"2..1\"", &["frames", "2..1", "A < B"]);
+    refused("seed = 5", "seed = 5\ndesign = \"sobel\"", &["design", "sobel", "did you mean `sobol`"]);
+    refused("seed = 5", "seed = 5\ndesign = \"saltelli\"", &["stop.cases", "multiple of 4"]);
+    refused(
+        "[stop]",
+        "[record]\nfigures = [\"hitrate\"]\n[stop]",
+        &["record.figures[0]", "hitrate", "did you mean `hit_rate`"],
+    );
+    refused(
+        "kind = \"whole\", min = 0, max = 40",
+        "kind = \"table\", path = \"none.csv\", column = \"x\"",
+        &["vary[1].law.path", "none.csv"],
+    );
+    refused(
+        "path = \"psf.sigma_px\"\nlaw = { kind = \"normal\", mean = 0.8, sigma = 0.1 }",
+        "path = \"psf\"\nlaw = { kind = \"isotropic_attitude\" }",
+        &["vary[0].path", "ra_deg", "phi_deg"],
+    );
+    // A law that leads out of what a parameter may be: the case and the value in its scenario.
+    refused("mean = 0.8, sigma = 0.1", "mean = -3.0, sigma = 0.1", &["case 0", "psf.sigma_px"]);
+    bench.boresight("study check nothing.toml").refused(&["nothing.toml", "no study"]);
+}

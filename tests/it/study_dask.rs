@@ -1,0 +1,181 @@
+//! The Dask engine with workers that die: every shard once, and the rows those of one process. Needs Python with
+//! `pip install './python[dask]'`, named by `BORESIGHT_PYTHON`; runs in continuous integration.
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::support::Bench;
+
+const STUDY: &str = r#"
+title = "ten frames of ARGON"
+scenario = "argon"
+seed = 9
+frames = "2000..2010"
+[stop]
+cases = 40
+[[vary]]
+path = "psf.sigma_px"
+law = { kind = "uniform", min = 0.6, max = 1.0 }
+"#;
+
+fn python() -> String {
+    std::env::var("BORESIGHT_PYTHON").unwrap_or_else(|_| "python3".to_owned())
+}
+
+/// A process that is gone with the value.
+struct Killed(Child);
+
+impl Drop for Killed {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+fn shards(bench: &Bench) -> usize {
+    fs::read_dir(bench.path("out/shards")).map_or(0, |entries| {
+        entries
+            .filter(|entry| entry.as_ref().unwrap().path().extension().is_some_and(|e| e == "parquet"))
+            .count()
+    })
+}
+
+fn wait_for(what: &str, mut is_so: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !is_so() {
+        assert!(begun.elapsed() < Duration::from_secs(120), "{what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// The command that runs the study in 20 shards on a cluster.
+fn on_dask(bench: &Bench, engine: &str) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("boresight"));
+    command
+        .args([
+            "study",
+            "run",
+            "study.toml",
+            "--out",
+            "out",
+            "--shards",
+            "20",
+            "--jobs",
+            "2",
+            "--engine",
+            engine,
+        ])
+        .env("BORESIGHT_PYTHON", python())
+        .current_dir(bench.path(""))
+        .stdout(Stdio::null());
+    command
+}
+
+/// A scheduler on this machine, and its address.
+fn scheduler() -> (Killed, String) {
+    let mut child = Command::new(python())
+        .args([
+            "-m",
+            "distributed.cli.dask_scheduler",
+            "--host",
+            "127.0.0.1",
+            "--port",
+            "0",
+            "--no-dashboard",
+            "--no-jupyter",
+        ])
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    let address = lines
+        .by_ref()
+        .map(Result::unwrap)
+        .find_map(|line| line.find("tcp://").map(|at| line[at..].trim().to_owned()))
+        .expect("the scheduler tells its address");
+    // Somebody must go on reading what it says.
+    std::thread::spawn(move || lines.for_each(drop));
+    (Killed(child), address)
+}
+
+fn worker(address: &str, bench: &Bench) -> Killed {
+    let child = Command::new(python())
+        .args([
+            "-m",
+            "distributed.cli.dask_worker",
+            address,
+            "--nthreads",
+            "1",
+            "--no-nanny",
+            "--no-dashboard",
+        ])
+        .args(["--host", "127.0.0.1", "--local-directory"])
+        .arg(bench.path("dask"))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    Killed(child)
+}
+
+#[test]
+#[ignore = "needs Python with Dask; continuous integration runs it"]
+fn a_killed_worker_costs_its_shard_and_no_other() {
+    let bench = Bench::new();
+    bench.write("study.toml", STUDY);
+    bench.boresight("study run study.toml --out whole --shards 20").done();
+
+    let (_scheduler, address) = scheduler();
+    let mut workers = [worker(&address, &bench), worker(&address, &bench)];
+    let driver = on_dask(&bench, &format!("dask={address}")).spawn().unwrap();
+    let mut driver = Killed(driver);
+    wait_for("six shards", || shards(&bench) >= 6);
+    let before = bench.tree("out/shards");
+    let when = |name: &std::path::Path| {
+        fs::metadata(bench.path("out/shards").join(name)).unwrap().modified().unwrap()
+    };
+    let done: Vec<_> =
+        before.keys().filter(|name| name.extension().is_some_and(|e| e == "parquet")).collect();
+    let times: Vec<_> = done.iter().map(|name| when(name)).collect();
+    workers[0].0.kill().unwrap();
+
+    let mut status = None;
+    wait_for("the study", || {
+        status = driver.0.try_wait().unwrap();
+        status.is_some()
+    });
+    assert!(status.unwrap().success());
+    assert_eq!(shards(&bench), 20);
+    assert_eq!(
+        done.iter().map(|name| when(name)).collect::<Vec<_>>(),
+        times,
+        "a finished shard was made again"
+    );
+    bench.check_same("out/cases.parquet", "whole/cases.parquet");
+    bench.check_same("out/summary.json", "whole/summary.json");
+}
+
+#[test]
+#[ignore = "needs Python with Dask; continuous integration runs it"]
+fn a_killed_driver_is_started_again_and_makes_what_is_missing() {
+    let bench = Bench::new();
+    bench.write("study.toml", STUDY);
+    let mut driver = on_dask(&bench, "dask");
+    driver.stderr(Stdio::null());
+    let mut first = Killed(driver.spawn().unwrap());
+    wait_for("five shards", || shards(&bench) >= 5);
+    first.0.kill().unwrap();
+    first.0.wait().unwrap();
+    let made = bench.tree("out/shards");
+    assert!(driver.status().unwrap().success());
+    let after = bench.tree("out/shards");
+    let is_kept = |(name, bytes): (&std::path::PathBuf, &Vec<u8>)| {
+        name.extension().is_none_or(|e| e != "parquet") || after.get(name) == Some(bytes)
+    };
+    assert!(made.iter().all(is_kept));
+    bench.boresight("study run study.toml --out whole --shards 20").done();
+    bench.check_same("out/cases.parquet", "whole/cases.parquet");
+}

@@ -1,0 +1,189 @@
+//! What the end-to-end suites share: the command in a directory of its own, what it answers, the truth it writes.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use boresight::files::{Row, TableReader};
+use boresight::scenario::BUILT_IN;
+use serde_json::Value;
+use sim::truth::{FrameTruth, ObjectTruth};
+use tempfile::{TempDir, tempdir};
+
+/// Longer than any command of the suites takes on a busy machine: whatever hangs fails.
+const HANGS: Duration = Duration::from_secs(120);
+
+/// A study that takes a second: six cases of two frames.
+pub(crate) const STUDY: &str = r#"
+title = "two frames of ARGON"
+scenario = "argon"
+seed = 5
+frames = "2000..2002"
+[stop]
+cases = 6
+[[vary]]
+path = "psf.sigma_px"
+law = { kind = "normal", mean = 0.8, sigma = 0.1 }
+[[vary]]
+path = "sensor.hot_pixels.count"
+law = { kind = "whole", min = 0, max = 40 }
+"#;
+
+/// An empty directory in which the command runs: relative paths in arguments start there.
+pub(crate) struct Bench {
+    directory: TempDir,
+}
+
+impl Bench {
+    pub(crate) fn new() -> Self {
+        Self { directory: tempdir().unwrap() }
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.directory.path().join(name)
+    }
+
+    /// Writes a file, with the directories above it.
+    pub(crate) fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, content).unwrap();
+    }
+
+    pub(crate) fn read(&self, name: &str) -> String {
+        let path = self.path(name);
+        fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    }
+
+    /// Removes the checksums of a directory: what is changed there is changed on purpose.
+    pub(crate) fn unseal(&self, directory: &str) {
+        fs::remove_file(self.path(directory).join("SHA256SUMS")).unwrap();
+    }
+
+    /// Replaces the only `old` in a text file.
+    pub(crate) fn edit(&self, name: &str, old: &str, new: &str) {
+        let text = self.read(name);
+        assert_eq!(text.matches(old).count(), 1, "`{old}` in {name}");
+        self.write(name, text.replacen(old, new, 1));
+    }
+
+    /// Writes a built-in scenario with a change to a TOML file.
+    pub(crate) fn scenario(&self, file: &str, built_in: &str, change: impl FnOnce(&mut toml::Table)) {
+        let text = BUILT_IN.iter().find(|scenario| scenario.name == built_in).unwrap().text;
+        let mut table = text.parse().unwrap();
+        change(&mut table);
+        self.write(file, table.to_string());
+    }
+
+    /// Runs the command with these words, which blanks separate.
+    pub(crate) fn boresight(&self, words: &str) -> Answer {
+        self.boresight_words(&words.split_whitespace().collect::<Vec<_>>())
+    }
+
+    /// Runs the command with these words.
+    pub(crate) fn boresight_words(&self, words: &[&str]) -> Answer {
+        let mut command = assert_cmd::cargo::cargo_bin_cmd!("boresight");
+        let output = command.args(words).current_dir(self.directory.path()).timeout(HANGS).output().unwrap();
+        Answer {
+            words: words.join(" "),
+            status: output.status.code(),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    /// Every file of a directory by its name there, with its bytes.
+    pub(crate) fn tree(&self, name: &str) -> BTreeMap<PathBuf, Vec<u8>> {
+        let root = self.path(name);
+        let mut files = BTreeMap::new();
+        let mut waiting = vec![root.clone()];
+        while let Some(directory) = waiting.pop() {
+            for entry in fs::read_dir(directory).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    waiting.push(path);
+                } else {
+                    files.insert(path.strip_prefix(&root).unwrap().to_owned(), fs::read(&path).unwrap());
+                }
+            }
+        }
+        files
+    }
+
+    /// Two files hold the same bytes.
+    pub(crate) fn check_same(&self, a: &str, b: &str) {
+        let bytes = |name| fs::read(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+        // Not assert_eq, which would print both.
+        assert!(bytes(a) == bytes(b), "{a} and {b} differ");
+    }
+
+    /// The truth about each frame of a run directory.
+    pub(crate) fn frames(&self, run: &str) -> Vec<FrameTruth> {
+        self.table(&format!("{run}/truth/frames.parquet"))
+    }
+
+    /// The truth about each object in each frame of a run directory.
+    pub(crate) fn objects(&self, run: &str) -> Vec<ObjectTruth> {
+        self.table(&format!("{run}/truth/objects.parquet"))
+    }
+
+    fn table<R: Row>(&self, name: &str) -> Vec<R> {
+        TableReader::open(&self.path(name)).unwrap().flat_map(|frame| frame.unwrap().1).collect()
+    }
+
+    /// The rows of a CSV table, each by the names of its columns.
+    pub(crate) fn csv(&self, name: &str) -> Vec<BTreeMap<String, String>> {
+        csv::Reader::from_path(self.path(name)).unwrap().deserialize().map(Result::unwrap).collect()
+    }
+
+    pub(crate) fn json(&self, name: &str) -> Value {
+        serde_json::from_str(&self.read(name)).unwrap()
+    }
+}
+
+/// Two directories hold the same files with the same bytes.
+pub(crate) fn check_same_files(a: &BTreeMap<PathBuf, Vec<u8>>, b: &BTreeMap<PathBuf, Vec<u8>>) {
+    assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
+    let differing: Vec<&Path> = a.keys().filter(|name| a[*name] != b[*name]).map(PathBuf::as_path).collect();
+    assert!(differing.is_empty(), "{differing:?} differ");
+}
+
+/// What the command said and how it ended.
+pub(crate) struct Answer {
+    words: String,
+    pub(crate) status: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Answer {
+    /// Asserts that the command ended well.
+    pub(crate) fn done(self) -> Self {
+        assert_eq!(self.status, Some(0), "boresight {}\n{}", self.words, self.stderr);
+        self
+    }
+
+    /// Asserts that the command refused bad input with a message that has these parts.
+    pub(crate) fn refused(self, parts: &[&str]) -> Self {
+        assert_eq!(self.status, Some(2), "boresight {}\n{}", self.words, self.stderr);
+        assert!(!self.stderr.contains("panicked"), "{}", self.stderr);
+        // Long messages are broken into lines.
+        let message = self.stderr.replace("\n  | ", " ");
+        for part in parts {
+            assert!(message.contains(part), "boresight {}: `{part}` in\n{}", self.words, self.stderr);
+        }
+        self
+    }
+
+    /// The JSON document that stdout is; anything else there fails.
+    pub(crate) fn json(&self) -> Value {
+        let document = serde_json::from_str(&self.stdout);
+        document.unwrap_or_else(|error| panic!("boresight {}: {error} in\n{}", self.words, self.stdout))
+    }
+}
+
+/// The value of a figure of a score.
+pub(crate) fn figure(score: &Value, name: &str) -> f64 {
+    score["figures"][name]["value"].as_f64().unwrap_or_else(|| panic!("{name} in {score}"))
+}

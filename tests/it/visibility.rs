@@ -1,0 +1,452 @@
+//! `boresight visibility`: the analytic law against frames of the simulator, the sky against closed forms and published numbers, the
+//! search for a parameter against simulation on both sides of it, and the command's answers.
+
+use std::path::Path;
+
+use boresight::scenario::{FarRangeScenario, ScenarioSource};
+use boresight::statistics::clopper_pearson;
+use boresight::visibility::{
+    Bench as TestBench, CameraConfig, CameraModel, Curves, Demand, Design, DetectionRule, MotionGuidance,
+    MotionTable, Over, Pointing, Requirements, Sky, SkyTable, StarTrial,
+};
+use serde_json::Value;
+use sim::optics::{OpticsConfig, RadiometryConfig};
+use sim::{SimError, Simulator};
+
+use crate::support::{Bench, check_same_files};
+
+const MOTION: MotionTable =
+    MotionTable { guidance: MotionGuidance::LocalOrbital, semi_major_axis_km: 7130.0 };
+const STILL: MotionTable = MotionTable { guidance: MotionGuidance::Inertial, ..MOTION };
+
+/// A requirement file about ARGON's camera, with lines of its own.
+fn file(lines: &str) -> String {
+    format!(
+        r#"
+title = "a test"
+n_min = 10
+probability = 0.9
+detection = {{ kind = "dn", low_dn = 46, high_dn = 67 }}
+exposure = {{ nominal_s = 0.1, min_s = 0.01, max_s = 0.25 }}
+motion = {{ guidance = "local_orbital", semi_major_axis_km = 7130.0 }}
+camera.scenario = "argon"
+sky.sun_exclusion_deg = 40.0
+{lines}
+"#
+    )
+}
+
+fn requirements(lines: &str) -> Requirements {
+    Requirements::parse("test".to_owned(), Path::new(""), Path::new("test.toml"), &file(lines)).unwrap()
+}
+
+fn argon() -> FarRangeScenario {
+    ScenarioSource::read("argon").unwrap().far_range("a test").unwrap().clone()
+}
+
+fn camera() -> CameraConfig {
+    requirements("").camera
+}
+
+/// Boresights that the Sun leaves free: nearer to it the background is not even over the field, as the law takes it to be.
+fn pointings(count: usize, motion: &MotionTable) -> Vec<Pointing> {
+    let sky = SkyTable { sun_exclusion_deg: 40.0, ..SkyTable::default() };
+    let all = (0..count).map(|i| Pointing::of_lattice(i, count, motion, &sky).unwrap());
+    all.filter(|pointing| pointing.excluded.is_none()).collect()
+}
+
+/// Stars of simulated frames, in bins of their analytic chance: as many are detected as the law says, within 4 standard deviations of
+/// a sum of independent events and the share that the law leaves out: two stars that make one cluster (`crowded`), and, where a star is
+/// seen by chance alone, a bright neighbour's wings.
+fn check_law(trials: &[StarTrial], crowded: f64, what: &str) {
+    for (low, high) in [(0.02, 0.15), (0.15, 0.4), (0.4, 0.6), (0.6, 0.85), (0.85, 0.98), (0.999, 1.1)] {
+        let bin: Vec<_> = trials.iter().filter(|trial| (low..high).contains(&trial.chance)).collect();
+        assert!(bin.len() > 60, "{what}: {} stars between {low} and {high}", bin.len());
+        let expected: f64 = bin.iter().map(|trial| trial.chance).sum();
+        let variance: f64 = bin.iter().map(|trial| trial.chance * (1.0 - trial.chance)).sum();
+        let detected = bin.iter().filter(|trial| trial.is_detected).count() as f64;
+        let left_out = crowded * bin.len() as f64;
+        assert!(
+            (detected - expected).abs() < 4.0 * variance.sqrt() + left_out,
+            "{what}: {detected} of {} between {low} and {high}, {expected:.1} expected",
+            bin.len()
+        );
+    }
+}
+
+fn trials(
+    camera: &CameraConfig,
+    rule: DetectionRule,
+    motion: &MotionTable,
+    exposure_s: f64,
+) -> Vec<StarTrial> {
+    let bench = TestBench { camera, rule: &rule, motion, seed: 11 };
+    let frames = bench.stars(&pointings(120, motion), exposure_s).unwrap();
+    frames.into_iter().flat_map(|frame| frame.stars).collect()
+}
+
+#[test]
+fn the_law_of_detection_is_that_of_simulated_frames_at_thresholds_in_digital_numbers() {
+    let rule = DetectionRule::Dn { low_dn: 46, high_dn: 67 };
+    check_law(&trials(&camera(), rule, &MOTION, 0.25), 0.02, "smeared, 0.25 s");
+    check_law(&trials(&camera(), rule, &STILL, 0.08), 0.02, "still, 0.08 s");
+    // 1.0 s at 2.5 px/s: a trail of 2.5 px.
+    let dark = CameraConfig { background: Default::default(), ..camera() };
+    check_law(&trials(&dark, rule, &MOTION, 1.0), 0.05, "a longer trail");
+}
+
+/// A whole threshold of 53 DN stands for one of 53.0 to 54.0, to which the estimates of a frame's noise come by some hundredths: a
+/// camera whose threshold is not near a whole number agrees.
+#[test]
+fn the_law_of_detection_is_that_of_simulated_frames_at_thresholds_in_standard_deviations() {
+    let mut camera = camera();
+    (camera.sensor.gain_e_per_dn, camera.background) = (2.0, Default::default());
+    let rule = DetectionRule::Sigmas { low: 3.0, high: 6.0 };
+    let model = CameraModel::new(&camera).unwrap();
+    // b = 40 + 40 · 0.25/2 = 45, σ = sqrt((10 + 225)/4 + 1/12) = 7.67: 45 + 46.03 = 91.03.
+    assert_eq!(rule.thresholds(&model, 10.0).high_dn, 91.0);
+    camera.sensor.bias_dn = 40.5;
+    check_law(&trials(&camera, rule, &STILL, 0.25), 0.02, "six standard deviations");
+}
+
+/// Rates of frames with enough stars, in the interval of a design's analytic probability.
+#[test]
+fn enough_stars_are_detected_as_often_as_the_law_says() {
+    let requirements = requirements("");
+    let design = Design::new(&requirements, &requirements.camera, 3000, 0.25).unwrap();
+    for exposure_s in [0.07, 0.1] {
+        let expected = design.stars_chance(exposure_s, 10, Over::Sky).unwrap();
+        let rule = DetectionRule::Dn { low_dn: 46, high_dn: 67 };
+        let bench = TestBench { camera: &requirements.camera, rule: &rule, motion: &MOTION, seed: 3 };
+        let frames = bench.stars(&pointings(220, &MOTION), exposure_s).unwrap();
+        let (enough, of) =
+            (frames.iter().filter(|frame| frame.detected >= 10).count() as u64, frames.len() as u64);
+        // Both bounds of 99.9 %.
+        let (low, high) = clopper_pearson(enough, of, 0.999);
+        assert!((low..high).contains(&expected), "{exposure_s} s: {enough} of {of}, {expected}");
+    }
+}
+
+/// Light of one colour, no vignetting, no distortion, the principal point in the middle: stars to a magnitude are a matter of counting.
+fn plain(side_px: usize, focal_length_mm: f64) -> CameraModel {
+    let mut config = camera();
+    config.radiometry = RadiometryConfig::ZeroPoint { zero_point_e_per_s: 1e6 };
+    (config.optics, config.background) = (OpticsConfig::default(), Default::default());
+    let camera = &mut config.camera;
+    (camera.columns, camera.rows, camera.radial) = (side_px, side_px, [0.0; 3]);
+    (camera.pixel_width_um, camera.pixel_height_um, camera.focal_length_mm) = (10.0, 10.0, focal_length_mm);
+    (camera.principal_x_px, camera.principal_y_px) =
+        ((side_px as f64 - 1.0) / 2.0, (side_px as f64 - 1.0) / 2.0);
+    CameraModel::new(&config).unwrap()
+}
+
+fn mean_stars(camera: &CameraModel, magnitude: f64, count: usize) -> f64 {
+    let least_e_per_s = 1e6 * libm::pow(10.0, -0.4 * magnitude);
+    let sky = Sky::new(camera, &STILL, &SkyTable::default(), count, least_e_per_s).unwrap();
+    sky.fields.iter().map(|field| field.stars.len() as f64).sum::<f64>() / count as f64
+}
+
+/// The mean over an equal-area sky is the number of stars there are times the field's share of the sphere: a rectangle of half angles
+/// with tangents a and b has 4 asin(ab/sqrt((1 + a²)(1 + b²))).
+#[test]
+fn the_stars_of_all_fields_add_up_to_the_catalogue() {
+    let camera = plain(600, 20.0);
+    let tangent = 600.0 * 0.010 / (2.0 * 20.0);
+    let solid_angle = 4.0 * libm::asin(tangent * tangent / (1.0 + tangent * tangent));
+    let share = solid_angle / (4.0 * std::f64::consts::PI);
+    for magnitude in [5.0, 6.5] {
+        let stars = sim::catalog::Catalog::hipparcos2();
+        let all = stars.stars().iter().filter(|star| star.v_mag() <= magnitude).count() as f64;
+        let mean = mean_stars(&camera, magnitude, 8000);
+        // A star is in about 46 of 8000 fields; a lattice errs by some hundredths of that, each star by itself.
+        assert!((mean / (all * share) - 1.0).abs() < 0.004, "V {magnitude}: {mean}, {}", all * share);
+    }
+}
+
+/// Liebe (2002, IEEE Trans. Aerosp. Electron. Syst. 38, 587): 6.57 exp(1.08 M) stars brighter than M are in the sky. A fit through
+/// counts, good to some 20 %: 1450, 4280 and 12,600 stars to 5, 6 and 7.
+#[test]
+fn the_density_of_stars_is_that_of_the_literature() {
+    let camera = plain(600, 20.0);
+    let tangent = 600.0 * 0.010 / (2.0 * 20.0);
+    let share = libm::asin(tangent * tangent / (1.0 + tangent * tangent)) / std::f64::consts::PI;
+    for magnitude in [5.0, 6.0, 7.0] {
+        let published = 6.57 * libm::exp(1.08 * magnitude) * share;
+        let mean = mean_stars(&camera, magnitude, 1000);
+        assert!(
+            (mean / published - 1.0).abs() < 0.25,
+            "V {magnitude}: {mean:.2} stars, {published:.2} published"
+        );
+    }
+}
+
+#[test]
+fn a_flight_of_a_prepared_simulator_is_that_of_a_new_one() {
+    let scenario = argon();
+    let mut other = scenario.simulation();
+    other.seed = 99;
+    other.orbit.relative.a_dlambda_m = -9000.0;
+    other.schedule.truncate(2);
+    let made = |simulator: &Simulator| simulator.camera().unwrap().expose(2000).unwrap();
+    let fresh = Simulator::new(&other, Path::new("")).unwrap();
+    let mut flown = Simulator::new(&scenario.simulation(), Path::new("")).unwrap();
+    let before = made(&flown);
+    other.schedule[0].count = 0;
+    assert!(matches!(flown.fly(&other), Err(SimError::Entry { .. } | SimError::Parameter { .. })));
+    assert!(made(&flown) == before, "a flight that is refused changes nothing");
+    other.schedule[0].count = scenario.schedule[0].count;
+    flown.fly(&other).unwrap();
+    assert!(made(&flown) == made(&fresh));
+}
+
+/// The answer of the command to a file with these lines, and its exit status.
+fn answer(lines: &str, options: &str) -> (Value, Option<i32>) {
+    let bench = Bench::new();
+    bench.write("r.toml", file(lines));
+    let answer = bench.boresight(&format!("visibility r.toml --json {options}"));
+    (answer.json(), answer.status)
+}
+
+#[test]
+fn the_smallest_exposure_meets_the_requirement_and_a_step_below_does_not() {
+    let (report, status) = answer(
+        r#"
+sky.pointings = 2000
+confirm.frames = 150
+[[requirements]]
+id = "R-1"
+text = "stars"
+demand = { kind = "stars", probability = 0.8 }
+find = { parameter = "exposure_s", from = 0.01, to = 0.25 }
+"#,
+        "",
+    );
+    let verdict = &report["requirements"][0];
+    assert_eq!((status, verdict["status"].as_str()), (Some(0), Some("met")), "{verdict:#}");
+    let found = &verdict["found"];
+    let number = |name: &str| found[name].as_f64().unwrap();
+    assert!(
+        number("failing_value") < number("threshold_value") && number("threshold_value") < number("value")
+    );
+    assert!(number("probability") > 0.8 && number("failing_probability") < 0.8, "{found:#}");
+    assert!(found["simulated"]["low"].as_f64().unwrap() >= 0.8, "{found:#}");
+    assert!(found["failing_simulated"]["high"].as_f64().unwrap() < 0.8, "{found:#}");
+    assert_eq!(found["is_monotone"], true);
+}
+
+/// By the law alone: a larger aperture or a wider field has more stars.
+#[test]
+fn the_smallest_aperture_and_the_longest_focal_length_are_found() {
+    let (report, status) = answer(
+        r#"
+sky.pointings = 400
+confirm.frames = 0
+[[requirements]]
+id = "R-APERTURE"
+text = "stars"
+demand = { kind = "stars" }
+find = { parameter = "aperture_diameter_mm", from = 5.0, to = 40.0 }
+[[requirements]]
+id = "R-FIELD"
+text = "stars"
+demand = { kind = "stars", exposure_s = 0.2 }
+find = { parameter = "focal_length_mm", want = "largest", from = 10.0, to = 60.0 }
+"#,
+        "",
+    );
+    assert_eq!(status, Some(0), "{report:#}");
+    for (verdict, [low, high]) in
+        report["requirements"].as_array().unwrap().iter().zip([[9.0, 16.0], [20.0, 40.0]])
+    {
+        let found = &verdict["found"];
+        let value = found["value"].as_f64().unwrap();
+        assert!((low..high).contains(&value), "{found:#}");
+        // The search looks from fewer boresights than the answer.
+        assert!((found["probability"].as_f64().unwrap() - 0.9).abs() < 0.02, "{found:#}");
+    }
+}
+
+#[test]
+fn what_cannot_be_met_names_what_binds() {
+    let (report, status) = answer(
+        r#"
+sky.pointings = 500
+confirm.frames = 0
+target = { body = { kind = "lambert_sphere", radius_m = 0.4, albedo = 0.3 }, light = { kind = "phases", phases_deg = [30.0, 90.0] }, ranges_km = [1.0, 50.0] }
+[[requirements]]
+id = "FIELD"
+text = "more stars than there are"
+demand = { kind = "stars", n_min = 1000 }
+find = { parameter = "exposure_s", from = 0.01, to = 0.25 }
+[[requirements]]
+id = "SMEAR"
+text = "faint stars in seconds"
+demand = { kind = "limiting_magnitude", magnitude = 7.62 }
+find = { parameter = "exposure_s", from = 0.1, to = 0.9 }
+[[requirements]]
+id = "BACKGROUND"
+text = "a faint star in a frame that is full of light"
+demand = { kind = "limiting_magnitude", magnitude = 8.0 }
+find = { parameter = "exposure_s", from = 5.0, to = 20.0 }
+[[requirements]]
+id = "SATURATION"
+text = "both, at 2 km"
+demand = { kind = "exposure_window", from_km = 2.0, to_km = 10.0 }
+find = { parameter = "focal_length_mm", from = 15.0, to = 30.0 }
+[[requirements]]
+id = "SIGNAL"
+text = "a faint star in a short exposure"
+demand = { kind = "limiting_magnitude", magnitude = 9.0, exposure_s = 0.05 }
+find = { parameter = "aperture_diameter_mm", from = 5.0, to = 15.0 }
+"#,
+        "",
+    );
+    assert_eq!(status, Some(1), "{report:#}");
+    for (verdict, binds) in report["requirements"].as_array().unwrap().iter().zip([
+        "field",
+        "smear",
+        "background",
+        "saturation",
+        "signal",
+    ]) {
+        assert_eq!(verdict["status"], "impossible", "{verdict:#}");
+        assert!(verdict["binds"].as_str().unwrap().starts_with(binds), "{verdict:#}");
+    }
+}
+
+/// A Lambert sphere's light falls with the square of the range: from where it is detected it can be told, and its greatest range falls
+/// with the phase angle as the root of Lambert's law.
+#[test]
+fn the_greatest_range_of_a_sphere_follows_its_phase_law() {
+    let (report, _) = answer(
+        r#"
+sky.pointings = 200
+confirm.frames = 60
+target = { body = { kind = "lambert_sphere", radius_m = 0.4, albedo = 0.3 }, light = { kind = "phases", phases_deg = [0.0, 90.0] }, ranges_km = [1.0, 50.0] }
+[[requirements]]
+id = "T"
+text = "seen from afar"
+demand = { kind = "target_detected", from_km = 10.0, to_km = 60.0, phase_max_deg = 90.0 }
+"#,
+        "",
+    );
+    let ranges: Vec<f64> =
+        (0..2).map(|i| report["target_range"][i]["nominal_km"].as_f64().unwrap()).collect();
+    // Φ(90°) = 1/π; the bisection ends within a part in 300.
+    let ratio = ranges[1] / ranges[0] * std::f64::consts::PI.sqrt();
+    assert!((ratio - 1.0).abs() < 0.01, "{ranges:?}");
+    let verdict = &report["requirements"][0];
+    assert_eq!(verdict["status"], "met", "{verdict:#}");
+    assert!(
+        (verdict["margin"].as_f64().unwrap() - (ranges[1] - 60.0)).abs() < 0.01 * ranges[1],
+        "{verdict:#}"
+    );
+    assert_eq!(verdict["simulated"]["count"], 60, "{verdict:#}");
+}
+
+/// Simulated at a range where the target is often missed: the law's rate lies in the interval.
+#[test]
+fn the_target_is_detected_as_often_as_the_law_says() {
+    let lines = r#"
+target = { body = { kind = "lambert_sphere", radius_m = 0.4, albedo = 0.3 }, light = { kind = "phases", phases_deg = [60.0] }, ranges_km = [1.0, 50.0] }
+"#;
+    let requirements = requirements(lines);
+    let design = Design::new(&requirements, &requirements.camera, 200, 0.1).unwrap();
+    let groups = design.groups(None);
+    let scale = |range_km| design.target_chance(&groups, range_km, 0.1).unwrap().0;
+    let (mut near, mut far) = (10.0, 1000.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (near + far);
+        if scale(middle) > 0.6 { near = middle } else { far = middle }
+    }
+    let rule = DetectionRule::Dn { low_dn: 46, high_dn: 67 };
+    let bench = TestBench { camera: &requirements.camera, rule: &rule, motion: &MOTION, seed: 3 };
+    let body = requirements.target.as_ref().unwrap();
+    let count = bench.target(body, None, &groups[0].aspects, near, 0.1, 200).unwrap();
+    // The background of the target's frames is not the median of the sky: a few electrons, 0.02 of the chance.
+    let (low, high) = clopper_pearson(count, 200, 0.999);
+    assert!((low - 0.02..high + 0.02).contains(&0.6), "{count} of 200 at {near} km");
+}
+
+#[test]
+fn the_built_in_example_tells_where_the_stars_are_lost_and_does_not_depend_on_threads() {
+    let bench = Bench::new();
+    let one = bench.boresight("visibility uasc-far-range --frames 10 --jobs 1 --json --out a");
+    let two = bench.boresight("visibility uasc-far-range --frames 10 --jobs 2 --json --out b");
+    // Days 4 and 5 cannot have both.
+    assert_eq!((one.status, two.status), (Some(1), Some(1)), "{}", one.stderr);
+    assert_eq!(one.json(), two.json());
+    check_same_files(&bench.tree("a"), &bench.tree("b"));
+    let report = bench.json("a/visibility.json");
+    assert_eq!(report, one.json());
+    // The run of `argon` has ten stars in half of its frames at 7.2 km (docs/visibility.md).
+    let lost_km = report["stars_lost"]["half_of_frames_km"].as_f64().unwrap();
+    assert!((6.2..8.2).contains(&lost_km), "{lost_km}");
+    let statuses: Vec<_> = report["requirements"].as_array().unwrap().iter().map(|r| &r["status"]).collect();
+    assert_eq!(statuses.iter().filter(|status| **status == "met").count(), statuses.len() - 1);
+    assert_eq!(bench.csv("a/sky.csv").len(), 10_000);
+    for name in ["detection", "limiting_magnitude", "exposure_window", "target_range"] {
+        assert!(!bench.csv(&format!("a/{name}.csv")).is_empty(), "{name}");
+    }
+    assert!(bench.read("a/visibility.md").contains("| REQ-STAR-01 |"));
+    bench.boresight("visibility uasc-far-range --frames 0 --out a").refused(&["not empty"]);
+}
+
+#[test]
+fn all_met_is_exit_status_0() {
+    let (report, status) = answer("sky.pointings = 200\nconfirm.frames = 0\n", "");
+    assert_eq!(status, Some(0), "{report:#}");
+    let bench = Bench::new();
+    assert!(bench.boresight("visibility --schema").done().json()["properties"]["requirements"].is_object());
+    assert!(bench.boresight("visibility --list").done().stdout.contains("uasc-far-range"));
+}
+
+#[test]
+fn mistakes_are_told_with_their_place() {
+    let bench = Bench::new();
+    let refused = |text: String, parts: &[&str]| {
+        bench.write("r.toml", text);
+        bench.boresight("visibility r.toml").refused(parts);
+    };
+    refused(file("n_stars = 3"), &["r.toml:", "n_stars"]);
+    refused(file("").replace("n_min = 10", "n_min = 0"), &["r.toml:3:", "n_min", "1 to 1000"]);
+    refused(file("").replace("\"argon\"", "\"argo\""), &["camera.scenario", "argon"]);
+    refused(file("").replace("camera.scenario = \"argon\"", "camera.preset = \"uasc-far-range\""), &["psf"]);
+    refused(file("camera.preset = \"hubble\""), &["camera.preset", "uasc-far-range"]);
+    refused(file("camera.focal_length_mm = -3.0"), &["camera.focal_length_mm", "0.01 to 1e6"]);
+    refused(file("").replace("high_dn = 67", "high_dn = 5000"), &["detection.high_dn", "4095"]);
+    refused(file("").replace("nominal_s = 0.1", "nominal_s = 3.0"), &["exposure.nominal_s"]);
+    refused(file("sky.when = { kind = \"epoch\", utc = \"noon\" }"), &["sky.when"]);
+    let demand = "[[requirements]]\nid = \"A\"\ntext = \"t\"\ndemand = ";
+    let target = "{ kind = \"target_detected\", from_km = 1.0, to_km = 2.0 }";
+    refused(file(&format!("{demand}{target}")), &["requirements[0].demand", "[target]"]);
+    let stars = "{ kind = \"stars\" }\n";
+    refused(file(&format!("{demand}{stars}{demand}{stars}")), &["requirements[1].id", "`A`"]);
+    let find = "find = { parameter = \"exposure_s\", from = 2.0, to = 1.0 }";
+    refused(file(&format!("{demand}{stars}{find}")), &["requirements[0].find.to"]);
+    bench.boresight("visibility nowhere.toml").refused(&["nowhere.toml", "uasc-far-range"]);
+    assert!(bench.boresight("visibility nowhere.toml --json").json()["error"].is_string());
+}
+
+/// The curve of a requirement file is the curve of its parts: backgrounds between two levels are interpolated.
+#[test]
+fn chances_between_levels_of_the_background_are_those_of_the_level() {
+    let model = CameraModel::new(&camera()).unwrap();
+    let rule = DetectionRule::Dn { low_dn: 46, high_dn: 67 };
+    let wide = Curves::new(&model, &rule, &MOTION, 0.25, [10.0, 400.0]);
+    for background in [10.0, 33.0, 150.0, 400.0] {
+        let own = Curves::new(&model, &rule, &MOTION, 0.25, [background, background]);
+        for ln_e_per_s in [7.5, 8.0, 8.3, 8.6] {
+            let (a, b) = (wide.chance(ln_e_per_s, background), own.chance(ln_e_per_s, background));
+            // A tenth of the variance from level to level.
+            assert!((a - b).abs() < 0.01, "{background}, {ln_e_per_s}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_demand_takes_the_probability_of_the_file_unless_it_has_its_own() {
+    let own = Demand::LimitingMagnitude { magnitude: 5.0, probability: Some(0.7), exposure_s: None };
+    let none = Demand::LimitingMagnitude { magnitude: 5.0, probability: None, exposure_s: None };
+    assert_eq!((own.probability(0.9), none.probability(0.9)), (0.7, 0.9));
+}
