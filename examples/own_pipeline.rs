@@ -4,13 +4,13 @@ use boresight::run::Prepared;
 use boresight::scenario::ScenarioSource;
 use boresight::table::{TableStyle, far_range};
 use contract::{
-    ContractError, Frame, Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, PixelPoint, Setup,
-    Solution, Telemetry,
+    ContractError, FarRange, Frame, Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, PixelPoint,
+    Setup, Solution, Telemetry,
 };
 
 struct Brightest;
 
-impl Pipeline for Brightest {
+impl Pipeline<FarRange> for Brightest {
     fn process(&mut self, frame: &Frame, _: &Telemetry) -> Outcome {
         let brightest = frame.dn().iter().enumerate().max_by_key(|(_, dn)| **dn);
         match brightest.filter(|(_, dn)| **dn > 0) {
@@ -27,12 +27,12 @@ impl Pipeline for Brightest {
 
 struct BrightestFactory;
 
-impl PipelineFactory for BrightestFactory {
+impl PipelineFactory<FarRange> for BrightestFactory {
     fn name(&self) -> String {
         "brightest".to_owned()
     }
 
-    fn build(&self, _: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
+    fn build(&self, _: &Setup) -> Result<Box<dyn Pipeline<FarRange>>, ContractError> {
         Ok(Box::new(Brightest))
     }
 }

@@ -1,44 +1,52 @@
 //! The one interface that outsiders implement.
 
-use crate::{
-    Body, Camera, CameraFrame, ContractError, Frame, ListedStar, Outcome, Readout, Rotation, Telemetry,
-};
+use std::fmt::Debug;
+
+use crate::ContractError;
+
+/// What the pipelines of a world receive and answer: a family of types, named by a marker such as [`crate::FarRange`] or
+/// [`crate::docking::Docking`].
+pub trait Interface: Sized + 'static {
+    /// What a pipeline knows before the first image.
+    type Setup: Clone + Debug + Send + Sync;
+    /// An image.
+    type Image: Clone + Debug + Send;
+    /// What is known of an image besides its pixels.
+    type Telemetry: Clone + Debug + Send;
+    /// A pipeline's whole answer to an image.
+    type Outcome: Clone + PartialEq + Debug + Send;
+
+    /// What an image is called, in messages and in the external protocol: `frame` or `field`.
+    const IMAGE: &'static str;
+
+    /// The image's number in its sequence.
+    fn number(image: &Self::Image) -> u64;
+
+    /// The answer of a pipeline that failed.
+    fn failed(reason: String) -> Self::Outcome;
+
+    /// Why the pipeline failed, if it did.
+    fn failure(outcome: &Self::Outcome) -> Option<&str>;
+}
 
 /// An image-processing pipeline under test.
 ///
-/// Built fresh for each sequence of frames, and given them in order; it may remember what it likes in between.
-/// Frames may be missing. It must answer every frame, and what it answers must hold no NaN: see
+/// Built fresh for each sequence of images, and given them in order; it may remember what it likes in between.
+/// Images may be missing. It must answer every image, and what it answers must hold no NaN: see
 /// [`crate::conformance`].
-pub trait Pipeline: Send {
-    /// Answers one frame.
-    fn process(&mut self, frame: &Frame, telemetry: &Telemetry) -> Outcome;
-}
-
-/// What a pipeline knows before the first frame.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Setup {
-    /// Nominal camera.
-    pub camera: Camera,
-    /// Nominal mounting of the camera, as calibrated on ground.
-    pub camera_from_body: Rotation<CameraFrame, Body>,
-    /// Bits of the analogue-digital converter.
-    pub bit_depth: u8,
-    /// Gain, bias, read noise and saturation as calibrated; `None` when they are not known.
-    pub readout: Option<Readout>,
-    /// Pixels up to this digital number arrive as 0, whatever they were; `None`: every pixel arrives as it was.
-    pub zero_suppression_dn: Option<u16>,
-    /// The uploaded star list, ordered by `id`.
-    pub stars: Vec<ListedStar>,
+pub trait Pipeline<I: Interface>: Send {
+    /// Answers one image.
+    fn process(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> I::Outcome;
 }
 
 /// Builds pipelines, one a sequence.
-pub trait PipelineFactory: Sync {
+pub trait PipelineFactory<I: Interface>: Sync {
     /// Name, for tables and logs.
     fn name(&self) -> String;
 
-    /// A fresh pipeline that has seen no frame.
+    /// A fresh pipeline that has seen no image.
     ///
     /// # Errors
     /// [`ContractError::CannotBuild`] when the setup or the pipeline's own configuration does not allow it.
-    fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline>, ContractError>;
+    fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError>;
 }

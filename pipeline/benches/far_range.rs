@@ -11,7 +11,7 @@ use std::cell::LazyCell;
 use std::hint::black_box;
 use std::time::Duration;
 
-use boresight_pipeline::far_range::{FarRange, FarRangeConfig};
+use boresight_pipeline::far_range::{FarRangeConfig, FarRangePipeline};
 use contract::{Camera, Frame, Pipeline, Rotation, Setup, Telemetry};
 use criterion::{BenchmarkId, Criterion, Throughput};
 use hifitime::{Epoch, Unit};
@@ -72,7 +72,7 @@ fn process(
     let start = Epoch::from_gregorian_utc_at_midnight(2012, 4, 23);
     let frames =
         LazyCell::new(|| (0..4).map(|number| frame(number, columns, rows, stars)).collect::<Vec<Frame>>());
-    let mut pipeline = FarRange::new(FarRangeConfig::default(), &setup(columns, rows)).unwrap();
+    let mut pipeline = FarRangePipeline::new(FarRangeConfig::default(), &setup(columns, rows)).unwrap();
     let mut number = 0_u64;
     let mut group = c.benchmark_group("pipeline");
     group.throughput(Throughput::Elements(1000 * kilopixels as u64));

@@ -3,19 +3,16 @@
 
 use std::sync::Arc;
 
-use contract::docking::{
-    DockingOutcome, DockingPipeline, DockingPipelineFactory, DockingSetup, Field, FieldTelemetry as OfField,
-    NoPose,
-};
-use contract::{ContractError, NoSolution, Outcome, Pipeline, PipelineFactory, Setup, Telemetry as OfFrame};
-use pipeline::external::{docking_protocol, protocol};
+use contract::docking::Docking;
+use contract::{ContractError, FarRange, Pipeline, PipelineFactory};
+use pipeline::external::Protocol;
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
 use crate::errors::refused;
 use crate::frame::{FieldTelemetry, Frame, Telemetry};
-use crate::scenario::{Ready, World, setup};
+use crate::scenario::{Ready, setup};
 use crate::wait::Ended;
 
 /// Longest reason of an exception, in characters: it stands in a table.
@@ -28,8 +25,6 @@ pub(crate) struct PythonPipeline {
     callable: Result<Py<PyAny>, String>,
     /// Turns what it returns into a line of the protocol.
     line: Py<PyAny>,
-    /// Columns and rows of the camera; docking answers have no place in the image.
-    size_px: (usize, usize),
     ended: Arc<Ended>,
 }
 
@@ -42,13 +37,7 @@ impl PythonPipeline {
         if !callable.is_callable() {
             return Err(refused_kind(&callable)?);
         }
-        let size_px = match &ready.world {
-            World::FarRange(prepared) => {
-                (prepared.scenario().camera.columns, prepared.scenario().camera.rows)
-            }
-            World::Docking(_) => (0, 0),
-        };
-        Self::of(given, Ok(callable.unbind()), size_px, ended)
+        Self::of(given, Ok(callable.unbind()), ended)
     }
 
     /// A pipeline for one case of many, of a callable that all share, or of a class, which is made with the case's setup. What a class
@@ -56,7 +45,6 @@ impl PythonPipeline {
     pub(crate) fn of_case<'py>(
         given: &Bound<'py, PyAny>,
         setup: impl FnOnce() -> PyResult<Bound<'py, PyAny>>,
-        size_px: (usize, usize),
         ended: &Arc<Ended>,
     ) -> PyResult<Self> {
         let made =
@@ -64,18 +52,17 @@ impl PythonPipeline {
         let callable =
             made.and_then(|made| if made.is_callable() { Ok(made) } else { Err(refused_kind(&made)?) });
         let callable = callable.map(Bound::unbind).map_err(|error| reason(given.py(), error, ended));
-        Self::of(given, callable, size_px, ended)
+        Self::of(given, callable, ended)
     }
 
     /// A pipeline of what was made of a callable or a class.
     fn of(
         given: &Bound<'_, PyAny>,
         callable: Result<Py<PyAny>, String>,
-        size_px: (usize, usize),
         ended: &Arc<Ended>,
     ) -> PyResult<Self> {
         let line = given.py().import("boresight._values")?.getattr("answer_line")?.unbind();
-        Ok(Self { name: name(given), callable, line, size_px, ended: Arc::clone(ended) })
+        Ok(Self { name: name(given), callable, line, ended: Arc::clone(ended) })
     }
 
     fn again(&self, py: Python<'_>) -> Self {
@@ -83,7 +70,6 @@ impl PythonPipeline {
             name: self.name.clone(),
             callable: self.callable.as_ref().map(|callable| callable.clone_ref(py)).map_err(Clone::clone),
             line: self.line.clone_ref(py),
-            size_px: self.size_px,
             ended: Arc::clone(&self.ended),
         }
     }
@@ -157,46 +143,59 @@ pub(crate) fn name(given: &Bound<'_, PyAny>) -> String {
     given.getattr("__name__").and_then(|name| name.extract()).unwrap_or_else(|_| "python".to_owned())
 }
 
-impl PipelineFactory for PythonPipeline {
+/// An interface whose images and telemetry are values in Python.
+pub(crate) trait PythonInterface: Protocol {
+    /// An image and its telemetry, as a callable takes them.
+    fn question(
+        py: Python<'_>,
+        image: &Self::Image,
+        telemetry: &Self::Telemetry,
+    ) -> PyResult<(Py<PyAny>, Py<PyAny>)>;
+}
+
+impl PythonInterface for FarRange {
+    fn question(
+        py: Python<'_>,
+        frame: &contract::Frame,
+        telemetry: &contract::Telemetry,
+    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+        let frame = Py::new(py, Frame::of(py, frame.clone())?)?.into_any();
+        Ok((frame, Py::new(py, Telemetry::of(telemetry))?.into_any()))
+    }
+}
+
+impl PythonInterface for Docking {
+    fn question(
+        py: Python<'_>,
+        field: &contract::docking::Field,
+        telemetry: &contract::docking::FieldTelemetry,
+    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+        let frame = Py::new(py, Frame::of_field(py, field.clone())?)?.into_any();
+        Ok((frame, Py::new(py, FieldTelemetry::of(telemetry))?.into_any()))
+    }
+}
+
+impl<I: PythonInterface> PipelineFactory<I> for PythonPipeline {
     fn name(&self) -> String {
         self.name.clone()
     }
 
-    fn build(&self, _: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
-        Ok(Box::new(Python::attach(|py| self.again(py))))
+    fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError> {
+        Ok(Box::new(Running::<I> { callable: Python::attach(|py| self.again(py)), setup: setup.clone() }))
     }
 }
 
-impl Pipeline for PythonPipeline {
-    fn process(&mut self, frame: &contract::Frame, telemetry: &OfFrame) -> Outcome {
-        let number = frame.number();
-        let answer = self.ask(("frame", number), |py| {
-            let frame = Py::new(py, Frame::of(py, frame.clone())?)?.into_any();
-            Ok((frame, Py::new(py, Telemetry::of(telemetry))?.into_any()))
-        });
-        let outcome = answer.and_then(|line| protocol::outcome(line.as_bytes(), number, self.size_px));
-        outcome.unwrap_or_else(|reason| Outcome::none(NoSolution::Failed(reason)))
-    }
+/// A callable at work on one sequence.
+pub(crate) struct Running<I: PythonInterface> {
+    pub(crate) callable: PythonPipeline,
+    pub(crate) setup: I::Setup,
 }
 
-impl DockingPipelineFactory for PythonPipeline {
-    fn name(&self) -> String {
-        self.name.clone()
-    }
-
-    fn build(&self, _: &DockingSetup) -> Result<Box<dyn DockingPipeline>, ContractError> {
-        Ok(Box::new(Python::attach(|py| self.again(py))))
-    }
-}
-
-impl DockingPipeline for PythonPipeline {
-    fn process(&mut self, field: &Field, telemetry: &OfField) -> DockingOutcome {
-        let number = field.number();
-        let answer = self.ask(("field", number), |py| {
-            let frame = Py::new(py, Frame::of_field(py, field.clone())?)?.into_any();
-            Ok((frame, Py::new(py, FieldTelemetry::of(telemetry))?.into_any()))
-        });
-        let outcome = answer.and_then(|line| docking_protocol::outcome(line.as_bytes(), number));
-        outcome.unwrap_or_else(|reason| DockingOutcome::none(NoPose::Failed(reason)))
+impl<I: PythonInterface> Pipeline<I> for Running<I> {
+    fn process(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> I::Outcome {
+        let number = I::number(image);
+        let answer = self.callable.ask((I::IMAGE, number), |py| I::question(py, image, telemetry));
+        let outcome = answer.and_then(|line| I::outcome(line.as_bytes(), number, &self.setup));
+        outcome.unwrap_or_else(I::failed)
     }
 }

@@ -9,8 +9,8 @@ use boresight::files::{Checksums, RunDirectory, read_csv_table, read_parquet_tab
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::{Expectation, FirstFailure, Flight};
 use boresight::scenario::{Scenario as Values, ScenarioSource};
-use contract::PipelineFactory;
-use contract::docking::DockingPipelineFactory;
+use contract::docking::Docking;
+use contract::{FarRange, PipelineFactory};
 use pipeline::external::DEFAULT_MEMORY_MB;
 use pyo3::prelude::*;
 use tempfile::TempDir;
@@ -192,7 +192,7 @@ pub(crate) fn run(
         // The pipeline first: while nothing has been written.
         match &ready.world {
             World::FarRange(prepared) => {
-                let factory: Box<dyn PipelineFactory> = match asked {
+                let factory: Box<dyn PipelineFactory<FarRange>> = match asked {
                     Asked::Word(choice) => choice.factory(&prepared.scenario().far_range, scratch.path())?,
                     Asked::Python(pipeline) => Box::new(pipeline),
                 };
@@ -202,7 +202,7 @@ pub(crate) fn run(
                 Ok((directory, temporary, ran.first_failure))
             }
             World::Docking(prepared) => {
-                let factory: Box<dyn DockingPipelineFactory> = match asked {
+                let factory: Box<dyn PipelineFactory<Docking>> = match asked {
                     Asked::Word(choice) => {
                         choice.docking_factory(&prepared.scenario().docking, scratch.path())?
                     }

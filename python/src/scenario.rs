@@ -11,7 +11,7 @@ use boresight::run_file::ScenarioFile;
 use boresight::scenario::{BUILT_IN, Scenario as Values, ScenarioSource};
 use boresight::study::{Study, value_at, with_overlay};
 use contract::docking::Digitiser;
-use pipeline::external::{docking_protocol, protocol};
+use pipeline::external::Protocol;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::Value;
@@ -223,8 +223,8 @@ impl Scenario {
 /// What a pipeline is told before the first frame, as a dictionary.
 pub(crate) fn setup<'py>(py: Python<'py>, ready: &Ready) -> PyResult<Bound<'py, PyAny>> {
     let line = match &ready.world {
-        World::FarRange(prepared) => protocol::greeting(&prepared.setup()),
-        World::Docking(prepared) => docking_protocol::greeting(prepared.setup()),
+        World::FarRange(prepared) => contract::FarRange::greeting(&prepared.setup()),
+        World::Docking(prepared) => contract::docking::Docking::greeting(prepared.setup()),
     };
     let line = line.map_err(BoresightError::new_err)?;
     json::text_to_python(py, &String::from_utf8_lossy(&line))

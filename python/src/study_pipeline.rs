@@ -6,16 +6,15 @@ use std::sync::Arc;
 use boresight::failure::Failure;
 use boresight::scenario::{Scenario, World};
 use boresight::study::{Study, StudyPipeline};
-use contract::docking::{DockingPipeline, DockingPipelineFactory, DockingSetup};
-use contract::{ContractError, Pipeline, PipelineFactory, Setup};
+use contract::docking::Docking;
+use contract::{ContractError, FarRange, Pipeline, PipelineFactory};
 use pipeline::docking::DockingConfig;
-use pipeline::external::{docking_protocol, protocol};
 use pipeline::far_range::FarRangeConfig;
 use pyo3::prelude::*;
 
 use crate::errors::BoresightError;
 use crate::json::text_to_python;
-use crate::python_pipeline::{PythonPipeline, check, name};
+use crate::python_pipeline::{PythonInterface, PythonPipeline, Running, check, name};
 use crate::wait::Ended;
 
 /// A callable of (frame, telemetry), or a class of them, of which every case has an instance of its own.
@@ -45,14 +44,13 @@ impl PythonStudyPipeline {
     fn of_case(
         &self,
         greeting: impl FnOnce() -> Result<Vec<u8>, String>,
-        size_px: (usize, usize),
     ) -> Result<PythonPipeline, ContractError> {
         let made = Python::attach(|py| {
             let setup = || {
                 let line = greeting().map_err(BoresightError::new_err)?;
                 text_to_python(py, &String::from_utf8_lossy(&line))
             };
-            PythonPipeline::of_case(self.given.bind(py), setup, size_px, &self.ended)
+            PythonPipeline::of_case(self.given.bind(py), setup, &self.ended)
         });
         made.map_err(|error| ContractError::CannotBuild {
             pipeline: self.name.clone(),
@@ -81,7 +79,7 @@ impl StudyPipeline for PythonStudyPipeline {
         )
     }
 
-    fn factory(&self, _: &FarRangeConfig, _: &Path) -> Result<Box<dyn PipelineFactory>, Failure> {
+    fn factory(&self, _: &FarRangeConfig, _: &Path) -> Result<Box<dyn PipelineFactory<FarRange>>, Failure> {
         Ok(Box::new(self.again()))
     }
 
@@ -89,28 +87,18 @@ impl StudyPipeline for PythonStudyPipeline {
         &self,
         _: &DockingConfig,
         _: &Path,
-    ) -> Result<Box<dyn DockingPipelineFactory>, Failure> {
+    ) -> Result<Box<dyn PipelineFactory<Docking>>, Failure> {
         Ok(Box::new(self.again()))
     }
 }
 
-impl PipelineFactory for PythonStudyPipeline {
+impl<I: PythonInterface> PipelineFactory<I> for PythonStudyPipeline {
     fn name(&self) -> String {
         self.name.clone()
     }
 
-    fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
-        let size_px = (setup.camera.columns, setup.camera.rows);
-        Ok(Box::new(self.of_case(|| protocol::greeting(setup), size_px)?))
-    }
-}
-
-impl DockingPipelineFactory for PythonStudyPipeline {
-    fn name(&self) -> String {
-        self.name.clone()
-    }
-
-    fn build(&self, setup: &DockingSetup) -> Result<Box<dyn DockingPipeline>, ContractError> {
-        Ok(Box::new(self.of_case(|| docking_protocol::greeting(setup), (0, 0))?))
+    fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError> {
+        let callable = self.of_case(|| I::greeting(setup))?;
+        Ok(Box::new(Running::<I> { callable, setup: setup.clone() }))
     }
 }

@@ -8,7 +8,7 @@ use contract::{
 use hifitime::Epoch;
 use nalgebra::{Matrix2x3, Matrix3, Matrix4, Vector3, Vector4};
 use pipeline::far_range::{
-    AberrationConfig, AttitudeConfig, CentroidConfig, FarRange, FarRangeConfig, StarWeights,
+    AberrationConfig, AttitudeConfig, CentroidConfig, FarRangeConfig, FarRangePipeline, StarWeights,
 };
 use sim::onboard::{RoiConfig, RoiExtractor, ScanOrder, downlink};
 use sim::optics::{Psf, PsfConfig, Stamp};
@@ -102,7 +102,7 @@ fn answer(
         body_from_icrs: Rotation::from_unit_quaternion(*truth.quaternion()),
         velocity_km_s: None,
     };
-    FarRange::new(config, &setup).unwrap().process(frame, &telemetry)
+    FarRangePipeline::new(config, &setup).unwrap().process(frame, &telemetry)
 }
 
 /// The centre of the only cluster within 2 px of a place.

@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use boresight::files::write_field;
+use boresight::files::{format_utc, write_field};
 use boresight::scenario::DOCKING;
-use contract::conformance::check_docking;
-use contract::docking::{DockingSetup, Field};
+use contract::conformance;
+use contract::docking::{Docking, DockingSetup, Field, FieldTelemetry};
 use pipeline::docking::{DockingConfig, DockingFactory};
-use pipeline::external::ExternalDockingFactory;
+use pipeline::external::ExternalFactory;
 use serde_json::Value;
 use sim::docking::{DockingSimulation, DockingSimulator};
 
@@ -67,7 +67,7 @@ fn setup() -> DockingSetup {
 #[test]
 fn the_built_in_pipeline_keeps_the_contract() {
     let factory = DockingFactory::new(DockingConfig::default()).unwrap();
-    check_docking(&factory, &setup()).unwrap();
+    conformance::check(&factory, &setup()).unwrap();
 }
 
 fn example() -> String {
@@ -77,9 +77,12 @@ fn example() -> String {
 #[test]
 fn the_example_of_a_program_keeps_the_contract() {
     let scratch = tempfile::tempdir().unwrap();
-    let write = |field: &Field, path: &Path| write_field(path, field).map_err(|error| error.to_string());
-    let factory = ExternalDockingFactory::new(example(), scratch.path().to_owned(), Arc::new(write));
-    check_docking(&factory, &setup()).unwrap();
+    let write = |field: &Field, _: &FieldTelemetry, path: &Path| {
+        write_field(path, field).map_err(|error| error.to_string())
+    };
+    let factory =
+        ExternalFactory::<Docking>::new(example(), scratch.path().to_owned(), Arc::new(write), format_utc);
+    conformance::check(&factory, &setup()).unwrap();
 }
 
 /// It says 10 m at each field; the camera is between 9.9 and 10.1 m in these, at the turn of the approach.

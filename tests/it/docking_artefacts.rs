@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use contract::Camera;
-use contract::docking::{Digitiser, DockingPipelineFactory, DockingSolution, MarkUse, NoPose};
+use contract::PipelineFactory;
+use contract::docking::{Digitiser, DockingSolution, MarkUse, NoPose};
 use pipeline::docking::{DockingConfig, DockingFactory};
 use sim::docking::{
     CameraConfig, DockingSimulation, DockingSimulator, FloodlightConfig, GlintConfig, LensConfig,

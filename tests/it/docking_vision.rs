@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use boresight::scenario::DOCKING;
-use contract::docking::{Digitiser, DockingPipelineFactory, DockingSolution, NoPose};
+use contract::PipelineFactory;
+use contract::docking::{Digitiser, DockingSolution, NoPose};
 use pipeline::docking::{DockingConfig, DockingFactory};
 use sim::docking::{DockingSimulation, DockingSimulator};
 

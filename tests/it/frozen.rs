@@ -47,11 +47,13 @@ fn results_have_their_frozen_bits() {
     for name in ["far-range.toml", "docking.toml"] {
         bench.write(name, fs::read(golden(name)).unwrap());
     }
-    let commands: Commands =
-        toml::from_str(&fs::read_to_string(golden("commands.toml")).unwrap()).unwrap();
+    let commands: Commands = toml::from_str(&fs::read_to_string(golden("commands.toml")).unwrap()).unwrap();
     let mut frozen = frozen();
     let all: BTreeSet<&str> = commands.command.iter().map(|command| command.words.as_str()).collect();
-    assert!(frozen.keys().all(|words| all.contains(words.as_str())), "hashes of a command that is not listed");
+    assert!(
+        frozen.keys().all(|words| all.contains(words.as_str())),
+        "hashes of a command that is not listed"
+    );
     let (mut seen, mut changed, mut count) = (BTreeSet::new(), Vec::new(), 0);
     seen.extend(bench.tree(".").into_keys());
     for Command { words, long } in &commands.command {
@@ -60,17 +62,16 @@ fn results_have_their_frozen_bits() {
             continue;
         }
         let answer = bench.boresight(words);
-        let mut results = vec![(
-            format!("{} boresight {words}", answer.status.unwrap()),
-            sha256_hex(&answer.stdout),
-        )];
+        let mut results =
+            vec![(format!("{} boresight {words}", answer.status.unwrap()), sha256_hex(&answer.stdout))];
         for (path, bytes) in bench.tree(".") {
             if path.file_name().unwrap() != "report.html" && seen.insert(path.clone()) {
                 results.push((path.to_string_lossy().into_owned(), sha256_hex(bytes)));
             }
         }
         count += results.len();
-        changed.extend(results.into_iter().filter(|(name, hash)| expected.remove(name).as_ref() != Some(hash)));
+        changed
+            .extend(results.into_iter().filter(|(name, hash)| expected.remove(name).as_ref() != Some(hash)));
         changed.extend(expected);
     }
     let names: Vec<&String> = changed.iter().map(|(name, _)| name).collect();

@@ -6,17 +6,17 @@
 mod digitiser;
 mod features;
 mod field;
+mod interface;
 mod motion;
 mod outcome;
-mod pipeline;
 mod pose;
 mod target;
 
 pub use digitiser::Digitiser;
 pub use features::{Circle, Cross, Features, Mark, MarkUse};
 pub use field::{Field, FieldTelemetry, Lines};
+pub use interface::{Docking, DockingSetup};
 pub use motion::{Motion, MotionReport};
 pub use outcome::{DockingOutcome, DockingSolution, FieldMeasurement, NoPose};
-pub use pipeline::{DockingPipeline, DockingPipelineFactory, DockingSetup};
 pub use pose::{Pose, PoseEstimate};
 pub use target::{Outline, StandOffCross, TargetModel};

@@ -2,8 +2,8 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use contract::PipelineFactory;
-use contract::docking::{Digitiser, DockingPipelineFactory};
+use contract::docking::{Digitiser, Docking};
+use contract::{FarRange, PipelineFactory};
 use files::docking::{FeatureRow, read_field_measurements, read_motion};
 use files::{Checksums, Failure, FrameCluster, Row, TableReader, read_field_telemetry, read_measurements};
 use run::Prepared;
@@ -20,9 +20,9 @@ use super::session::Session;
 /// What is monitored.
 pub enum Feed {
     /// Star fields with a distant spacecraft.
-    FarRange(Box<Prepared>, Measurements<Box<dyn PipelineFactory>>),
+    FarRange(Box<Prepared>, Measurements<Box<dyn PipelineFactory<FarRange>>>),
     /// The approach to a docking target.
-    Docking(Box<PreparedDocking>, Measurements<Box<dyn DockingPipelineFactory>>),
+    Docking(Box<PreparedDocking>, Measurements<Box<dyn PipelineFactory<Docking>>>),
 }
 
 /// Who measures.

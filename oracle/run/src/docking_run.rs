@@ -7,10 +7,8 @@
 use std::ops::Range;
 use std::path::Path;
 
-use contract::Camera;
-use contract::docking::{
-    Digitiser, DockingOutcome, DockingPipelineFactory, DockingSetup, Field, FieldTelemetry,
-};
+use contract::docking::{Digitiser, Docking, DockingOutcome, DockingSetup, Field, FieldTelemetry};
+use contract::{Camera, PipelineFactory};
 use files::docking::{SetupFile, read_field_measurements, read_motion, truth_as_filed};
 use files::{Failure, FieldSource, PartialFiles, RunDirectory, TableReader, Y4mWriter};
 use scenario::run_file::RunFile;
@@ -158,7 +156,7 @@ impl PreparedDocking {
         &self,
         directory: &RunDirectory,
         flight: &DockingFlight,
-        factory: &dyn DockingPipelineFactory,
+        factory: &dyn PipelineFactory<Docking>,
         go_on: impl Fn() -> Result<(), Failure>,
     ) -> Result<DockingRan, Failure> {
         let setup = &self.setup;
@@ -191,7 +189,7 @@ impl PreparedDocking {
     pub fn follow(
         &self,
         flight: &DockingFlight,
-        factory: &dyn DockingPipelineFactory,
+        factory: &dyn PipelineFactory<Docking>,
         mut take: impl FnMut(ProcessedField) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let mut pipeline = factory.build(&self.setup)?;
@@ -214,7 +212,7 @@ impl PreparedDocking {
     pub fn score(
         &self,
         fields: Range<u64>,
-        factory: &dyn DockingPipelineFactory,
+        factory: &dyn PipelineFactory<Docking>,
     ) -> Result<(DockingScorer, Option<FirstFailure>), Failure> {
         let mut pipeline = factory.build(&self.setup)?;
         let mut first_failure = None;
@@ -259,7 +257,7 @@ impl PreparedDocking {
 pub fn process_fields(
     fields: FieldSource,
     setup: &DockingSetup,
-    factory: &dyn DockingPipelineFactory,
+    factory: &dyn PipelineFactory<Docking>,
     measurements: &Path,
     done: impl Fn(),
 ) -> Result<Processed, Failure> {
@@ -288,7 +286,7 @@ pub fn process_fields(
 pub fn stream_fields(
     fields: FieldSource,
     setup: &DockingSetup,
-    factory: &dyn DockingPipelineFactory,
+    factory: &dyn PipelineFactory<Docking>,
 ) -> Result<Processed, Failure> {
     let mut pipeline = factory.build(setup)?;
     let mut answers = Answers::stream()?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
 use contract::docking::{DockingOutcome, DockingSolution, NoPose};
-use contract::{Frame, NoSolution, Outcome, Pipeline, PipelineFactory, Setup, Solution};
+use contract::{FarRange, Frame, NoSolution, Outcome, Pipeline, PipelineFactory, Setup, Solution};
 use files::{
     Dataset, Expected, Failure, FileError, FrameCluster, ImageFormat, MeasurementWriter, PartialFiles,
     RunDirectory, StarRow, TableReader, TableWriter, WholeFile, read_measurements, write_expected,
@@ -145,7 +145,7 @@ impl Prepared {
         &self,
         directory: &RunDirectory,
         flight: &Flight,
-        factory: &dyn PipelineFactory,
+        factory: &dyn PipelineFactory<FarRange>,
         go_on: impl Fn() -> Result<(), Failure>,
     ) -> Result<Ran, Failure> {
         let mut dataset = self.dataset(directory, flight)?;
@@ -188,7 +188,7 @@ impl Prepared {
         &self,
         frames: Range<u64>,
         jobs: usize,
-        factory: &dyn PipelineFactory,
+        factory: &dyn PipelineFactory<FarRange>,
         mut take: impl FnMut(sim::Exposure, Outcome) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let mut pipeline = factory.build(&self.setup())?;
@@ -203,7 +203,7 @@ impl Prepared {
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
-    pub fn score(&self, frames: Range<u64>, factory: &dyn PipelineFactory) -> Result<Ran, Failure> {
+    pub fn score(&self, frames: Range<u64>, factory: &dyn PipelineFactory<FarRange>) -> Result<Ran, Failure> {
         let mut pipeline = factory.build(&self.setup())?;
         let mut first_failure = None;
         let unproject = |point| self.simulator.projection().unproject(point);
@@ -265,7 +265,7 @@ impl Prepared {
 pub fn process(
     dataset: &Dataset,
     setup: &Setup,
-    factory: &dyn PipelineFactory,
+    factory: &dyn PipelineFactory<FarRange>,
     measurements: &Path,
     clusters: &Path,
     done: impl Fn(),
@@ -378,7 +378,7 @@ fn unscorable(error: score::ScoreError) -> Failure {
 /// The pipeline of a run.
 enum RunningPipeline {
     /// It answers by itself.
-    Own(Box<dyn Pipeline>),
+    Own(Box<dyn Pipeline<FarRange>>),
     /// It is told the truth for one stage.
     Injected(Box<InjectedPipeline>),
 }

@@ -1,7 +1,7 @@
 //! An error budget: the truth in the place of one stage's result, to see what that stage costs.
 use contract::{Direction, Icrs, ListedStar, Outcome, PixelPoint, Setup};
 use files::Failure;
-use pipeline::far_range::{FarRange, FarRangeConfig, Identity, Overrides};
+use pipeline::far_range::{FarRangeConfig, FarRangePipeline, Identity, Overrides};
 use scenario::Stage;
 use score::belonging_to;
 use sim::Exposure;
@@ -11,7 +11,7 @@ use sim::truth::{ObjectKind, Observer};
 #[derive(Debug)]
 pub struct InjectedPipeline {
     stage: Stage,
-    pipeline: FarRange,
+    pipeline: FarRangePipeline,
 }
 
 impl InjectedPipeline {
@@ -20,8 +20,8 @@ impl InjectedPipeline {
     /// # Errors
     /// [`Failure::Usage`] when the configuration or the setup does not allow the pipeline.
     pub fn new(stage: Stage, config: &FarRangeConfig, setup: &Setup) -> Result<Self, Failure> {
-        let pipeline =
-            FarRange::new(config.clone(), setup).map_err(|error| Failure::Usage(error.to_string()))?;
+        let pipeline = FarRangePipeline::new(config.clone(), setup)
+            .map_err(|error| Failure::Usage(error.to_string()))?;
         Ok(Self { stage, pipeline })
     }
 

@@ -2,11 +2,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use contract::PipelineFactory;
-use contract::docking::{DockingPipelineFactory, Field};
+use contract::docking::{Docking, Field, FieldTelemetry};
+use contract::{FarRange, PipelineFactory};
 use files::{Failure, FrameHeader, ImageFormat, format_utc, toml_file, write_field, write_frame};
 use pipeline::docking::{DockingConfig, DockingFactory};
-use pipeline::external::{ExternalDockingFactory, ExternalFactory};
+use pipeline::external::ExternalFactory;
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
 use scenario::{Scenario, World};
 use sha2::{Digest, Sha256};
@@ -86,7 +86,7 @@ impl PipelineChoice {
         &self,
         far_range: &FarRangeConfig,
         scratch: &Path,
-    ) -> Result<Box<dyn PipelineFactory>, Failure> {
+    ) -> Result<Box<dyn PipelineFactory<FarRange>>, Failure> {
         let Some(command) = self.command(World::FarRange)? else {
             let factory = FarRangeFactory::new(far_range.clone());
             return Ok(Box::new(factory.map_err(|error| Failure::Usage(error.to_string()))?));
@@ -108,13 +108,17 @@ impl PipelineChoice {
         &self,
         docking: &DockingConfig,
         scratch: &Path,
-    ) -> Result<Box<dyn DockingPipelineFactory>, Failure> {
+    ) -> Result<Box<dyn PipelineFactory<Docking>>, Failure> {
         let Some(command) = self.command(World::Docking)? else {
             let factory = DockingFactory::new(docking.clone());
             return Ok(Box::new(factory.map_err(|error| Failure::Usage(error.to_string()))?));
         };
-        let mut factory =
-            ExternalDockingFactory::new(command, scratch.to_path_buf(), Arc::new(write_field_image));
+        let mut factory = ExternalFactory::<Docking>::new(
+            command,
+            scratch.to_path_buf(),
+            Arc::new(write_field_image),
+            format_utc,
+        );
         factory.timeout_s = self.timeout_s;
         factory.memory_mb = self.memory_mb;
         factory.check()?;
@@ -142,7 +146,7 @@ impl PipelineChoice {
 }
 
 /// Writes a field for a program: PNG, which tells nothing but the pixels.
-fn write_field_image(field: &Field, path: &Path) -> Result<(), String> {
+fn write_field_image(field: &Field, _: &FieldTelemetry, path: &Path) -> Result<(), String> {
     write_field(path, field).map_err(|error| error.to_string())
 }
 

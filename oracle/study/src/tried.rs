@@ -1,8 +1,8 @@
 //! The pipeline that a study tries.
 use std::path::Path;
 
-use contract::PipelineFactory;
-use contract::docking::DockingPipelineFactory;
+use contract::docking::Docking;
+use contract::{FarRange, PipelineFactory};
 use files::Failure;
 use pipeline::docking::DockingConfig;
 use pipeline::far_range::FarRangeConfig;
@@ -36,7 +36,7 @@ pub trait StudyPipeline: Sync {
         &self,
         far_range: &FarRangeConfig,
         scratch: &Path,
-    ) -> Result<Box<dyn PipelineFactory>, Failure>;
+    ) -> Result<Box<dyn PipelineFactory<FarRange>>, Failure>;
 
     /// The same for a case of docking.
     ///
@@ -46,7 +46,7 @@ pub trait StudyPipeline: Sync {
         &self,
         docking: &DockingConfig,
         scratch: &Path,
-    ) -> Result<Box<dyn DockingPipelineFactory>, Failure>;
+    ) -> Result<Box<dyn PipelineFactory<Docking>>, Failure>;
 }
 
 impl StudyPipeline for PipelineChoice {
@@ -71,7 +71,7 @@ impl StudyPipeline for PipelineChoice {
         &self,
         far_range: &FarRangeConfig,
         scratch: &Path,
-    ) -> Result<Box<dyn PipelineFactory>, Failure> {
+    ) -> Result<Box<dyn PipelineFactory<FarRange>>, Failure> {
         PipelineChoice::factory(self, far_range, scratch)
     }
 
@@ -79,7 +79,7 @@ impl StudyPipeline for PipelineChoice {
         &self,
         docking: &DockingConfig,
         scratch: &Path,
-    ) -> Result<Box<dyn DockingPipelineFactory>, Failure> {
+    ) -> Result<Box<dyn PipelineFactory<Docking>>, Failure> {
         PipelineChoice::docking_factory(self, docking, scratch)
     }
 }

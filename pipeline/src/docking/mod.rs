@@ -38,5 +38,5 @@ mod votes;
 pub use config::DockingConfig;
 pub use edges::EdgeConfig;
 pub use histogram::{AutoContrastConfig, AutoContrastMode};
-pub use pipeline::{Docking, DockingFactory};
+pub use pipeline::{DockingFactory, DockingPipeline};
 pub use region::{Rectangle, RegionConfig};

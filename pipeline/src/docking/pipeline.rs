@@ -1,10 +1,9 @@
 //! The steps tied together: a field in, pose and motion out.
 
-use contract::ContractError;
 use contract::docking::{
-    DockingOutcome, DockingPipeline, DockingPipelineFactory, DockingSetup, DockingSolution, Field,
-    FieldTelemetry, MotionReport, PoseEstimate,
+    Docking, DockingOutcome, DockingSetup, DockingSolution, Field, FieldTelemetry, MotionReport, PoseEstimate,
 };
+use contract::{ContractError, Pipeline, PipelineFactory};
 
 use super::config::DockingConfig;
 use super::histogram::Histogram;
@@ -31,13 +30,13 @@ impl DockingFactory {
     }
 }
 
-impl DockingPipelineFactory for DockingFactory {
+impl PipelineFactory<Docking> for DockingFactory {
     fn name(&self) -> String {
         "docking".to_owned()
     }
 
-    fn build(&self, setup: &DockingSetup) -> Result<Box<dyn DockingPipeline>, ContractError> {
-        let docking = Docking::new(self.config.clone(), setup).map_err(|error| {
+    fn build(&self, setup: &DockingSetup) -> Result<Box<dyn Pipeline<Docking>>, ContractError> {
+        let docking = DockingPipeline::new(self.config.clone(), setup).map_err(|error| {
             ContractError::CannotBuild { pipeline: self.name(), reason: error.to_string() }
         })?;
         Ok(Box::new(docking))
@@ -46,7 +45,7 @@ impl DockingPipelineFactory for DockingFactory {
 
 /// The docking method on a sequence of fields.
 #[derive(Debug)]
-pub struct Docking {
+pub struct DockingPipeline {
     config: DockingConfig,
     target: PaperTarget,
     observer: Observer,
@@ -64,7 +63,7 @@ struct Portion {
     last_time_s: Option<f64>,
 }
 
-impl Docking {
+impl DockingPipeline {
     /// A pipeline that has seen no field.
     ///
     /// # Errors
@@ -116,7 +115,7 @@ impl Docking {
     }
 }
 
-impl DockingPipeline for Docking {
+impl Pipeline<Docking> for DockingPipeline {
     fn process(&mut self, field: &Field, telemetry: &FieldTelemetry) -> DockingOutcome {
         let view = View::new(field);
         let Observed { solution, paper, features, region } = self.observer.observe(field, &view, telemetry);
@@ -137,8 +136,8 @@ mod tests {
     use contract::docking::{Lines, MarkUse, NoPose};
     use nalgebra::Vector2;
 
-    fn docking() -> Docking {
-        Docking::new(DockingConfig::default(), &synthetic::setup()).unwrap()
+    fn docking() -> DockingPipeline {
+        DockingPipeline::new(DockingConfig::default(), &synthetic::setup()).unwrap()
     }
 
     fn answer(field: &Field) -> DockingOutcome {

@@ -28,13 +28,14 @@ use std::path::Path;
 
 use contract::Camera;
 use contract::docking::{
-    Digitiser, DockingOutcome, DockingSetup, DockingSolution, Features, Field, FieldMeasurement,
+    Digitiser, Docking, DockingOutcome, DockingSetup, DockingSolution, Features, Field, FieldMeasurement,
     FieldTelemetry, NoPose, Pose, PoseEstimate, TargetModel,
 };
 use nalgebra::{Matrix6, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
 
-use super::protocol::{VERSION, line, parse, shortened};
+use super::protocol::{VERSION, line, parse, shortened, utf8};
+use super::{Protocol, WriteTime};
 
 #[derive(Serialize)]
 struct Greeting<'a> {
@@ -71,32 +72,39 @@ struct Answer {
     brightness: Option<f64>,
 }
 
-/// The greeting line.
-///
-/// # Errors
-/// The reason why there is none.
-pub fn greeting(setup: &DockingSetup) -> Result<Vec<u8>, String> {
-    line(&Greeting {
-        boresight_pipeline: VERSION,
-        world: "docking",
-        cameras: &setup.cameras,
-        bit_depth: setup.bit_depth,
-        target: &setup.target,
-    })
-}
+impl Protocol for Docking {
+    const EXTENSION: &'static str = "png";
 
-/// The line of a field.
-pub(super) fn request(field: &Field, telemetry: &FieldTelemetry, image: &Path) -> Result<Vec<u8>, String> {
-    let image = image.to_str().ok_or_else(|| format!("the path {} is not UTF-8", image.display()))?;
-    line(&Request {
-        field: field.number(),
-        image,
-        lines: field.lines().code(),
-        time_s: telemetry.time_s,
-        camera: telemetry.camera,
-        contrast: telemetry.digitiser.contrast,
-        brightness: telemetry.digitiser.brightness,
-    })
+    fn greeting(setup: &DockingSetup) -> Result<Vec<u8>, String> {
+        line(&Greeting {
+            boresight_pipeline: VERSION,
+            world: "docking",
+            cameras: &setup.cameras,
+            bit_depth: setup.bit_depth,
+            target: &setup.target,
+        })
+    }
+
+    fn request(
+        field: &Field,
+        telemetry: &FieldTelemetry,
+        _: WriteTime,
+        path: &Path,
+    ) -> Result<Vec<u8>, String> {
+        line(&Request {
+            field: field.number(),
+            image: utf8(path)?,
+            lines: field.lines().code(),
+            time_s: telemetry.time_s,
+            camera: telemetry.camera,
+            contrast: telemetry.digitiser.contrast,
+            brightness: telemetry.digitiser.brightness,
+        })
+    }
+
+    fn outcome(answer: &[u8], number: u64, _: &DockingSetup) -> Result<DockingOutcome, String> {
+        outcome(answer, number)
+    }
 }
 
 /// The outcome that an answer to field `number` says.

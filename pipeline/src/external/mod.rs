@@ -12,13 +12,11 @@
 //!
 //! There is no shell: the command is split into words by the rules of POSIX quoting, and run.
 
-mod docking;
 pub mod docking_protocol;
 mod group;
 mod process;
 pub mod protocol;
 
-pub use docking::{ExternalDockingFactory, WriteField};
 pub use group::end_all;
 
 use std::fmt;
@@ -29,13 +27,43 @@ use std::time::Duration;
 
 use hifitime::Epoch;
 
-use contract::{ContractError, Frame, NoSolution, Outcome, Pipeline, PipelineFactory, Setup, Telemetry};
+use contract::{ContractError, Interface, Pipeline, PipelineFactory};
 
 use process::{Fault, Process};
 
-/// Writes the image of a frame as FITS (16-bit, BZERO 32768) at a path that does not exist yet; the error is a text
+/// What an external pipeline of an interface is told and answers, line by line.
+pub trait Protocol: Interface {
+    /// Extension of the images' files.
+    const EXTENSION: &'static str;
+
+    /// The greeting line.
+    ///
+    /// # Errors
+    /// The reason why there is none.
+    fn greeting(setup: &Self::Setup) -> Result<Vec<u8>, String>;
+
+    /// The line of an image that lies at `path`.
+    ///
+    /// # Errors
+    /// The reason why there is none.
+    fn request(
+        image: &Self::Image,
+        telemetry: &Self::Telemetry,
+        write_time: WriteTime,
+        path: &Path,
+    ) -> Result<Vec<u8>, String>;
+
+    /// The outcome that an answer to the image of a number says.
+    ///
+    /// # Errors
+    /// Why the answer cannot be used.
+    fn outcome(answer: &[u8], number: u64, setup: &Self::Setup) -> Result<Self::Outcome, String>;
+}
+
+/// Writes an image (far range: FITS of 16 bits, BZERO 32768; docking: grey PNG) at a path that does not exist yet; the error is a text
 /// for the outcome.
-pub type WriteImage = dyn Fn(&Frame, &Telemetry, &Path) -> Result<(), String> + Send + Sync;
+pub type WriteImage<I> =
+    dyn Fn(&<I as Interface>::Image, &<I as Interface>::Telemetry, &Path) -> Result<(), String> + Send + Sync;
 
 /// Writes a time as UTC in ISO 8601 with `Z`, as the caller's files have it: leap seconds are its business.
 pub type WriteTime = fn(Epoch) -> String;
@@ -44,8 +72,7 @@ pub type WriteTime = fn(Epoch) -> String;
 pub const DEFAULT_MEMORY_MB: u64 = 4000;
 
 /// Builds pipelines that are processes, one process a sequence.
-#[derive(Clone)]
-pub struct ExternalFactory {
+pub struct ExternalFactory<I: Protocol> {
     /// The command, words quoted as in a POSIX shell; no shell runs it.
     pub command: String,
     /// Longest time from start to greeting, s, above 0 to 1e6.
@@ -57,17 +84,17 @@ pub struct ExternalFactory {
     /// An existing directory for images; each is removed after its answer.
     pub scratch_dir: PathBuf,
     /// Writes an image.
-    pub write_image: Arc<WriteImage>,
+    pub write_image: Arc<WriteImage<I>>,
     /// Writes a time.
     pub write_time: WriteTime,
 }
 
-impl ExternalFactory {
+impl<I: Protocol> ExternalFactory<I> {
     /// A factory with 30 s to start, 10 s a frame and 4 GB.
     pub fn new(
         command: impl Into<String>,
         scratch_dir: PathBuf,
-        write_image: Arc<WriteImage>,
+        write_image: Arc<WriteImage<I>>,
         write_time: WriteTime,
     ) -> Self {
         let command = command.into();
@@ -89,7 +116,7 @@ impl ExternalFactory {
     }
 }
 
-impl fmt::Debug for ExternalFactory {
+impl<I: Protocol> fmt::Debug for ExternalFactory<I> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("ExternalFactory")
             .field("command", &self.command)
@@ -184,20 +211,20 @@ fn name(command: &str) -> String {
     format!("exec:{command}")
 }
 
-impl PipelineFactory for ExternalFactory {
+impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
     fn name(&self) -> String {
         name(&self.command)
     }
 
     /// Starts the process and greets it. A process that does not start or greets wrongly gives a pipeline whose every
     /// answer says so: only a command or a limit that cannot be meant is refused.
-    fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
+    fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError> {
         let plan = self.plan()?;
-        Ok(Box::new(External {
-            state: plan.start(protocol::greeting(setup)),
-            size_px: (setup.camera.columns, setup.camera.rows),
-            frame_limit: plan.frame_limit,
-            images: Images::new(&self.scratch_dir, "fits"),
+        Ok(Box::new(External::<I> {
+            state: plan.start(I::greeting(setup)),
+            setup: setup.clone(),
+            limit: plan.frame_limit,
+            images: Images::new(&self.scratch_dir, I::EXTENSION),
             write_image: Arc::clone(&self.write_image),
             write_time: self.write_time,
         }))
@@ -205,12 +232,12 @@ impl PipelineFactory for ExternalFactory {
 }
 
 /// One sequence with one process.
-struct External {
+struct External<I: Protocol> {
     state: State,
-    size_px: (usize, usize),
-    frame_limit: Duration,
+    setup: I::Setup,
+    limit: Duration,
     images: Images,
-    write_image: Arc<WriteImage>,
+    write_image: Arc<WriteImage<I>>,
     write_time: WriteTime,
 }
 
@@ -220,29 +247,27 @@ enum State {
     Dead(String),
 }
 
-impl Pipeline for External {
-    fn process(&mut self, frame: &Frame, telemetry: &Telemetry) -> Outcome {
-        match self.answer(frame, telemetry) {
-            Ok(outcome) => outcome,
-            Err(reason) => Outcome::none(NoSolution::Failed(reason)),
-        }
+impl<I: Protocol> Pipeline<I> for External<I> {
+    fn process(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> I::Outcome {
+        self.answer(image, telemetry).unwrap_or_else(I::failed)
     }
 }
 
-impl External {
-    fn answer(&mut self, frame: &Frame, telemetry: &Telemetry) -> Result<Outcome, String> {
+impl<I: Protocol> External<I> {
+    fn answer(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> Result<I::Outcome, String> {
         let process = match &mut self.state {
             State::Running(process) => process,
             State::Dead(reason) => return Err(reason.clone()),
         };
-        let image = self.images.place(frame.number());
-        (self.write_image)(frame, telemetry, &image.path)
+        let number = I::number(image);
+        let file = self.images.place(number);
+        (self.write_image)(image, telemetry, &file.path)
             .map_err(|error| format!("the image cannot be written: {error}"))?;
-        let request = protocol::request(frame, telemetry, (self.write_time)(telemetry.time), &image.path)?;
-        match process.exchange(request, self.frame_limit) {
-            Ok(line) => protocol::outcome(&line, frame.number(), self.size_px),
+        let request = I::request(image, telemetry, self.write_time, &file.path)?;
+        match process.exchange(request, self.limit) {
+            Ok(line) => I::outcome(&line, number, &self.setup),
             Err(fault) => {
-                let reason = format!("at frame {}, {}", frame.number(), process.end(fault));
+                let reason = format!("at {} {number}, {}", I::IMAGE, process.end(fault));
                 self.state = State::Dead(reason.clone());
                 Err(reason)
             }

@@ -31,11 +31,13 @@
 use std::path::Path;
 
 use contract::{
-    Camera, Direction, Frame, Measurement, NoSolution, Outcome, PixelPoint, Rotation, Setup, Solution,
-    Telemetry,
+    Camera, Direction, FarRange, Frame, Measurement, NoSolution, Outcome, PixelPoint, Rotation, Setup,
+    Solution, Telemetry,
 };
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
+
+use super::{Protocol, WriteTime};
 
 /// Version of the protocol, first in every greeting.
 pub const VERSION: u32 = 1;
@@ -97,26 +99,6 @@ struct Answer {
     n_stars: Option<u32>,
 }
 
-/// The greeting line.
-///
-/// # Errors
-/// The reason why there is none.
-pub fn greeting(setup: &Setup) -> Result<Vec<u8>, String> {
-    let star = |star: &contract::ListedStar| Star {
-        id: star.id,
-        icrs: (*star.direction.vector()).into(),
-        magnitude: star.magnitude,
-    };
-    line(&Greeting {
-        boresight_pipeline: VERSION,
-        camera: &setup.camera,
-        q_cam_sc: setup.camera_from_body.wxyz(),
-        bit_depth: setup.bit_depth,
-        zero_suppression_dn: setup.zero_suppression_dn,
-        stars: setup.stars.iter().map(star).collect(),
-    })
-}
-
 /// Checks the answer to the greeting.
 ///
 /// # Errors
@@ -130,27 +112,50 @@ pub fn check_greeting(answer: &[u8]) -> Result<(), String> {
     }
 }
 
-/// The line of a frame.
-pub(super) fn request(
-    frame: &Frame,
-    telemetry: &Telemetry,
-    time_utc: String,
-    image: &Path,
-) -> Result<Vec<u8>, String> {
-    let image = image.to_str().ok_or_else(|| format!("the path {} is not UTF-8", image.display()))?;
-    let windows =
-        frame.windows().map(|windows| windows.iter().map(|w| [w.x, w.y, w.columns, w.rows]).collect());
-    line(&Request {
-        frame: frame.number(),
-        image,
-        windows,
-        telemetry: TelemetryLine {
-            time_utc,
-            exposure_s: telemetry.exposure_s,
-            q_sc_j2000: telemetry.body_from_icrs.wxyz(),
-            v_orbital_j2000_km_s: telemetry.velocity_km_s.map(Into::into),
-        },
-    })
+impl Protocol for FarRange {
+    const EXTENSION: &'static str = "fits";
+
+    fn greeting(setup: &Setup) -> Result<Vec<u8>, String> {
+        let star = |star: &contract::ListedStar| Star {
+            id: star.id,
+            icrs: (*star.direction.vector()).into(),
+            magnitude: star.magnitude,
+        };
+        line(&Greeting {
+            boresight_pipeline: VERSION,
+            camera: &setup.camera,
+            q_cam_sc: setup.camera_from_body.wxyz(),
+            bit_depth: setup.bit_depth,
+            zero_suppression_dn: setup.zero_suppression_dn,
+            stars: setup.stars.iter().map(star).collect(),
+        })
+    }
+
+    fn request(
+        frame: &Frame,
+        telemetry: &Telemetry,
+        write_time: WriteTime,
+        path: &Path,
+    ) -> Result<Vec<u8>, String> {
+        let image = utf8(path)?;
+        let windows =
+            frame.windows().map(|windows| windows.iter().map(|w| [w.x, w.y, w.columns, w.rows]).collect());
+        line(&Request {
+            frame: frame.number(),
+            image,
+            windows,
+            telemetry: TelemetryLine {
+                time_utc: write_time(telemetry.time),
+                exposure_s: telemetry.exposure_s,
+                q_sc_j2000: telemetry.body_from_icrs.wxyz(),
+                v_orbital_j2000_km_s: telemetry.velocity_km_s.map(Into::into),
+            },
+        })
+    }
+
+    fn outcome(answer: &[u8], number: u64, setup: &Setup) -> Result<Outcome, String> {
+        outcome(answer, number, (setup.camera.columns, setup.camera.rows))
+    }
 }
 
 /// The outcome that an answer to frame `number`, of a detector of `size_px` (columns, rows), says.
@@ -211,6 +216,11 @@ pub(super) fn line(value: &impl Serialize) -> Result<Vec<u8>, String> {
     let mut line = serde_json::to_vec(value).map_err(|error| format!("no line can be made: {error}"))?;
     line.push(b'\n');
     Ok(line)
+}
+
+/// A path as the text of a line.
+pub(super) fn utf8(path: &Path) -> Result<&str, String> {
+    path.to_str().ok_or_else(|| format!("the path {} is not UTF-8", path.display()))
 }
 
 pub(super) fn parse<'a, T: Deserialize<'a>>(line: &'a [u8]) -> Result<T, String> {

@@ -30,6 +30,6 @@ pub use detect::Weights;
 pub use hotspots::HotspotConfig;
 pub use identify::IdentificationConfig;
 pub use overrides::{ApparentPlace, Identity, Overrides};
-pub use pipeline::{FarRange, FarRangeFactory};
+pub use pipeline::{FarRangeFactory, FarRangePipeline};
 pub use threshold::ThresholdConfig;
 pub use track::TrackingConfig;

@@ -3,7 +3,7 @@
 use contract::{CameraFrame, Direction, Icrs, ListedStar, PixelPoint, Rotation};
 
 /// What one frame is processed with instead of the pipeline's own results; nothing by default. The pipeline has no truth
-/// and asks for none: whoever calls [`super::FarRange::process_with`] answers for where these come from, and an answer made
+/// and asks for none: whoever calls [`super::FarRangePipeline::process_with`] answers for where these come from, and an answer made
 /// with any of them is not the pipeline's own.
 #[derive(Clone, Copy, Default)]
 pub struct Overrides<'a> {

@@ -1,8 +1,8 @@
 //! The far-range pipeline: its steps in order, and what it remembers from frame to frame.
 
 use contract::{
-    AttitudeSource, Body, CameraFrame, Cluster, ContractError, Frame, Icrs, Label, ListedStar, Measurement,
-    NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution, Telemetry,
+    AttitudeSource, Body, CameraFrame, Cluster, ContractError, FarRange, Frame, Icrs, Label, ListedStar,
+    Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution, Telemetry,
 };
 use hifitime::Epoch;
 
@@ -25,7 +25,7 @@ use crate::{CameraModel, PipelineError};
 /// A frame whose image is empty or saturated leaves what is remembered as it was: the next frame is linked across
 /// it. A frame counts as saturated when more than half of its transmitted pixels are at full scale.
 #[derive(Debug)]
-pub struct FarRange {
+pub struct FarRangePipeline {
     config: FarRangeConfig,
     model: CameraModel,
     stars: StarList,
@@ -48,7 +48,7 @@ struct Previous {
     tracks: Vec<Track>,
 }
 
-impl FarRange {
+impl FarRangePipeline {
     /// A pipeline that has seen no frame.
     ///
     /// # Errors
@@ -231,7 +231,7 @@ enum Known {
     Nothing,
 }
 
-impl FarRange {
+impl FarRangePipeline {
     /// [`Pipeline::process`] with results of single steps given from outside; for an error budget.
     pub fn process_with(
         &mut self,
@@ -351,7 +351,7 @@ impl FarRange {
     }
 }
 
-impl Pipeline for FarRange {
+impl Pipeline<FarRange> for FarRangePipeline {
     fn process(&mut self, frame: &Frame, telemetry: &Telemetry) -> Outcome {
         self.process_with(frame, telemetry, &Overrides::default())
     }
@@ -372,7 +372,7 @@ fn unusable(frame: &Frame, telemetry: &Telemetry, model: &CameraModel) -> Option
     (!is_unit).then(|| format!("the telemetry's attitude has norm {norm}, expected 1"))
 }
 
-/// Builds [`FarRange`] pipelines.
+/// Builds [`FarRangePipeline`] pipelines.
 #[derive(Debug, Clone, Default)]
 pub struct FarRangeFactory {
     config: FarRangeConfig,
@@ -389,13 +389,13 @@ impl FarRangeFactory {
     }
 }
 
-impl PipelineFactory for FarRangeFactory {
+impl PipelineFactory<FarRange> for FarRangeFactory {
     fn name(&self) -> String {
         "far-range".to_owned()
     }
 
-    fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline>, ContractError> {
-        match FarRange::new(self.config.clone(), setup) {
+    fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline<FarRange>>, ContractError> {
+        match FarRangePipeline::new(self.config.clone(), setup) {
             Ok(pipeline) => Ok(Box::new(pipeline)),
             Err(PipelineError::Contract(error)) => Err(error),
             Err(error) => {

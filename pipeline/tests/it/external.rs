@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use boresight_pipeline::external::ExternalFactory;
 use contract::{
-    Camera, Frame, NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution, Telemetry,
-    conformance,
+    Camera, FarRange, Frame, NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution,
+    Telemetry, conformance,
 };
 use hifitime::{Epoch, Unit};
 
@@ -76,7 +76,7 @@ fn write_fits(frame: &Frame, _: &Telemetry, path: &Path) -> Result<(), String> {
 
 struct Bench {
     scratch: tempfile::TempDir,
-    factory: ExternalFactory,
+    factory: ExternalFactory<FarRange>,
 }
 
 impl Bench {
@@ -106,7 +106,7 @@ impl Bench {
         bench
     }
 
-    fn build(&self) -> Box<dyn Pipeline> {
+    fn build(&self) -> Box<dyn Pipeline<FarRange>> {
         self.factory.build(&setup()).unwrap()
     }
 
@@ -116,7 +116,7 @@ impl Bench {
     }
 }
 
-fn process(pipeline: &mut dyn Pipeline, number: u64) -> Outcome {
+fn process(pipeline: &mut dyn Pipeline<FarRange>, number: u64) -> Outcome {
     let (frame, telemetry) = frame(number, &[(10, 10, 2000)]);
     pipeline.process(&frame, &telemetry)
 }

@@ -2,13 +2,13 @@
 //! hotspot that stays.
 
 use boresight_pipeline::far_range::{
-    AberrationConfig, AttitudeConfig, CentroidConfig, FarRange, FarRangeConfig, FarRangeFactory,
+    AberrationConfig, AttitudeConfig, CentroidConfig, FarRangeConfig, FarRangeFactory, FarRangePipeline,
     HotspotConfig, Identity, Overrides, StarWeights, Weights,
 };
 use contract::{
-    AttitudeSource, Body, Camera, CameraFrame, Direction, Frame, Icrs, Label, ListedStar, NoSolution,
-    Outcome, Pipeline, PipelineFactory, PixelPoint, Readout, Rotation, Setup, Solution, Telemetry, Window,
-    conformance,
+    AttitudeSource, Body, Camera, CameraFrame, Direction, FarRange, Frame, Icrs, Label, ListedStar,
+    NoSolution, Outcome, Pipeline, PipelineFactory, PixelPoint, Readout, Rotation, Setup, Solution,
+    Telemetry, Window, conformance,
 };
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
@@ -134,7 +134,7 @@ fn config() -> FarRangeConfig {
     }
 }
 
-fn pipeline(config: FarRangeConfig, setup: &Setup) -> Box<dyn Pipeline> {
+fn pipeline(config: FarRangeConfig, setup: &Setup) -> Box<dyn Pipeline<FarRange>> {
     FarRangeFactory::new(config).unwrap().build(setup).unwrap()
 }
 
@@ -355,13 +355,13 @@ fn the_best_mode_keeps_the_contract() {
 #[test]
 fn fitted_centres_need_a_readout_and_weights_need_fitted_centres() {
     let unknown = Setup { readout: None, ..setup() };
-    let error = FarRange::new(best(), &unknown).unwrap_err().to_string();
+    let error = FarRangePipeline::new(best(), &unknown).unwrap_err().to_string();
     assert!(
         error.starts_with("centroid.mode is fit, expected brightness, for a camera whose readout"),
         "{error}"
     );
     let wrong = Setup { readout: Some(Readout { gain_e_per_dn: 0.0, ..READOUT }), ..setup() };
-    let error = FarRange::new(best(), &wrong).unwrap_err().to_string();
+    let error = FarRangePipeline::new(best(), &wrong).unwrap_err().to_string();
     assert_eq!(error, "readout.gain_e_per_dn is 0, expected 1e-3 to 1e6");
     let no_fit = FarRangeConfig { centroid: CentroidConfig::Brightness, ..best() };
     let error = no_fit.check().unwrap_err().to_string();
@@ -372,7 +372,7 @@ fn fitted_centres_need_a_readout_and_weights_need_fitted_centres() {
 
 #[test]
 fn a_given_attitude_predicts_tracks_and_points_instead_of_the_mounting() {
-    let mut pipeline = FarRange::new(config(), &setup()).unwrap();
+    let mut pipeline = FarRangePipeline::new(config(), &setup()).unwrap();
     for i in 0..3 {
         // Telemetry half a turn off: nothing can be identified or tracked with it.
         let wrong = Telemetry { body_from_icrs: telemetry(60).body_from_icrs, ..telemetry(i) };
@@ -391,7 +391,7 @@ fn a_given_attitude_predicts_tracks_and_points_instead_of_the_mounting() {
 #[test]
 fn given_identities_and_centres_stand_for_the_pipelines_own() {
     let mut pipeline =
-        FarRange::new(FarRangeConfig { hotspots: HotspotConfig::Off, ..config() }, &setup()).unwrap();
+        FarRangePipeline::new(FarRangeConfig { hotspots: HotspotConfig::Off, ..config() }, &setup()).unwrap();
     for i in 0..3 {
         // The target is called a hotspot, and the hotspot nothing: it is the target then.
         let identity = |centre: PixelPoint| {
@@ -420,7 +420,11 @@ fn given_apparent_places_are_not_corrected_for_aberration() {
     let apparent = |star: &ListedStar| star.direction;
     let overrides = Overrides { apparent: Some(&apparent), ..Overrides::default() };
     let process = |config: &FarRangeConfig, overrides: &Overrides<'_>| {
-        FarRange::new(config.clone(), &setup).unwrap().process_with(&frame(0), &telemetry(0), overrides)
+        FarRangePipeline::new(config.clone(), &setup).unwrap().process_with(
+            &frame(0),
+            &telemetry(0),
+            overrides,
+        )
     };
     let ignored = process(&config(), &Overrides::default());
     assert_eq!(process(&corrected, &overrides), ignored);

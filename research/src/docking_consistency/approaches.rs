@@ -3,9 +3,8 @@
 use std::error::Error;
 use std::path::Path;
 
-use contract::docking::{
-    Digitiser, DockingPipelineFactory, DockingSolution, Motion, MotionReport, PoseEstimate,
-};
+use contract::PipelineFactory;
+use contract::docking::{Digitiser, DockingSolution, Motion, MotionReport, PoseEstimate};
 use pipeline::docking::{DockingConfig, DockingFactory};
 use sim::SimError;
 use sim::docking::{

@@ -8,10 +8,8 @@ use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::Prepared;
 use boresight::scenario::{Scenario, ScenarioSource};
 use boresight::score::{FrameVerdict, UnitTable};
-use contract::docking::{
-    DockingOutcome, DockingPipeline, DockingPipelineFactory, DockingSetup, DockingSolution, Field,
-    FieldTelemetry,
-};
+use contract::docking::{Docking, DockingOutcome, DockingSetup, DockingSolution, Field, FieldTelemetry};
+use contract::{Pipeline, PipelineFactory};
 use rayon::prelude::*;
 
 const PIPELINE: PipelineChoice = PipelineChoice { word: None, timeout_s: 10.0, memory_mb: 4000 };
@@ -52,21 +50,21 @@ pub(crate) fn docking_runs(seeds: Range<u64>, fields: Range<u64>) -> Vec<(UnitTa
 }
 
 /// A pipeline whose ranges are a thousandth too long.
-struct Scaled<'a>(&'a dyn DockingPipelineFactory);
+struct Scaled<'a>(&'a dyn PipelineFactory<Docking>);
 
-struct ScaledPipeline(Box<dyn DockingPipeline>);
+struct ScaledPipeline(Box<dyn Pipeline<Docking>>);
 
-impl DockingPipelineFactory for Scaled<'_> {
+impl PipelineFactory<Docking> for Scaled<'_> {
     fn name(&self) -> String {
         "ranges a thousandth too long".to_owned()
     }
 
-    fn build(&self, setup: &DockingSetup) -> Result<Box<dyn DockingPipeline>, contract::ContractError> {
+    fn build(&self, setup: &DockingSetup) -> Result<Box<dyn Pipeline<Docking>>, contract::ContractError> {
         Ok(Box::new(ScaledPipeline(self.0.build(setup)?)))
     }
 }
 
-impl DockingPipeline for ScaledPipeline {
+impl Pipeline<Docking> for ScaledPipeline {
     fn process(&mut self, field: &Field, telemetry: &FieldTelemetry) -> DockingOutcome {
         let mut outcome = self.0.process(field, telemetry);
         if let DockingSolution::Measured(measurement) = &mut outcome.solution {

@@ -14,7 +14,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use contract::docking::{DockingPipelineFactory, DockingSolution, FieldTelemetry, Pose, PoseEstimate};
+use contract::PipelineFactory;
+use contract::docking::{DockingSolution, FieldTelemetry, Pose, PoseEstimate};
 use pipeline::CameraModel;
 use pipeline::docking::model_fit::ModelFit;
 use pipeline::docking::{DockingConfig, DockingFactory};

@@ -13,7 +13,8 @@ use std::error::Error;
 
 use boresight::mitsuba::{MitsubaOptions, MitsubaRenderer};
 use cases::{Case, ROWS};
-use contract::docking::{Digitiser, DockingPipelineFactory, DockingSolution, FieldTelemetry, Pose};
+use contract::PipelineFactory;
+use contract::docking::{Digitiser, DockingSolution, FieldTelemetry, Pose};
 use pipeline::docking::{DockingConfig, DockingFactory};
 use sim::mitsuba::Settings;
 use sim::vector::{Drawer, RadianceImage};

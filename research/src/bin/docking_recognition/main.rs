@@ -15,7 +15,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use contract::docking::{Digitiser, DockingPipelineFactory};
+use contract::PipelineFactory;
+use contract::docking::Digitiser;
 use pipeline::docking::{DockingConfig, DockingFactory};
 use sim::docking::{DockingSimulation, DockingSimulator};
 use sim::randomness::{Effect, Seed, uniform};

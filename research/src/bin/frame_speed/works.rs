@@ -7,7 +7,7 @@ use boresight::run::Prepared;
 use boresight::scenario::{FarRangeScenario, ScenarioSource};
 use contract::{Frame, Outcome, Pipeline, Rotation, Setup, Telemetry};
 use hifitime::{Epoch, Unit};
-use pipeline::far_range::{FarRange, FarRangeConfig};
+use pipeline::far_range::{FarRangeConfig, FarRangePipeline};
 use sim::Simulator;
 use sim::onboard::ShutterConfig;
 use sim::scene::BackgroundConfig;
@@ -127,7 +127,7 @@ fn frames(name: String, simulator: &'static Simulator, first: u64) -> Result<Wor
 }
 
 /// The pipeline on kept frames, one after the other.
-fn detecting(name: &str, mut pipeline: FarRange, kept: Vec<(Frame, Telemetry)>) -> Work {
+fn detecting(name: &str, mut pipeline: FarRangePipeline, kept: Vec<(Frame, Telemetry)>) -> Work {
     let mut next = 0;
     let step = move || {
         let (frame, telemetry) = &kept[next % kept.len()];
@@ -155,7 +155,7 @@ fn detection_plain(scene: &PlainScene, setup: &Setup) -> Result<Work, Box<dyn Er
         })
         .collect::<Result<_, Box<dyn Error>>>()?;
     let setup = Setup { stars: Vec::new(), ..setup.clone() };
-    Ok(detecting("process-plain", FarRange::new(FarRangeConfig::default(), &setup)?, kept))
+    Ok(detecting("process-plain", FarRangePipeline::new(FarRangeConfig::default(), &setup)?, kept))
 }
 
 /// The pipeline on frames of ARGON, with its list of stars.
@@ -172,5 +172,5 @@ fn detection(
             Ok((exposure.frame, exposure.telemetry))
         })
         .collect::<Result<_, Box<dyn Error>>>()?;
-    Ok(detecting(name, FarRange::new(config.clone(), setup)?, kept))
+    Ok(detecting(name, FarRangePipeline::new(config.clone(), setup)?, kept))
 }
