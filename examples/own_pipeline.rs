@@ -1,6 +1,6 @@
 //! The smallest pipeline there is, scored: it calls the brightest pixel the target.
 
-use boresight::run::Prepared;
+use boresight::run::{Prepared, World as _};
 use boresight::scenario::ScenarioSource;
 use boresight::table::{TableStyle, far_range};
 use contract::{

@@ -22,10 +22,7 @@ pub use ::monitor;
 pub use ::report;
 pub use files::{self, failure, sha256, toml_file};
 pub use gate;
-pub use run::{
-    self, dataset_writer, docking_renderer, docking_run, docking_writer, flight, inject, pipeline_choice,
-    star_list,
-};
+pub use run::{self, flight, pipeline_choice};
 pub use scenario::{self, run_file};
 pub use score;
 pub use show;

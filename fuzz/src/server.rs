@@ -6,10 +6,10 @@ use std::path::Path;
 use std::sync::{OnceLock, mpsc};
 use std::time::Duration;
 
-use boresight::docking_renderer::DockingRenderer;
-use boresight::docking_run::PreparedDocking;
 use boresight::monitor::{Feed, Measurements, serve};
 use boresight::pipeline_choice::PipelineChoice;
+use boresight::run::PreparedDocking;
+use boresight::run::docking::renderer::DockingRenderer;
 use boresight::scenario::{Scenario, ScenarioSource};
 
 use crate::Sandbox;

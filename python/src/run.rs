@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use boresight::docking_run::DockingFlight;
 use boresight::failure::Failure;
 use boresight::files::{Checksums, RunDirectory, read_csv_table, read_parquet_table};
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::run::{Expectation, FirstFailure, Flight};
+use boresight::run::{Expectation, FirstFailure, Flight, World as _};
 use boresight::scenario::{Scenario as Values, ScenarioSource};
 use contract::docking::Docking;
 use contract::{FarRange, PipelineFactory};
@@ -209,7 +208,7 @@ pub(crate) fn run(
                     Asked::Python(pipeline) => Box::new(pipeline),
                 };
                 let (directory, temporary) = place(out.as_deref())?;
-                let flight = DockingFlight { fields: frames, jobs, images: None };
+                let flight = Flight { frames, jobs, images: None, expectation: Expectation::Dropped };
                 let ran = prepared.run(&directory, &flight, factory.as_ref(), || ended.go_on())?;
                 Ok((directory, temporary, ran.first_failure))
             }

@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use boresight::docking_renderer::DockingRenderer;
-use boresight::docking_run::PreparedDocking;
 use boresight::failure::Failure;
-use boresight::run::Prepared;
+use boresight::run::docking::renderer::DockingRenderer;
+use boresight::run::{Prepared, PreparedDocking, World as _};
 use boresight::run_file::ScenarioFile;
 use boresight::scenario::{BUILT_IN, Scenario as Values, ScenarioSource};
 use boresight::study::{Study, value_at, with_overlay};
@@ -48,7 +47,7 @@ impl Ready {
     pub(crate) fn frame_count(&self) -> u64 {
         match &self.world {
             World::FarRange(prepared) => prepared.frame_count(),
-            World::Docking(prepared) => prepared.field_count(),
+            World::Docking(prepared) => prepared.frame_count(),
         }
     }
 }
@@ -223,7 +222,7 @@ impl Scenario {
 /// What a pipeline is told before the first frame, as a dictionary.
 pub(crate) fn setup<'py>(py: Python<'py>, ready: &Ready) -> PyResult<Bound<'py, PyAny>> {
     let line = match &ready.world {
-        World::FarRange(prepared) => contract::FarRange::greeting(&prepared.setup()),
+        World::FarRange(prepared) => contract::FarRange::greeting(prepared.setup()),
         World::Docking(prepared) => contract::docking::Docking::greeting(prepared.setup()),
     };
     let line = line.map_err(BoresightError::new_err)?;

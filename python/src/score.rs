@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use boresight::docking_run::score_docking;
 use boresight::failure::Failure;
 use boresight::files::Checksums;
-use boresight::run;
+use boresight::run::{Prepared, PreparedDocking, World as _};
 use boresight::scenario::{World, world};
 use boresight::toml_file::read_text;
 use pyo3::prelude::*;
@@ -69,11 +68,13 @@ fn scored(directory: &Path, measurements: &Path) -> Result<String, Failure> {
     let json = match world(&run_file, &text, "scenario.world")? {
         World::FarRange => {
             let clusters = beside("clusters.parquet");
-            serde_json::to_string(&run::score(directory, measurements, clusters.as_deref())?.score)
+            serde_json::to_string(&Prepared::score_files(directory, measurements, clusters.as_deref())?.score)
         }
         World::Docking => {
             let motion = beside("motion.csv");
-            serde_json::to_string(&score_docking(directory, measurements, motion.as_deref())?)
+            serde_json::to_string(
+                &PreparedDocking::score_files(directory, measurements, motion.as_deref())?.score,
+            )
         }
     };
     Checksums::check(directory, |_| true)?;

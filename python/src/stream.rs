@@ -6,11 +6,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use boresight::failure::Failure;
-use boresight::flight::{fly, in_order};
+use boresight::flight::in_order;
+use boresight::run::{PreparedDocking, World as Simulated};
 use contract::docking::{Digitiser, Field, FieldTelemetry};
 use pyo3::prelude::*;
 use sim::Exposure;
-use sim::docking::{DockingWorkspace, FieldTruth};
+use sim::docking::FieldTruth;
 
 use crate::errors::{BoresightError, raised};
 use crate::frame::SimulatedFrame;
@@ -51,28 +52,27 @@ fn make(ready: &Ready, frames: Range<u64>, jobs: usize, send: &SyncSender<Result
     let hand_over = |made: Made| send.send(Ok(made)).map_err(|_| Failure::Interrupted);
     let done = match &ready.world {
         World::FarRange(prepared) => {
-            let make = |camera: &mut sim::SimulatedCamera<'_>, frame| Ok(camera.expose(frame)?);
-            let take = |exposure| hand_over(Made::FarRange(Box::new(exposure)));
-            fly(prepared.simulator(), frames, jobs, make, take)
+            expose(prepared.as_ref(), frames, jobs, |exposure| hand_over(Made::FarRange(Box::new(exposure))))
         }
-        World::Docking(prepared) => {
-            let simulator = prepared.simulator();
-            let make = |workspace: &mut DockingWorkspace, number| {
-                let exposure = simulator.expose(workspace, number)?;
-                let digitiser = Digitiser::default();
-                let field = exposure.video.digitise(&digitiser);
-                let telemetry = exposure.telemetry(digitiser);
-                Ok(Made::Docking(Box::new((field, telemetry, exposure.truth))))
-            };
-            let camera = prepared.setup().cameras.first();
-            let bytes = camera.map_or(0, |camera| camera.columns * camera.rows * size_of::<u16>()) as u64;
-            in_order(frames, jobs, bytes, || Ok(simulator.workspace()?), make, hand_over)
-        }
+        World::Docking(prepared) => expose(prepared.as_ref(), frames, jobs, |exposure| {
+            hand_over(Made::Docking(Box::new(PreparedDocking::receive(exposure, &Digitiser::default()))))
+        }),
     };
     if let Err(failure) = done {
         // Nobody may be there to hear it.
         let _ = send.send(Err(failure));
     }
+}
+
+/// Exposes frames on threads and hands them on, in order.
+fn expose<W: Simulated>(
+    world: &W,
+    frames: Range<u64>,
+    jobs: usize,
+    take: impl FnMut(W::Exposure) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let make = |workspace: &mut W::Workspace<'_>, frame| world.expose(workspace, frame);
+    in_order(frames, jobs, world.exposure_bytes() as u64, || world.workspace(), make, take)
 }
 
 #[pymethods]

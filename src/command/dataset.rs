@@ -10,11 +10,12 @@ use files::{
     Checksums, Dataset, Failure, FieldOrder, FieldSource, FileError, FrameSize, ImageFormat, RunDirectory,
     Scan, SequenceOptions, StarRow, read_stars,
 };
-use run::docking_renderer::DockingRenderer;
-use run::docking_run::{DockingFlight, PreparedDocking, process_fields, stream_fields};
-use run::docking_writer::FieldImages;
-use run::star_list::star_list;
-use run::{self, Expectation, Flight, Prepared};
+use run::docking::answers::FieldAnswers;
+use run::docking::dataset::FieldImages;
+use run::docking::renderer::DockingRenderer;
+use run::far_range::answers::FrameAnswers;
+use run::far_range::star_list::star_list;
+use run::{Expectation, Flight, Prepared, PreparedDocking, World as _};
 use scenario::{Scenario, ScenarioSource};
 use serde_json::json;
 
@@ -92,16 +93,16 @@ fn render_docking(
     }
     let images = format_of("--format", arguments.format.as_deref())?.unwrap_or(FieldImages::Png);
     let prepared = PreparedDocking::new(source, arguments.renderer.renderer()?)?;
-    let fields = arguments.selection.frames(prepared.field_count())?;
+    let fields = arguments.selection.frames(prepared.frame_count())?;
     let count = fields.end - fields.start;
     let jobs = arguments.renderer.jobs(&arguments.selection);
-    let flight = DockingFlight { fields, jobs, images: Some(images) };
+    let flight = Flight { frames: fields, jobs, images: Some(images), expectation: Expectation::Dropped };
     if arguments.out == Path::new("-") {
         return stream_docking(&prepared, &flight, images, output);
     }
     check_size(&prepared, &flight)?;
     // While nothing has been written.
-    prepared.probe(flight.fields.start)?;
+    prepared.probe(flight.frames.start)?;
     let directory = RunDirectory::create(&arguments.out)?;
     let progress = output.progress(count, &source.name);
     let rendered = prepared.render(&directory, &flight, || progress.inc(1));
@@ -122,7 +123,7 @@ fn render_docking(
 /// The video alone, for another program to read as it comes.
 fn stream_docking(
     prepared: &PreparedDocking,
-    flight: &DockingFlight,
+    flight: &Flight<FieldImages>,
     images: FieldImages,
     output: &Output,
 ) -> Result<Answer, Failure> {
@@ -131,13 +132,13 @@ fn stream_docking(
         return Err(Failure::Usage(message.to_owned()));
     }
     output.check_free("--out -")?;
-    prepared.stream(flight, || ())?;
+    prepared.stream(flight.frames.clone(), flight.jobs)?;
     Ok(Answer::Yes)
 }
 
 /// Refuses more fields than one file of video holds, before hours of work.
-pub(super) fn check_size(prepared: &PreparedDocking, flight: &DockingFlight) -> Result<(), Failure> {
-    let count = flight.fields.end - flight.fields.start;
+pub(super) fn check_size(prepared: &PreparedDocking, flight: &Flight<FieldImages>) -> Result<(), Failure> {
+    let count = flight.frames.end - flight.frames.start;
     match flight.images.and_then(|images| images.most_fields(prepared.setup())) {
         Some(most) if count > most => Err(Failure::Usage(format!(
             "{count} fields are more than the {most} of an uncompressed AVI of 4 GB; expected fewer (--frames), or mjpeg, \
@@ -188,9 +189,10 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     let factory = arguments.pipeline.choice().factory(&dataset.camera().far_range, scratch.path())?;
     let measurements = arguments.out.clone().unwrap_or_else(|| arguments.directory.join("measurements.csv"));
     let clusters = measurements.with_file_name("clusters.parquet");
+    let images = dataset.frames().iter().map(|frame| Ok((dataset.read(frame)?, frame.telemetry().clone())));
     let progress = output.progress(dataset.frames().len() as u64, &factory.name());
     let processed =
-        run::process(&dataset, &setup, factory.as_ref(), &measurements, &clusters, || progress.inc(1));
+        run::process::<_, FrameAnswers>(images, &setup, factory.as_ref(), &measurements, || progress.inc(1));
     progress.finish_and_clear();
     let processed = processed?;
     output.first_failure(processed.first_failure.as_ref());
@@ -293,14 +295,17 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
     }
     if arguments.out.as_deref() == Some(Path::new("-")) {
         output.check_free("--out -")?;
-        let processed = stream_fields(fields, &setup, factory.as_ref())?;
+        let fields = fields.map(|field| Ok(field?));
+        let processed = run::process_into(fields, &setup, factory.as_ref(), FieldAnswers::stream()?, || ())?;
         output.first_failure(processed.first_failure.as_ref());
         return Ok(Answer::Yes);
     }
     let place = if path.is_dir() { path.as_path() } else { Path::new("") };
     let measurements = arguments.out.clone().unwrap_or_else(|| place.join("measurements.csv"));
     let progress = output.counter(&factory.name());
-    let processed = process_fields(fields, &setup, factory.as_ref(), &measurements, || progress.inc(1));
+    let fields = fields.map(|field| Ok(field?));
+    let processed =
+        run::process::<_, FieldAnswers>(fields, &setup, factory.as_ref(), &measurements, || progress.inc(1));
     progress.finish_and_clear();
     let processed = processed?;
     output.first_failure(processed.first_failure.as_ref());

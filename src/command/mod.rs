@@ -2,6 +2,7 @@
 
 mod cluster;
 mod dataset;
+mod fly;
 mod gate;
 mod interrupt;
 mod monitor;

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use files::Failure;
 use pipeline::external::DEFAULT_MEMORY_MB;
-use run::docking_renderer::DockingRenderer;
+use run::docking::renderer::DockingRenderer;
 use run::pipeline_choice::PipelineChoice;
 use scenario::ScenarioSource;
 

@@ -1,22 +1,19 @@
 //! `boresight run`: simulate, process, score.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use clap::Args;
+use contract::PipelineFactory;
 use files::{Failure, RunDirectory};
-use run::docking_run::{DockingFlight, PreparedDocking};
-use run::docking_writer::FieldImages;
-use run::{Expectation, Flight, Prepared};
-use scenario::{Scenario, ScenarioSource, Stage, World, is_argon};
-use score::ARGON_TABLE_2;
+use run::{Expectation, Flight, Prepared, PreparedDocking, World as _};
+use scenario::{Scenario, ScenarioSource, Stage, World};
 
 use super::Answer;
 use super::dataset::check_size;
+use super::fly::{Shown, fly};
 use super::options::{PipelineOptions, RendererOptions, Selection, format_of};
 use super::output::Output;
-use super::report::{write_beside_far_range_run, write_beside_results};
-use crate::table::docking;
-use crate::table::{TableStyle, far_range};
 
 /// Where numbered run directories go when `--out` is not given.
 pub(super) const RUNS: &str = "runs";
@@ -81,44 +78,11 @@ fn run_far_range(
         )));
     }
     let prepared = Prepared::with_truth_for(source, arguments.inject)?;
-    let flight = Flight {
-        frames: arguments.selection.frames(prepared.frame_count())?,
-        jobs: arguments.selection.jobs(),
-        images: format_of("--save-frames", arguments.save_frames.as_deref())?,
-        expectation: Expectation::Dropped,
-    };
-    let choice = arguments.pipeline.choice();
+    let jobs = arguments.selection.jobs();
+    let flight = arguments.flight(prepared.frame_count(), jobs)?;
     let scratch = super::scratch_directory()?;
-    let factory = choice.factory(&prepared.scenario().far_range, scratch.path())?;
-    let directory = match &arguments.out {
-        Some(path) => RunDirectory::create(path)?,
-        None => RunDirectory::create_numbered(Path::new(RUNS), &source.name)?,
-    };
-    let frames = flight.frames.end - flight.frames.start;
-    let progress = output.progress(frames, &format!("{}, {}", source.name, factory.name()));
-    let scored = prepared.run(&directory, &flight, factory.as_ref(), || {
-        progress.inc(1);
-        Ok(())
-    });
-    progress.finish_and_clear();
-    let ran = scored?;
-    output.first_failure(ran.first_failure.as_ref());
-    let score = ran.scored.score;
-    if !arguments.no_report {
-        write_beside_far_range_run(directory.path(), ran.scored.verdicts, output);
-    }
-
-    let style = TableStyle {
-        styled: output.is_terminal(),
-        reference: is_argon(prepared.scenario()).then_some(&ARGON_TABLE_2),
-        ..TableStyle::default()
-    };
-    let mut text = far_range(&score, style);
-    if let Some(stage) = arguments.inject {
-        text += &format!("\n\nthe truth was injected for {stage}: this is no result of the pipeline");
-    }
-    output.answer(&score, format!("{text}\n\nresults in {}", directory.path().display()))?;
-    Ok(Answer::Yes)
+    let factory = arguments.pipeline.choice().factory(&prepared.scenario().far_range, scratch.path())?;
+    arguments.fly(&prepared, &flight, factory.as_ref(), source, output)
 }
 
 fn run_docking(
@@ -129,34 +93,44 @@ fn run_docking(
     if let Some(stage) = arguments.inject {
         return Err(Failure::Usage(format!("--inject is {stage}, expected with a far-range scenario alone")));
     }
-    let images: Option<FieldImages> = format_of("--save-frames", arguments.save_frames.as_deref())?;
     let prepared = PreparedDocking::new(source, arguments.renderer.renderer()?)?;
-    let fields = arguments.selection.frames(prepared.field_count())?;
     let jobs = arguments.renderer.jobs(&arguments.selection);
-    let flight = DockingFlight { fields, jobs, images };
+    let flight = arguments.flight(prepared.frame_count(), jobs)?;
     check_size(&prepared, &flight)?;
     let scratch = super::scratch_directory()?;
-    let choice = arguments.pipeline.choice();
-    let factory = choice.docking_factory(&prepared.scenario().docking, scratch.path())?;
+    let factory =
+        arguments.pipeline.choice().docking_factory(&prepared.scenario().docking, scratch.path())?;
     // While nothing has been written.
-    prepared.probe(flight.fields.start)?;
-    let directory = match &arguments.out {
-        Some(path) => RunDirectory::create(path)?,
-        None => RunDirectory::create_numbered(Path::new(RUNS), &source.name)?,
-    };
-    let fields = flight.fields.end - flight.fields.start;
-    let progress = output.progress(fields, &format!("{}, {}", source.name, factory.name()));
-    let ran = prepared.run(&directory, &flight, factory.as_ref(), || {
-        progress.inc(1);
-        Ok(())
-    });
-    progress.finish_and_clear();
-    let ran = ran?;
-    output.first_failure(ran.first_failure.as_ref());
-    if !arguments.no_report {
-        write_beside_results(directory.path(), output);
+    prepared.probe(flight.frames.start)?;
+    arguments.fly(&prepared, &flight, factory.as_ref(), source, output)
+}
+
+impl RunArguments {
+    /// The frames asked for, of so many.
+    fn flight<F: FromStr<Err = String>>(&self, frame_count: u64, jobs: usize) -> Result<Flight<F>, Failure> {
+        Ok(Flight {
+            frames: self.selection.frames(frame_count)?,
+            jobs,
+            images: format_of("--save-frames", self.save_frames.as_deref())?,
+            expectation: Expectation::Dropped,
+        })
     }
-    let text = docking(&ran.score, output.is_terminal());
-    output.answer(&ran.score, format!("{text}\nresults in {}", directory.path().display()))?;
-    Ok(Answer::Yes)
+
+    fn fly<W: Shown>(
+        &self,
+        world: &W,
+        flight: &Flight<W::Images>,
+        factory: &dyn PipelineFactory<W::Interface>,
+        source: &ScenarioSource,
+        output: &Output,
+    ) -> Result<Answer, Failure> {
+        let directory = match &self.out {
+            Some(path) => RunDirectory::create(path)?,
+            None => RunDirectory::create_numbered(Path::new(RUNS), &source.name)?,
+        };
+        let note = self
+            .inject
+            .map(|stage| format!("the truth was injected for {stage}: this is no result of the pipeline"));
+        fly(world, flight, factory, &directory, (&source.name, !self.no_report, note), output)
+    }
 }

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use files::{Checksums, Failure, FileError, toml_file};
-use run;
-use run::docking_run::score_docking;
+use run::{Prepared, PreparedDocking, World as _};
 use scenario::run_file::RunFile;
 use scenario::{FarRangeScenario, World, is_argon, world};
 use score::ARGON_TABLE_2;
@@ -49,13 +48,16 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
     }
     if world == World::Docking {
         let motion = arguments.motion.clone().or_else(|| beside("motion.csv"));
-        let score = score_docking(&arguments.directory, &arguments.measurements, motion.as_deref())?;
+        let score =
+            PreparedDocking::score_files(&arguments.directory, &arguments.measurements, motion.as_deref())?
+                .score;
         Checksums::check(&arguments.directory, |_| true)?;
         output.answer(&score, docking(&score, output.is_terminal()))?;
         return Ok(Answer::Yes);
     }
     let clusters = arguments.clusters.clone().or_else(|| beside("clusters.parquet"));
-    let score = run::score(&arguments.directory, &arguments.measurements, clusters.as_deref())?.score;
+    let score =
+        Prepared::score_files(&arguments.directory, &arguments.measurements, clusters.as_deref())?.score;
     Checksums::check(&arguments.directory, |_| true)?;
     let is_argon = is_argon(&RunFile::<FarRangeScenario>::read(&run_file)?.scenario);
     let style = TableStyle {

@@ -1,15 +1,15 @@
 //! `boresight study`: Monte Carlo over what can vary.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::sync::Mutex;
 
 use clap::{Args, Subcommand};
 use files::{Failure, RunDirectory};
-use run::docking_renderer::DockingRenderer;
-use run::docking_run::{DockingFlight, PreparedDocking};
-use run::docking_writer::FieldImages;
+use run::docking::renderer::DockingRenderer;
 use run::pipeline_choice::PipelineChoice;
-use run::{Expectation, FirstFailure, Flight, Prepared};
+use run::{Expectation, FirstFailure, Flight, Prepared, PreparedDocking, World as _};
 use scenario::Scenario;
 use serde::Serialize;
 use study::{
@@ -17,13 +17,12 @@ use study::{
 };
 
 use super::Answer;
+use super::fly::fly;
 use super::options::{PipelineOptions, default_jobs, format_of};
 use super::output::Output;
-use super::report::{write_beside_far_range_run, write_beside_results};
+use super::report::write_beside_results;
 use crate::command::cluster::{Engine, check_dask, run_on_dask};
-use crate::table::docking;
 use crate::table::{LiveFigure, study_table};
-use crate::table::{TableStyle, far_range};
 
 #[derive(Debug, Subcommand)]
 pub(super) enum StudyCommand {
@@ -127,7 +126,7 @@ struct ShardOf {
     of: u64,
 }
 
-impl std::str::FromStr for ShardOf {
+impl FromStr for ShardOf {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -372,48 +371,33 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
     let scratch = super::scratch_directory()?;
     let choice = arguments.pipeline.choice();
     let name = format!("{}-case-{}", study.name, case.number);
+    let shown = (name.as_str(), !arguments.no_report, None);
     let directory = || match &arguments.out {
         Some(path) => RunDirectory::create(path),
         None => RunDirectory::create_numbered(Path::new(super::run::RUNS), &name),
     };
-    let jobs = default_jobs();
     match &case.source.scenario {
-        Scenario::FarRange(_) => {
+        Scenario::FarRange(scenario) => {
+            let factory = choice.factory(&scenario.far_range, scratch.path())?;
             let prepared = Prepared::new(&case.source)?;
-            let flight = Flight {
-                frames: study.frames(prepared.frame_count())?,
-                jobs,
-                images: format_of("--save-frames", arguments.save_frames.as_deref())?,
-                expectation: Expectation::Dropped,
-            };
-            let factory = choice.factory(&prepared.scenario().far_range, scratch.path())?;
-            let directory = directory()?;
-            let ran = prepared.run(&directory, &flight, factory.as_ref(), || Ok(()))?;
-            output.first_failure(ran.first_failure.as_ref());
-            if !arguments.no_report {
-                write_beside_far_range_run(directory.path(), ran.scored.verdicts, output);
-            }
-            let style = TableStyle { styled: output.is_terminal(), ..TableStyle::default() };
-            let text = far_range(&ran.scored.score, style);
-            output.answer(&ran.scored.score, format!("{text}\nresults in {}", directory.path().display()))?;
+            let flight = replayed(arguments, study.frames(prepared.frame_count())?)?;
+            fly(&prepared, &flight, factory.as_ref(), &directory()?, shown, output)
         }
-        Scenario::Docking(_) => {
+        Scenario::Docking(scenario) => {
+            let factory = choice.docking_factory(&scenario.docking, scratch.path())?;
             let prepared = PreparedDocking::new(&case.source, DockingRenderer::Fast)?;
-            let images: Option<FieldImages> = format_of("--save-frames", arguments.save_frames.as_deref())?;
-            let fields = study.frames(prepared.field_count())?;
-            let factory = choice.docking_factory(&prepared.scenario().docking, scratch.path())?;
-            let directory = directory()?;
-            let flight = DockingFlight { fields, jobs, images };
-            let ran = prepared.run(&directory, &flight, factory.as_ref(), || Ok(()))?;
-            output.first_failure(ran.first_failure.as_ref());
-            if !arguments.no_report {
-                write_beside_results(directory.path(), output);
-            }
-            let text = docking(&ran.score, output.is_terminal());
-            output.answer(&ran.score, format!("{text}\nresults in {}", directory.path().display()))?;
+            let flight = replayed(arguments, study.frames(prepared.frame_count())?)?;
+            fly(&prepared, &flight, factory.as_ref(), &directory()?, shown, output)
         }
     }
-    Ok(Answer::Yes)
+}
+
+fn replayed<F: FromStr<Err = String>>(
+    arguments: &ReplayArguments,
+    frames: Range<u64>,
+) -> Result<Flight<F>, Failure> {
+    let images = format_of("--save-frames", arguments.save_frames.as_deref())?;
+    Ok(Flight { frames, jobs: default_jobs(), images, expectation: Expectation::Dropped })
 }
 
 fn check(arguments: &CheckArguments, output: &Output) -> Result<Answer, Failure> {

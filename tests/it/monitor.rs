@@ -6,12 +6,12 @@ use std::sync::mpsc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use boresight::docking_renderer::DockingRenderer;
-use boresight::docking_run::PreparedDocking;
 use boresight::files::{TableReader, TableWriter};
 use boresight::monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::Prepared;
+use boresight::run::PreparedDocking;
+use boresight::run::docking::renderer::DockingRenderer;
 use boresight::scenario::{Scenario, ScenarioSource};
 use serde_json::Value;
 use sim::truth::FrameTruth;

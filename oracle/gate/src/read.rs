@@ -8,7 +8,7 @@ use files::{
     Checksums, Failure, FieldRow, FileError, TableReader, TelemetryRow, read_field_telemetry, read_telemetry,
     toml_file,
 };
-use run::docking_run::judge_docking;
+use run::{Prepared, PreparedDocking, Scored, World as _};
 use scenario::run_file::RunFile;
 use scenario::{DockingScenario, FarRangeScenario, World, world};
 use score::{FigureTerms, Kind, Reduction, Term, UnitTable, UnitVerdict, names, sense};
@@ -65,7 +65,7 @@ fn scenario_of(path: &Path, text: &str) -> Result<Table, Failure> {
 fn far_range(directory: &Path, path: &Path, text: &str) -> Result<Sample, Failure> {
     let run_file = RunFile::<FarRangeScenario>::read(path)?;
     let clusters = Some(directory.join("clusters.parquet")).filter(|path| path.is_file());
-    let scored = run::score(directory, &directory.join("measurements.csv"), clusters.as_deref())?;
+    let scored = Prepared::score_files(directory, &directory.join("measurements.csv"), clusters.as_deref())?;
     let mut digest = FrameDigest::default();
     for TelemetryRow { frame, telemetry, windows, .. } in read_telemetry(&directory.join("telemetry.csv"))? {
         digest.add(&(frame, telemetry, windows));
@@ -94,7 +94,8 @@ fn far_range(directory: &Path, path: &Path, text: &str) -> Result<Sample, Failur
 fn docking(directory: &Path, path: &Path, text: &str) -> Result<Sample, Failure> {
     let run_file = RunFile::<DockingScenario>::read(path)?;
     let motion = Some(directory.join("motion.csv")).filter(|path| path.is_file());
-    let scorer = judge_docking(directory, &directory.join("measurements.csv"), motion.as_deref())?;
+    let scored =
+        PreparedDocking::score_files(directory, &directory.join("measurements.csv"), motion.as_deref())?;
     let mut digest = FrameDigest::default();
     for FieldRow { field, lines, mut telemetry, .. } in
         read_field_telemetry(&directory.join("telemetry.csv"))?
@@ -121,7 +122,7 @@ fn docking(directory: &Path, path: &Path, text: &str) -> Result<Sample, Failure>
         pipeline: split.pipeline,
         scenario: split.scenario,
     };
-    Ok(Sample::new(identity, scorer.units()))
+    Ok(Sample::new(identity, scored.units()))
 }
 
 fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {

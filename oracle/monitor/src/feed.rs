@@ -6,8 +6,7 @@ use contract::docking::{Digitiser, Docking};
 use contract::{FarRange, PipelineFactory};
 use files::docking::{FeatureRow, read_field_measurements, read_motion};
 use files::{Checksums, Failure, FrameCluster, Row, TableReader, read_field_telemetry, read_measurements};
-use run::Prepared;
-use run::docking_run::{DockingFlight, PreparedDocking};
+use run::{Prepared, PreparedDocking, SceneTruth, World};
 use sim::docking::FieldTruth;
 use sim::truth::{FrameTruth, ObjectTruth, Trajectory};
 
@@ -145,10 +144,11 @@ pub(super) fn feed(feed: &Feed, surroundings: &Surroundings, session: &Session) 
             let reporter = FarRangeReporter { camera, trajectory, ground, start };
             match measurements {
                 Measurements::Live { factory, frames, jobs } => {
-                    prepared.follow(frames.clone(), *jobs, factory.as_ref(), |exposure, outcome| {
-                        session.wait_for_goal(exposure.truth.frame)?;
-                        let report = reporter.report(&exposure.truth, &exposure.objects, Some(&outcome));
-                        let picture = surroundings.stretch.picture(&exposure.frame);
+                    prepared.follow(frames.clone(), *jobs, factory.as_ref(), |processed| {
+                        let SceneTruth { frame: truth, objects } = &processed.truth;
+                        session.wait_for_goal(truth.frame)?;
+                        let report = reporter.report(truth, objects, Some(&processed.outcome));
+                        let picture = surroundings.stretch.picture(&processed.image);
                         session.publish(&report, Digitiser::default(), Some(picture))
                     })
                 }
@@ -160,13 +160,12 @@ pub(super) fn feed(feed: &Feed, surroundings: &Surroundings, session: &Session) 
             let mut reporter = DockingReporter::new(prepared.setup(), names, surroundings.ground.as_ref());
             match measurements {
                 Measurements::Live { factory, frames, jobs } => {
-                    let flight = DockingFlight { fields: frames.clone(), jobs: *jobs, images: None };
-                    prepared.follow(&flight, factory.as_ref(), |processed| {
-                        let number = processed.field.number();
+                    prepared.follow(frames.clone(), *jobs, factory.as_ref(), |processed| {
+                        let number = processed.image.number();
                         session.wait_for_goal(number)?;
                         let features = FeatureRow::of(number, &processed.outcome.features);
                         let report = reporter.report(&processed.truth, Some(&processed.outcome), &features);
-                        let picture = surroundings.stretch.picture(processed.field.image());
+                        let picture = surroundings.stretch.picture(processed.image.image());
                         session.publish(&report, processed.telemetry.digitiser, Some(picture))
                     })
                 }

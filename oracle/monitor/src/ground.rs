@@ -115,8 +115,8 @@ fn point(time: Epoch, position_km: &Vector3<f64>) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use run::docking_renderer::DockingRenderer;
-    use run::docking_run::PreparedDocking;
+    use run::PreparedDocking;
+    use run::docking::renderer::DockingRenderer;
     use scenario::ScenarioSource;
 
     #[test]

@@ -2,6 +2,7 @@
 use axum::body::Bytes;
 use contract::Camera;
 use files::Failure;
+use run::World as _;
 use scenario::DockingScenario;
 use scenario::run_file::RunFile;
 use serde::Serialize;

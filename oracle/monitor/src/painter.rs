@@ -1,6 +1,7 @@
 //! Draws a picture again that is not kept any more, or never was: frame N alone is the frame N of the run.
 use axum::body::Bytes;
 use files::Failure;
+use run::World as _;
 
 use super::feed::{Feed, Surroundings};
 use super::session::{Order, Session};

@@ -4,7 +4,6 @@ use std::ops::Range;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
 use files::Failure;
-use sim::{SimulatedCamera, Simulator};
 
 /// Frames that a thread may be ahead of what is taken, at most: enough to keep threads busy.
 const FRAMES_PER_JOB: u64 = 32;
@@ -14,23 +13,6 @@ const BYTES_PER_JOB: u64 = 32 << 20;
 /// Frames of each thread that are made or wait to be taken, by the bytes that the pixels of one take.
 fn frames_per_job(frame_bytes: u64) -> u64 {
     (BYTES_PER_JOB / frame_bytes.max(1)).clamp(2, FRAMES_PER_JOB)
-}
-
-/// Makes something of each of `frames` on `jobs` threads, each with a camera of its own, and hands it to `take` in
-/// order. What is made does not depend on the number of threads.
-///
-/// # Errors
-/// The first failure in the order of the frames; nothing after it is taken.
-pub fn fly<T: Send>(
-    simulator: &Simulator,
-    frames: Range<u64>,
-    jobs: usize,
-    make: impl Fn(&mut SimulatedCamera<'_>, u64) -> Result<T, Failure> + Sync,
-    take: impl FnMut(T) -> Result<(), Failure>,
-) -> Result<(), Failure> {
-    let (columns, rows) = simulator.projection().detector();
-    let frame_bytes = (columns * rows * size_of::<u16>()) as u64;
-    in_order(frames, jobs, frame_bytes, || Ok(simulator.camera()?), make, take)
 }
 
 /// Makes something of each of `frames` on `jobs` threads, each with a workspace of its own, and hands it to `take` in

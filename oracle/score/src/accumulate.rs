@@ -14,10 +14,9 @@ use super::report::{Figure, GroupScore, Score, names};
 use super::verdict::{FrameVerdict, Taken, Verdict, judge};
 
 /// The true camera's inverse projection: the direction whose image is at a point, `None` where there is none.
-pub type Unproject<'a> = &'a dyn Fn(PixelPoint) -> Option<Direction<CameraFrame>>;
+pub type Unproject<'a> = dyn Fn(PixelPoint) -> Option<Direction<CameraFrame>> + 'a;
 
 /// What the score needs besides the frames.
-#[derive(Clone)]
 pub struct ScoreContext<'a> {
     /// Name of the scenario.
     pub scenario: String,
@@ -32,7 +31,7 @@ pub struct ScoreContext<'a> {
     /// Rows of the detector.
     pub rows: usize,
     /// Inverse projection of the true camera.
-    pub unproject: Unproject<'a>,
+    pub unproject: Box<Unproject<'a>>,
 }
 
 /// A score and the verdicts that it counts.
@@ -69,7 +68,6 @@ pub enum ScoreError {
 ///
 /// ```
 /// use boresight_score::{ScoreContext, Scorer};
-/// let unproject = |_| Some(contract::Direction::z());
 /// let context = ScoreContext {
 ///     scenario: "argon".to_owned(),
 ///     seed: 1,
@@ -77,7 +75,7 @@ pub enum ScoreError {
 ///     inject: None,
 ///     columns: 752,
 ///     rows: 580,
-///     unproject: &unproject,
+///     unproject: Box::new(unproject),
 /// };
 /// let scored = Scorer::new(context).finish();
 /// assert_eq!(scored.score.figures["hit_rate"].value, None); // of no frame: nothing, and no NaN
@@ -122,7 +120,7 @@ impl<'a> Scorer<'a> {
         let verdict = FrameVerdict {
             frame,
             group,
-            verdict: judge(truth, objects, outcome, detector, self.context.unproject),
+            verdict: judge(truth, objects, outcome, detector, &self.context.unproject),
             n_stars: outcome.and_then(|outcome| outcome.n_stars),
             attitude_source: outcome.and_then(|outcome| outcome.attitude_source),
         };
@@ -253,13 +251,6 @@ fn definitions() -> Vec<Definition<'static, FrameVerdict>> {
     ]
 }
 
-impl Scored {
-    /// Every frame by itself, with what it adds to each figure.
-    pub fn units(&self) -> UnitTable {
-        UnitTable::of_frames(&self.verdicts)
-    }
-}
-
 impl UnitTable {
     /// The frames of a far-range run, from their verdicts.
     pub fn of_frames(frames: &[FrameVerdict]) -> Self {
@@ -293,7 +284,7 @@ mod tests {
             inject: None,
             columns: COLUMNS,
             rows: ROWS,
-            unproject: &unproject,
+            unproject: Box::new(unproject),
         })
     }
 
@@ -472,7 +463,7 @@ mod tests {
             scorer.add(&truth, &objects, outcome.as_ref()).unwrap();
         }
         let scored = scorer.finish();
-        let table = scored.units();
+        let table = UnitTable::of_frames(&scored.verdicts);
         assert_eq!(
             table.units.iter().map(|unit| unit.number).collect::<Vec<_>>(),
             (0..10).collect::<Vec<_>>()

@@ -176,7 +176,7 @@ pub(super) fn judge(
     objects: &[ObjectTruth],
     outcome: Option<&Outcome>,
     detector: Detector,
-    unproject: Unproject<'_>,
+    unproject: &Unproject<'_>,
 ) -> Verdict {
     let missed = |outcome| Verdict::Missed { cause: cause(truth, objects, outcome, detector) };
     let Some(answer) = outcome else { return missed(None) };
@@ -203,7 +203,7 @@ fn sound_error(
     measurement: &Measurement,
     truth: &FrameTruth,
     detector: Detector,
-    unproject: Unproject<'_>,
+    unproject: &Unproject<'_>,
 ) -> Option<LineOfSightError> {
     if measurement.position.is_on_detector(detector.columns, detector.rows) {
         LineOfSightError::of(measurement, truth, unproject)

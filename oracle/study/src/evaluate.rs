@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use contract::PipelineFactory;
 use files::Failure;
 use indexmap::IndexMap;
-use run::docking_renderer::DockingRenderer;
-use run::docking_run::PreparedDocking;
-use run::{FirstFailure, Prepared};
+use run::docking::renderer::DockingRenderer;
+use run::{FirstFailure, Prepared, PreparedDocking, Scored, World};
 use scenario::Scenario;
 use score::{self, Figure};
 
@@ -55,21 +55,25 @@ fn figures_of(
     scratch: &Path,
 ) -> Result<(IndexMap<String, Figure>, Option<FirstFailure>), Failure> {
     match &case.source.scenario {
-        Scenario::FarRange(_) => {
-            let prepared = Prepared::new(&case.source)?;
-            let factory = pipeline.factory(&prepared.scenario().far_range, scratch)?;
-            let frames = study.frames(prepared.frame_count())?;
-            let ran = prepared.score(frames, factory.as_ref())?;
-            Ok((ran.scored.score.figures, ran.first_failure))
+        Scenario::FarRange(scenario) => {
+            let factory = pipeline.factory(&scenario.far_range, scratch)?;
+            figures_in(study, &Prepared::new(&case.source)?, factory.as_ref())
         }
-        Scenario::Docking(_) => {
+        Scenario::Docking(scenario) => {
+            let factory = pipeline.docking_factory(&scenario.docking, scratch)?;
             let prepared = PreparedDocking::new(&case.source, DockingRenderer::Fast)?;
-            let factory = pipeline.docking_factory(&prepared.scenario().docking, scratch)?;
-            let fields = study.frames(prepared.field_count())?;
-            let (scorer, first_failure) = prepared.score(fields, factory.as_ref())?;
-            Ok((scorer.finish().figures, first_failure))
+            figures_in(study, &prepared, factory.as_ref())
         }
     }
+}
+
+fn figures_in<W: World>(
+    study: &Study,
+    world: &W,
+    factory: &dyn PipelineFactory<W::Interface>,
+) -> Result<(IndexMap<String, Figure>, Option<FirstFailure>), Failure> {
+    let ran = world.score(study.frames(world.frame_count())?, factory)?;
+    Ok((ran.scored.figures().clone(), ran.first_failure))
 }
 
 /// Names of all figures of a score of a scenario's world, in their order.

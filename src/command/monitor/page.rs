@@ -5,9 +5,9 @@ use std::path::Path;
 
 use files::Failure;
 use monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
-use run::Prepared;
-use run::docking_renderer::DockingRenderer;
-use run::docking_run::PreparedDocking;
+use run::PreparedDocking;
+use run::docking::renderer::DockingRenderer;
+use run::{Prepared, World as _};
 use scenario::{BUILT_IN, Scenario, ScenarioSource};
 use serde_json::json;
 
@@ -88,7 +88,7 @@ fn live(arguments: &MonitorArguments, scratch: &Path) -> Result<(String, Feed), 
         }
         Scenario::Docking(_) => {
             let prepared = PreparedDocking::new(&source, DockingRenderer::Fast)?;
-            let frames = arguments.frames(prepared.field_count())?;
+            let frames = arguments.frames(prepared.frame_count())?;
             let factory = choice.docking_factory(&prepared.scenario().docking, scratch)?;
             Feed::Docking(Box::new(prepared), Measurements::Live { factory, frames, jobs })
         }

@@ -5,7 +5,7 @@ use clap::ValueEnum;
 use files::{Failure, FileError, RunDirectory, WholeFile, toml_file};
 use report::{FarRangeRun, check_budget};
 use run::pipeline_choice::PipelineChoice;
-use run::{Expectation, Flight, Prepared};
+use run::{Expectation, Flight, Prepared, World as _};
 use scenario::{ScenarioSource, Stage};
 
 use crate::command::options::default_jobs;

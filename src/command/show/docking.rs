@@ -11,7 +11,7 @@ use files::{
     Failure, FieldOrder, FieldRow, FieldSource, Scan, SequenceOptions, format_utc, read_field_telemetry,
     read_listed_field,
 };
-use run::docking_renderer::DockingRenderer;
+use run::docking::renderer::DockingRenderer;
 use scenario::run_file::RunFile;
 use scenario::{DockingScenario, ScenarioSource};
 use score::UnitVerdict;

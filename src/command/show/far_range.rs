@@ -140,7 +140,6 @@ fn verdict(
 ) -> Result<Verdict, Failure> {
     let camera = &run_file.scenario.camera;
     let projection = Projection::new(camera)?;
-    let unproject = |point| projection.unproject(point);
     let mut scorer = Scorer::new(ScoreContext {
         scenario: run_file.name.clone(),
         seed: run_file.scenario.seed,
@@ -148,7 +147,7 @@ fn verdict(
         inject: None,
         columns: camera.columns,
         rows: camera.rows,
-        unproject: &unproject,
+        unproject: Box::new(|point| projection.unproject(point)),
     });
     let judged = scorer.add(truth, objects, answer);
     judged

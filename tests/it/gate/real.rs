@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use boresight::docking_renderer::DockingRenderer;
-use boresight::docking_run::PreparedDocking;
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::run::Prepared;
+use boresight::run::docking::renderer::DockingRenderer;
+use boresight::run::{Prepared, PreparedDocking, Scored as _, World as _};
 use boresight::scenario::{Scenario, ScenarioSource};
 use boresight::score::{FrameVerdict, UnitTable};
 use contract::docking::{Docking, DockingOutcome, DockingSetup, DockingSolution, Field, FieldTelemetry};
@@ -42,8 +41,8 @@ pub(crate) fn docking_runs(seeds: Range<u64>, fields: Range<u64>) -> Vec<(UnitTa
     let run = |seed: u64| {
         let prepared = PreparedDocking::new(&source("docking", seed), DockingRenderer::Fast).unwrap();
         let factory = PIPELINE.docking_factory(&prepared.scenario().docking, &std::env::temp_dir()).unwrap();
-        let own = prepared.score(fields.clone(), factory.as_ref()).unwrap().0.units();
-        let scaled = prepared.score(fields.clone(), &Scaled(factory.as_ref())).unwrap().0.units();
+        let own = prepared.score(fields.clone(), factory.as_ref()).unwrap().scored.units();
+        let scaled = prepared.score(fields.clone(), &Scaled(factory.as_ref())).unwrap().scored.units();
         (own, scaled)
     };
     seeds.into_par_iter().map(run).collect()

@@ -6,7 +6,7 @@ use contract::docking::DockingSetup;
 use contract::{PixelPoint, Window};
 use files::Failure;
 use files::docking::FeatureRow;
-use run::docking_renderer::DockingRenderer;
+use run::docking::renderer::DockingRenderer;
 use scenario::ScenarioSource;
 use sim::docking::{DockingSimulator, FieldTruth};
 

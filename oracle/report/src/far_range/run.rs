@@ -16,6 +16,7 @@ use std::path::Path;
 use contract::Outcome;
 use files::{Failure, TableReader, TelemetryRow, format_utc, read_measurements, read_telemetry};
 use hifitime::{Epoch, Unit};
+use run::{Prepared, World as _};
 use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 use score::{FrameVerdict, Score};
@@ -56,7 +57,8 @@ impl FarRangeRun {
     pub fn read(directory: &Path) -> Result<Self, Failure> {
         check_files(directory)?;
         let clusters = Some(directory.join("clusters.parquet")).filter(|path| path.is_file());
-        let scored = run::score(directory, &directory.join("measurements.csv"), clusters.as_deref())?;
+        let scored =
+            Prepared::score_files(directory, &directory.join("measurements.csv"), clusters.as_deref())?;
         Self::with_verdicts(directory, scored.verdicts)
     }
 

@@ -215,7 +215,7 @@ impl DockingScorer {
 
     /// The figures over all fields. A bin of range and lens is one sequence for the statistics, even where another one
     /// interrupts it.
-    pub fn finish(self) -> DockingScore {
+    pub fn score(&self) -> DockingScore {
         let mut groups: BTreeMap<(usize, usize), Vec<&FieldVerdict>> = BTreeMap::new();
         for verdict in &self.verdicts {
             groups.entry(verdict.group).or_default().push(verdict);
@@ -227,10 +227,10 @@ impl DockingScorer {
         let lenses = lens_names(&self.context.setup.cameras);
         DockingScore {
             world: "docking".to_owned(),
-            scenario: self.context.scenario,
+            scenario: self.context.scenario.clone(),
             seed: self.context.seed,
-            version: self.context.version,
-            renderer: self.context.renderer,
+            version: self.context.version.clone(),
+            renderer: self.context.renderer.clone(),
             frames: all.frames,
             portions: all.portions,
             figures: all.figures,

@@ -6,7 +6,7 @@ use super::*;
 use crate::docking::hand_made::{ahead, field, measured, range_only, setup};
 
 fn score(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScore {
-    scored(fields).finish()
+    scored(fields).score()
 }
 
 fn scored(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScorer {

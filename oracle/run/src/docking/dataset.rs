@@ -1,12 +1,7 @@
-//! What a docking run or dataset writes: images, telemetry and truth, and a pipeline's answers.
+//! What a docking run and a rendered dataset have in common on disk: images, telemetry and truth.
 
-use std::io;
-use std::path::Path;
-
-use contract::docking::{DockingOutcome, DockingSetup, Field, FieldTelemetry};
-use files::docking::{
-    FeatureRow, FieldMeasurementWriter, MotionWriter, SetupFile, outcome_as_filed, report_as_filed,
-};
+use contract::docking::{DockingSetup, Field, FieldTelemetry};
+use files::docking::SetupFile;
 use files::{
     AviCoding, AviWriter, Failure, FieldRow, FieldTelemetryWriter, FileError, ImageFormat, RunDirectory,
     TableWriter, Y4mWriter, write_field,
@@ -15,7 +10,8 @@ use scenario::DockingScenario;
 use scenario::run_file::RunFile;
 use sim::docking::FieldTruth;
 
-use crate::far_range_run::FirstFailure;
+use super::PreparedDocking;
+use crate::world::Dataset;
 
 /// Quality of Motion-JPEG: its error is below the noise of a field.
 const JPEG_QUALITY: u8 = 95;
@@ -108,7 +104,7 @@ impl Video {
 }
 
 /// What a run and a rendered dataset have in common on disk: everything but answers and score.
-pub(crate) struct FieldDataset<'a> {
+pub struct FieldDataset<'a> {
     directory: &'a RunDirectory,
     telemetry: FieldTelemetryWriter,
     truth: TableWriter<FieldTruth>,
@@ -134,13 +130,10 @@ impl<'a> FieldDataset<'a> {
             video: Video::create(directory, images, setup, scenario.television.frame_rate_hz)?,
         })
     }
+}
 
-    pub(crate) fn add(
-        &mut self,
-        field: &Field,
-        telemetry: FieldTelemetry,
-        truth: FieldTruth,
-    ) -> Result<(), FileError> {
+impl Dataset<PreparedDocking> for FieldDataset<'_> {
+    fn add(&mut self, field: &Field, telemetry: FieldTelemetry, truth: FieldTruth) -> Result<(), FileError> {
         let number = field.number();
         let is_png = self.is_png;
         if is_png {
@@ -158,65 +151,9 @@ impl<'a> FieldDataset<'a> {
         self.truth.write([truth])
     }
 
-    /// Completes the files, the telemetry last: it makes a dataset of the directory.
-    pub(crate) fn finish(self) -> Result<(), Failure> {
+    fn finish(self) -> Result<(), FileError> {
         self.truth.finish()?;
         self.video.map_or(Ok(()), Video::finish)?;
-        self.telemetry.finish()?;
-        Ok(())
+        self.telemetry.finish()
     }
-}
-
-/// The files of a pipeline's answers, or a stream of them.
-pub(crate) struct Answers {
-    measurements: FieldMeasurementWriter,
-    /// What is said at the end of portions, and what was recognised; not in a stream.
-    more: Option<(MotionWriter, TableWriter<FeatureRow>)>,
-    first_failure: Option<FirstFailure>,
-}
-
-impl Answers {
-    pub(crate) fn create(measurements: &Path, motion: &Path, features: &Path) -> Result<Self, FileError> {
-        Ok(Self {
-            measurements: FieldMeasurementWriter::create(measurements)?,
-            more: Some((MotionWriter::create(motion)?, TableWriter::create(features)?)),
-            first_failure: None,
-        })
-    }
-
-    /// The measurements alone to standard output, each as soon as it is there.
-    pub(crate) fn stream() -> Result<Self, FileError> {
-        let measurements = FieldMeasurementWriter::stream("standard output", io::stdout())?;
-        Ok(Self { measurements, more: None, first_failure: None })
-    }
-
-    /// Writes an answer; what it gives back is the answer as it stands in the files.
-    pub(crate) fn add(&mut self, field: u64, outcome: &DockingOutcome) -> Result<DockingOutcome, FileError> {
-        self.first_failure = self.first_failure.take().or_else(|| FirstFailure::of_field(field, outcome));
-        self.measurements.write(field, outcome)?;
-        if let Some((motion, features)) = &mut self.more {
-            if let Some(report) = &outcome.motion {
-                motion.write(field, report)?;
-            }
-            features.write(FeatureRow::of(field, &outcome.features))?;
-        }
-        Ok(answer_as_filed(outcome))
-    }
-
-    pub(crate) fn finish(self) -> Result<Option<FirstFailure>, FileError> {
-        // The measurements last: without them, nobody misses the others.
-        if let Some((motion, features)) = self.more {
-            motion.finish()?;
-            features.finish()?;
-        }
-        self.measurements.finish()?;
-        Ok(self.first_failure)
-    }
-}
-
-/// An answer as it stands in the files.
-pub(crate) fn answer_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
-    let mut answered = outcome_as_filed(outcome);
-    answered.motion = outcome.motion.as_ref().map(report_as_filed);
-    answered
 }

@@ -1,6 +1,6 @@
 //! What a run and a rendered dataset have in common on disk: everything but measurements and score.
 
-use contract::{Direction, Frame};
+use contract::{Direction, Frame, Telemetry};
 use files::{
     CameraFile, Failure, FileError, FrameHeader, ImageFormat, RunDirectory, StarRow, TableWriter, TanSip,
     TelemetryRow, TelemetryWriter, format_utc, write_frame, write_stars,
@@ -11,15 +11,18 @@ use scenario::run_file::RunFile;
 use sim::truth::{FrameTruth, ObjectTruth, Observer};
 use sim::{Exposure, Simulator};
 
+use super::{Prepared, SceneTruth};
+use crate::world::Dataset;
+
 /// Writes `run.toml`, `camera.toml`, `stars.csv`, then frame by frame `telemetry.csv` and the truth tables.
-pub struct DatasetWriter {
+pub struct FrameDataset {
     telemetry: TelemetryWriter,
     frames: TableWriter<FrameTruth>,
     objects: TableWriter<ObjectTruth>,
     images: Option<ImageFormat>,
 }
 
-impl DatasetWriter {
+impl FrameDataset {
     /// Writes what does not depend on frames, and begins the tables.
     ///
     /// # Errors
@@ -52,30 +55,23 @@ impl DatasetWriter {
             images,
         })
     }
+}
 
-    /// Adds a frame to the tables, and gives back its image, which is not in them: if images are kept, it was saved by
-    /// [`save_image`].
-    ///
-    /// # Errors
-    /// [`FileError`] when a table cannot be written.
-    pub fn add(&mut self, exposure: Exposure) -> Result<Frame, FileError> {
-        let number = exposure.frame.number();
+impl Dataset<Prepared> for FrameDataset {
+    /// Adds a frame to the tables. Its image is not in them: if images are kept, it was saved by [`save_image`].
+    fn add(&mut self, frame: &Frame, telemetry: Telemetry, truth: SceneTruth) -> Result<(), FileError> {
+        let number = frame.number();
         self.telemetry.write(&TelemetryRow {
             frame: number,
             file: self.images.map(|format| RunDirectory::frame_name(number, format)),
-            telemetry: exposure.telemetry,
-            windows: exposure.frame.windows().map(<[_]>::to_vec),
+            telemetry,
+            windows: frame.windows().map(<[_]>::to_vec),
         })?;
-        self.frames.write([exposure.truth])?;
-        self.objects.write(exposure.objects)?;
-        Ok(exposure.frame)
+        self.frames.write([truth.frame])?;
+        self.objects.write(truth.objects)
     }
 
-    /// Completes the tables, that of the telemetry last: it makes a dataset of the directory.
-    ///
-    /// # Errors
-    /// [`FileError`] when a table cannot be written.
-    pub fn finish(self) -> Result<(), FileError> {
+    fn finish(self) -> Result<(), FileError> {
         self.frames.finish()?;
         self.objects.finish()?;
         self.telemetry.finish()

@@ -1,15 +1,17 @@
 //! An error budget: the truth in the place of one stage's result, to see what that stage costs.
-use contract::{Direction, Icrs, ListedStar, Outcome, PixelPoint, Setup};
+use contract::{Direction, Frame, Icrs, ListedStar, Outcome, PixelPoint, Setup, Telemetry};
 use files::Failure;
 use pipeline::far_range::{FarRangeConfig, FarRangePipeline, Identity, Overrides};
 use scenario::Stage;
 use score::belonging_to;
-use sim::Exposure;
 use sim::truth::{ObjectKind, Observer};
+
+use super::{Prepared, SceneTruth};
+use crate::world::InformedPipeline;
 
 /// The built-in pipeline with the truth in the place of one stage's result.
 #[derive(Debug)]
-pub struct InjectedPipeline {
+pub(super) struct InjectedPipeline {
     stage: Stage,
     pipeline: FarRangePipeline,
 }
@@ -19,26 +21,28 @@ impl InjectedPipeline {
     ///
     /// # Errors
     /// [`Failure::Usage`] when the configuration or the setup does not allow the pipeline.
-    pub fn new(stage: Stage, config: &FarRangeConfig, setup: &Setup) -> Result<Self, Failure> {
+    pub(super) fn new(stage: Stage, config: &FarRangeConfig, setup: &Setup) -> Result<Self, Failure> {
         let pipeline = FarRangePipeline::new(config.clone(), setup)
             .map_err(|error| Failure::Usage(error.to_string()))?;
         Ok(Self { stage, pipeline })
     }
+}
 
-    /// Answers a frame, with its truth at hand for the one stage.
-    ///
-    /// # Errors
-    /// [`Failure::Simulation`] for a chaser where none can be.
-    pub fn answer(&mut self, exposure: &Exposure) -> Result<Outcome, Failure> {
-        let (frame, truth) = (&exposure.frame, &exposure.truth);
+impl InformedPipeline<Prepared> for InjectedPipeline {
+    fn process(
+        &mut self,
+        frame: &Frame,
+        telemetry: &Telemetry,
+        SceneTruth { frame: truth, objects }: &SceneTruth,
+    ) -> Result<Outcome, Failure> {
         let observer = Observer::new(truth.time, truth.position_km, truth.velocity_km_s)?;
         // A place beside the detector would be no detection: there the cluster keeps its own.
         let centroid = |centre: PixelPoint| {
-            belonging_to(centre, &exposure.objects)
+            belonging_to(centre, objects)
                 .map(|object| object.position)
                 .filter(|place| place.is_on_detector(frame.columns(), frame.rows()))
         };
-        let identity = |centre: PixelPoint| match belonging_to(centre, &exposure.objects) {
+        let identity = |centre: PixelPoint| match belonging_to(centre, objects) {
             Some(object) if object.kind == ObjectKind::Star => Identity::Star(object.id),
             Some(object) if object.kind == ObjectKind::HotPixel => Identity::Hotspot,
             _ => Identity::Neither,
@@ -53,6 +57,6 @@ impl InjectedPipeline {
             // The frames themselves are other ones.
             Stage::Roi => own,
         };
-        Ok(self.pipeline.process_with(frame, &exposure.telemetry, &overrides))
+        Ok(self.pipeline.process_with(frame, telemetry, &overrides))
     }
 }

@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+"""Counts the lines of production code by crate: without comments, blank lines and tests.
+
+    python3 docs/building/lines.py [DIRECTORY]
+
+Tests are files and folders of the name `tests`, and the item after `#[cfg(test)]`. Research programs, examples, benchmarks and scripts of
+other languages are not counted.
+"""
+
+import collections
+import pathlib
+import re
+import sys
+
+CRATES = ("contract", "sim", "pipeline", "oracle", "src", "python", "fuzz")
+SKIPPED = {"tests", "benches", "target", "node_modules", "examples"}
+
+
+def lines(text: str) -> int:
+    count = 0
+    item = None  # Of a test: the indentation at which its item ends.
+    for line in text.splitlines():
+        stripped = line.strip()
+        indent = len(line) - len(line.lstrip())
+        if item is None and stripped == "#[cfg(test)]":
+            item = indent
+        elif item is not None:
+            if stripped and indent == item and (stripped.startswith("}") or re.search(r"[;}]$", stripped)):
+                item = None
+        elif stripped and not stripped.startswith("//"):
+            count += 1
+    return count
+
+
+def main() -> None:
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
+    counts: collections.Counter[str] = collections.Counter()
+    for crate in CRATES:
+        for path in (root / crate).rglob("*.rs"):
+            parts = path.relative_to(root).parts
+            if SKIPPED & set(parts) or path.name == "tests.rs":
+                continue
+            name = "/".join(parts[:2]) if parts[0] == "oracle" else parts[0]
+            counts[name] += lines(path.read_text())
+    for name, count in sorted(counts.items()):
+        print(f"{count:6} {name}")
+    print(f"{sum(counts.values()):6} all")
+
+
+if __name__ == "__main__":
+    main()

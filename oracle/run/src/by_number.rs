@@ -1,0 +1,52 @@
+//! Rows of a file, taken by the numbers of the frames of the truth.
+
+use std::iter::Peekable;
+use std::path::Path;
+use std::vec::IntoIter;
+
+use files::Failure;
+
+/// Rows in ascending order of their numbers, which must all be numbers of the truth.
+pub(crate) struct ByNumber<'a, T> {
+    rows: Peekable<IntoIter<(u64, T)>>,
+    path: &'a Path,
+    /// Column of the numbers.
+    key: &'static str,
+    truth: &'a Path,
+}
+
+impl<'a, T> ByNumber<'a, T> {
+    /// The rows of the file `path`, which belong to the frames of the table `truth`.
+    pub(crate) fn new(rows: Vec<(u64, T)>, path: &'a Path, key: &'static str, truth: &'a Path) -> Self {
+        Self { rows: rows.into_iter().peekable(), path, key, truth }
+    }
+
+    /// The row of a frame, if there is one. Numbers must ascend.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a row of an earlier frame, which the truth does not have.
+    pub(crate) fn of(&mut self, number: u64) -> Result<Option<T>, Failure> {
+        let next = self.rows.peek().map(|(next, _)| *next);
+        match next.filter(|next| *next < number) {
+            Some(earlier) => Err(self.foreign(earlier)),
+            None => Ok(self.rows.next_if(|(found, _)| *found == number).map(|(_, row)| row)),
+        }
+    }
+
+    /// Makes sure that every row was taken.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a row of a frame that the truth does not have.
+    pub(crate) fn end(mut self) -> Result<(), Failure> {
+        self.rows.next().map_or(Ok(()), |(number, _)| Err(self.foreign(number)))
+    }
+
+    fn foreign(&self, number: u64) -> Failure {
+        Failure::Usage(format!(
+            "{}: `{key}` is `{number}`, expected a {key} of {}",
+            self.path.display(),
+            self.truth.display(),
+            key = self.key
+        ))
+    }
+}

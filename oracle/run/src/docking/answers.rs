@@ -1,0 +1,69 @@
+//! The files of a pipeline's answers: `measurements.csv`, `motion.csv` and `features.parquet`, or a stream of measurements.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use contract::docking::{Docking, DockingOutcome};
+use files::docking::{FeatureRow, FieldMeasurementWriter, MotionWriter, outcome_as_filed, report_as_filed};
+use files::{FileError, TableWriter};
+
+use crate::world::Answers;
+
+/// Writes measurements, motions and features.
+pub struct FieldAnswers {
+    measurements: FieldMeasurementWriter,
+    /// What is said at the end of portions, and what was recognised; not in a stream.
+    more: Option<(MotionWriter, TableWriter<FeatureRow>)>,
+}
+
+impl FieldAnswers {
+    /// The measurements alone to standard output, each as soon as it is there.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when standard output cannot be written.
+    pub fn stream() -> Result<Self, FileError> {
+        let measurements = FieldMeasurementWriter::stream("standard output", io::stdout())?;
+        Ok(Self { measurements, more: None })
+    }
+}
+
+impl Answers<Docking> for FieldAnswers {
+    fn files(measurements: &Path) -> Vec<PathBuf> {
+        let beside = ["motion.csv", "features.parquet"].map(|name| measurements.with_file_name(name));
+        [measurements.to_owned()].into_iter().chain(beside).collect()
+    }
+
+    fn create(files: &[PathBuf]) -> Result<Self, FileError> {
+        let [measurements, motion, features] = crate::paths(files)?;
+        Ok(Self {
+            measurements: FieldMeasurementWriter::create(measurements)?,
+            more: Some((MotionWriter::create(motion)?, TableWriter::create(features)?)),
+        })
+    }
+
+    fn add(&mut self, field: u64, outcome: &DockingOutcome) -> Result<(), FileError> {
+        self.measurements.write(field, outcome)?;
+        if let Some((motion, features)) = &mut self.more {
+            if let Some(report) = &outcome.motion {
+                motion.write(field, report)?;
+            }
+            features.write(FeatureRow::of(field, &outcome.features))?;
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<(), FileError> {
+        if let Some((motion, features)) = self.more {
+            motion.finish()?;
+            features.finish()?;
+        }
+        self.measurements.finish()
+    }
+}
+
+/// An answer as it stands in the files.
+pub(crate) fn answer_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
+    let mut answered = outcome_as_filed(outcome);
+    answered.motion = outcome.motion.as_ref().map(report_as_filed);
+    answered
+}

@@ -1,0 +1,258 @@
+//! The far range: star fields with a distant spacecraft.
+
+pub mod answers;
+pub mod dataset;
+mod inject;
+pub mod star_list;
+
+use std::path::Path;
+
+use contract::{FarRange, Frame, Outcome, Setup, Telemetry};
+use files::{
+    Expected, Failure, FrameCluster, ImageFormat, RunDirectory, StarRow, TableReader, read_measurements,
+    write_expected,
+};
+use hifitime::Epoch;
+use indexmap::IndexMap;
+use scenario::run_file::RunFile;
+use scenario::{FarRangeScenario, ScenarioSource, Stage};
+use score::{Figure, Score, ScoreContext, Scored, UnitTable};
+use sim::Simulator;
+use sim::optics::Projection;
+use sim::truth::{FrameTruth, ObjectTruth};
+
+use self::answers::FrameAnswers;
+use self::dataset::{FrameDataset, save_image};
+use self::inject::InjectedPipeline;
+use self::star_list::star_list;
+use crate::by_number::ByNumber;
+use crate::world::{self, Expectation, Flight, InformedPipeline, World};
+
+/// A scenario with its simulator and star list, ready to fly.
+pub struct Prepared {
+    simulator: Simulator,
+    run_file: RunFile,
+    setup: Setup,
+    stars: Vec<StarRow>,
+    star_epoch: Epoch,
+}
+
+/// The ground truth of a frame.
+#[derive(Debug, Clone)]
+pub struct SceneTruth {
+    /// The frame.
+    pub frame: FrameTruth,
+    /// Every object in it.
+    pub objects: Vec<ObjectTruth>,
+}
+
+impl Prepared {
+    /// Checks a scenario and prepares its simulator.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the first value that is not allowed.
+    pub fn new(source: &ScenarioSource) -> Result<Self, Failure> {
+        Self::with_truth_for(source, None)
+    }
+
+    /// [`Prepared::new`], for a run of the built-in pipeline in which the truth stands in the place of a stage's result.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`]; [`Failure::Usage`] for the regions of interest of a scenario that has none.
+    pub fn with_truth_for(source: &ScenarioSource, inject: Option<Stage>) -> Result<Self, Failure> {
+        let mut scenario = source.far_range("far range")?.clone();
+        if inject == Some(Stage::Roi) && scenario.roi.take().is_none() {
+            return Err(Failure::Usage(format!(
+                "--inject is roi, expected a scenario with regions of interest: `{}` has no [roi]",
+                source.name
+            )));
+        }
+        let simulator = source.simulator(&scenario)?;
+        let run_file = RunFile::new(&source.name, &scenario, Some(simulator.catalog().sha256()), inject)?;
+        let (_, star_epoch) = simulator
+            .schedule()
+            .frame(0)
+            .ok_or_else(|| Failure::Usage(format!("scenario `{}` has no frame", source.name)))?;
+        let stars = star_list(simulator.catalog(), scenario.star_list.magnitude_limit, star_epoch);
+        let setup = setup(&run_file.scenario, &stars);
+        Ok(Self { simulator, run_file, setup, stars, star_epoch })
+    }
+
+    /// The scenario.
+    pub fn scenario(&self) -> &FarRangeScenario {
+        &self.run_file.scenario
+    }
+
+    /// What makes its frames.
+    pub fn simulator(&self) -> &Simulator {
+        &self.simulator
+    }
+}
+
+fn setup(scenario: &FarRangeScenario, stars: &[StarRow]) -> Setup {
+    Setup {
+        camera: scenario.camera.clone(),
+        camera_from_body: scenario.mounting.nominal.camera_from_body(),
+        bit_depth: scenario.sensor.bit_depth,
+        readout: Some(scenario.readout()),
+        zero_suppression_dn: scenario.zero_suppression_dn,
+        stars: stars.iter().map(StarRow::listed).collect(),
+    }
+}
+
+impl World for Prepared {
+    type Interface = FarRange;
+    type Images = ImageFormat;
+    type Exposure = sim::Exposure;
+    type Workspace<'a> = sim::SimulatedCamera<'a>;
+    type Truth = SceneTruth;
+    /// The camera controls its exposure time on its own.
+    type Feedback = ();
+    type Dataset<'a> = FrameDataset;
+    type Answers = FrameAnswers;
+    type Scorer<'a> = Scorer<'a>;
+    type Scored = Scored;
+
+    fn frame_count(&self) -> u64 {
+        self.simulator.schedule().frame_count()
+    }
+
+    fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
+    fn exposure_bytes(&self) -> usize {
+        let (columns, rows) = self.simulator.projection().detector();
+        columns * rows * size_of::<u16>()
+    }
+
+    fn workspace(&self) -> Result<sim::SimulatedCamera<'_>, Failure> {
+        Ok(self.simulator.camera()?)
+    }
+
+    fn expose(&self, camera: &mut sim::SimulatedCamera<'_>, frame: u64) -> Result<sim::Exposure, Failure> {
+        Ok(camera.expose(frame)?)
+    }
+
+    fn receive(exposure: sim::Exposure, (): &()) -> (Frame, Telemetry, SceneTruth) {
+        let sim::Exposure { frame, telemetry, truth, objects } = exposure;
+        (frame, telemetry, SceneTruth { frame: truth, objects })
+    }
+
+    fn feedback((): (), _: &Outcome) {}
+
+    fn save(
+        &self,
+        camera: &sim::SimulatedCamera<'_>,
+        exposure: &sim::Exposure,
+        directory: &RunDirectory,
+        flight: &Flight<ImageFormat>,
+    ) -> Result<(), Failure> {
+        if let Some(format) = flight.images {
+            save_image(directory, format, &self.simulator, &self.run_file, exposure)?;
+        }
+        if flight.expectation == Expectation::Kept {
+            let image = camera.expected();
+            let (columns, rows) = image.size();
+            let electrons = image.iter().map(|electrons| electrons as f32).collect();
+            let path = directory.expected(exposure.frame.number());
+            write_expected(&path, &Expected { columns, rows, electrons })?;
+        }
+        Ok(())
+    }
+
+    fn reuse(camera: &mut sim::SimulatedCamera<'_>, frame: Frame) {
+        camera.reuse(frame);
+    }
+
+    fn informed(&self) -> Result<Option<Box<dyn InformedPipeline<Self>>>, Failure> {
+        let Some(stage) = self.run_file.inject else { return Ok(None) };
+        let pipeline = InjectedPipeline::new(stage, &self.scenario().far_range, &self.setup)?;
+        Ok(Some(Box::new(pipeline)))
+    }
+
+    fn dataset(
+        &self,
+        directory: &RunDirectory,
+        flight: &Flight<ImageFormat>,
+    ) -> Result<FrameDataset, Failure> {
+        if flight.expectation == Expectation::Kept {
+            directory.create_expected()?;
+        }
+        FrameDataset::create(directory, &self.run_file, &self.stars, self.star_epoch, flight.images)
+    }
+
+    fn scorer(&self) -> Scorer<'_> {
+        Scorer(score::Scorer::new(context(&self.run_file, self.simulator.projection())))
+    }
+
+    fn score_files(
+        directory: &Path,
+        measurements: &Path,
+        clusters: Option<&Path>,
+    ) -> Result<Scored, Failure> {
+        let run_file = RunFile::<FarRangeScenario>::read(&directory.join("run.toml"))?;
+        let projection = Projection::new(&run_file.scenario.camera)?;
+        let mut scorer = score::Scorer::new(context(&run_file, &projection));
+        let truth = directory.join("truth/frames.parquet");
+        let mut objects = TableReader::<ObjectTruth>::open(&directory.join("truth/objects.parquet"))?;
+        let frames = TableReader::<FrameTruth>::open(&truth)?;
+        let mut clusters = clusters.map(TableReader::<FrameCluster>::open).transpose()?;
+        let mut answers = ByNumber::new(read_measurements(measurements)?, measurements, "frame", &truth);
+        for frame in frames {
+            let (number, truths) = frame?;
+            let objects = objects.rows_of(number)?;
+            let mut outcome = answers.of(number)?;
+            if let Some((outcome, table)) = outcome.as_mut().zip(clusters.as_mut()) {
+                outcome.clusters = table.rows_of(number)?.into_iter().map(|row| row.cluster).collect();
+            }
+            for truth in &truths {
+                scorer.add(truth, &objects, outcome.as_ref()).map_err(crate::unscorable)?;
+            }
+        }
+        answers.end()?;
+        Ok(scorer.finish())
+    }
+}
+
+/// Judges the frames of a run.
+pub struct Scorer<'a>(score::Scorer<'a>);
+
+impl world::Scorer<Prepared> for Scorer<'_> {
+    fn add(&mut self, truth: &SceneTruth, outcome: &Outcome) -> Result<(), Failure> {
+        self.0.add(&truth.frame, &truth.objects, Some(outcome)).map_err(crate::unscorable)?;
+        Ok(())
+    }
+
+    fn finish(self) -> Scored {
+        self.0.finish()
+    }
+}
+
+impl world::Scored for Scored {
+    type Score = Score;
+
+    fn score(&self) -> &Score {
+        &self.score
+    }
+
+    fn figures(&self) -> &IndexMap<String, Figure> {
+        &self.score.figures
+    }
+
+    fn units(&self) -> UnitTable {
+        UnitTable::of_frames(&self.verdicts)
+    }
+}
+
+fn context<'a>(run_file: &RunFile, projection: &'a Projection) -> ScoreContext<'a> {
+    ScoreContext {
+        scenario: run_file.name.clone(),
+        seed: run_file.scenario.seed,
+        version: run_file.version.clone(),
+        inject: run_file.inject.map(|stage| stage.to_string()),
+        columns: run_file.scenario.camera.columns,
+        rows: run_file.scenario.camera.rows,
+        unproject: Box::new(|point| projection.unproject(point)),
+    }
+}

@@ -1,0 +1,495 @@
+//! One run over a world: expose, process, score, write.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use contract::{Interface, Pipeline, PipelineFactory};
+use files::{Failure, FileError, PartialFiles, RunDirectory, WholeFile};
+use indexmap::IndexMap;
+use score::{Figure, UnitTable};
+use serde::Serialize;
+
+use crate::flight::in_order;
+
+/// The setup that pipelines of a world are built with.
+pub type SetupOf<W> = <<W as World>::Interface as Interface>::Setup;
+/// An image of a world.
+pub type ImageOf<W> = <<W as World>::Interface as Interface>::Image;
+/// The telemetry of an image of a world.
+pub type TelemetryOf<W> = <<W as World>::Interface as Interface>::Telemetry;
+/// A pipeline's answer in a world.
+pub type OutcomeOf<W> = <<W as World>::Interface as Interface>::Outcome;
+
+/// A scenario with its simulator, ready to fly: what a world has of its own. The run itself is the same for every world.
+///
+/// Exposures are made on any number of threads. They are received and processed one after the other, because an answer may change how
+/// later images are received ([`World::Feedback`]): a closed loop, which no number of threads can change.
+pub trait World: Sized + Sync {
+    /// What its pipelines receive and answer.
+    type Interface: Interface;
+    /// Formats in which images are kept.
+    type Images: Copy + Sync;
+    /// What a thread makes of a frame, before it is received.
+    type Exposure: Send;
+    /// What a thread reuses from frame to frame.
+    type Workspace<'a>
+    where
+        Self: 'a;
+    /// The ground truth of a frame.
+    type Truth;
+    /// What answers change of later images.
+    type Feedback: Clone + Default;
+    /// Writes frames as a dataset.
+    type Dataset<'a>: Dataset<Self>
+    where
+        Self: 'a;
+    /// Writes answers.
+    type Answers: Answers<Self::Interface>;
+    /// Judges answers.
+    type Scorer<'a>: Scorer<Self>
+    where
+        Self: 'a;
+    /// A scored run.
+    type Scored: Scored;
+
+    /// Number of frames of the whole scenario.
+    fn frame_count(&self) -> u64;
+
+    /// What a pipeline is told before the first frame.
+    fn setup(&self) -> &SetupOf<Self>;
+
+    /// Memory of the pixels of an exposure, bytes.
+    fn exposure_bytes(&self) -> usize;
+
+    /// A workspace for a thread.
+    ///
+    /// # Errors
+    /// A [`Failure`] when it cannot be made.
+    fn workspace(&self) -> Result<Self::Workspace<'_>, Failure>;
+
+    /// Exposes a frame: the same bits whatever was exposed before.
+    ///
+    /// # Errors
+    /// A [`Failure`] when there is no such frame.
+    fn expose(&self, workspace: &mut Self::Workspace<'_>, frame: u64) -> Result<Self::Exposure, Failure>;
+
+    /// Image, telemetry and ground truth of an exposure, received as earlier answers have it.
+    fn receive(
+        exposure: Self::Exposure,
+        feedback: &Self::Feedback,
+    ) -> (ImageOf<Self>, TelemetryOf<Self>, Self::Truth);
+
+    /// What holds from the next frame on, after an answer.
+    fn feedback(before: Self::Feedback, outcome: &OutcomeOf<Self>) -> Self::Feedback;
+
+    /// Writes what is kept of an exposure in files of its own, on the thread that made it.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a file cannot be written.
+    fn save(
+        &self,
+        _: &Self::Workspace<'_>,
+        _: &Self::Exposure,
+        _: &RunDirectory,
+        _: &Flight<Self::Images>,
+    ) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Gives the memory of an image to a workspace.
+    fn reuse(_: &mut Self::Workspace<'_>, _: ImageOf<Self>) {}
+
+    /// The built-in pipeline with the truth in the place of a stage's result, where the run was asked for it.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the pipeline cannot be built.
+    fn informed(&self) -> Result<Option<Box<dyn InformedPipeline<Self>>>, Failure> {
+        Ok(None)
+    }
+
+    /// Begins a dataset: writes what does not depend on frames.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a file cannot be written.
+    fn dataset<'a>(
+        &'a self,
+        directory: &'a RunDirectory,
+        flight: &Flight<Self::Images>,
+    ) -> Result<Self::Dataset<'a>, Failure>;
+
+    /// A scorer that has seen no frame.
+    fn scorer(&self) -> Self::Scorer<'_>;
+
+    /// Scores measurements, somebody's or our own, against the truth in `directory`, with what lies beside them: clusters, or motions.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a file that cannot be read, or a row of a frame that the truth does not have.
+    fn score_files(
+        directory: &Path,
+        measurements: &Path,
+        beside: Option<&Path>,
+    ) -> Result<Self::Scored, Failure>;
+
+    /// Makes frames and writes them as a dataset; `done` is called after each.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a file cannot be written.
+    fn render(
+        &self,
+        directory: &RunDirectory,
+        flight: &Flight<Self::Images>,
+        done: impl Fn(),
+    ) -> Result<(), Failure> {
+        let mut dataset = self.dataset(directory, flight)?;
+        fly(self, Some(directory), flight, |exposure| {
+            let (image, telemetry, truth) = Self::receive(exposure, &Self::Feedback::default());
+            dataset.add(&image, telemetry, truth)?;
+            done();
+            Ok(image)
+        })?;
+        dataset.finish()?;
+        Ok(directory.seal()?)
+    }
+
+    /// Makes frames, has the pipeline process them and scores its answers; writes all of it, as long as `go_on`, asked after each
+    /// frame, does not fail. A scenario is one sequence: the pipeline is built once. With the truth for a stage, the pipeline is the
+    /// built-in one, whatever `factory` builds.
+    ///
+    /// # Errors
+    /// A [`Failure`] when a file cannot be written or the pipeline cannot be built; what `go_on` says.
+    fn run(
+        &self,
+        directory: &RunDirectory,
+        flight: &Flight<Self::Images>,
+        factory: &dyn PipelineFactory<Self::Interface>,
+        go_on: impl Fn() -> Result<(), Failure>,
+    ) -> Result<Ran<Self::Scored>, Failure> {
+        let mut dataset = self.dataset(directory, flight)?;
+        let mut running = Running::build(self, factory)?;
+        let mut answers = Self::Answers::create(&Self::Answers::files(&directory.measurements()))?;
+        let mut scorer = self.scorer();
+        let mut first_failure = None;
+        fly(self, Some(directory), flight, |exposure| {
+            let ProcessedFrame { image, telemetry, truth, outcome } = running.process(exposure)?;
+            let number = Self::Interface::number(&image);
+            first_failure =
+                first_failure.take().or_else(|| FirstFailure::of::<Self::Interface>(number, &outcome));
+            answers.add(number, &outcome)?;
+            scorer.add(&truth, &outcome)?;
+            dataset.add(&image, telemetry, truth)?;
+            go_on().map(|()| image)
+        })?;
+        dataset.finish()?;
+        answers.finish()?;
+        let scored = scorer.finish();
+        let json = serde_json::to_string_pretty(scored.score())
+            .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?;
+        WholeFile::with_text(&directory.score(), &(json + "\n"))?.commit_new()?;
+        directory.seal()?;
+        Ok(Ran { scored, first_failure })
+    }
+
+    /// Makes frames on `jobs` threads, has a fresh pipeline process them, and hands each with its answer to `take`, in order, on
+    /// the caller's thread. Nothing is written.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the pipeline cannot be built, and the first one of `take`.
+    fn follow(
+        &self,
+        frames: Range<u64>,
+        jobs: usize,
+        factory: &dyn PipelineFactory<Self::Interface>,
+        mut take: impl FnMut(ProcessedFrame<Self>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let mut running = Running::build(self, factory)?;
+        let make = |workspace: &mut Self::Workspace<'_>, frame| self.expose(workspace, frame);
+        let bytes = self.exposure_bytes() as u64;
+        in_order(frames, jobs, bytes, || self.workspace(), make, |exposure| take(running.process(exposure)?))
+    }
+
+    /// Makes frames on this thread, has the pipeline process them and scores its answers; nothing is written.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the pipeline cannot be built.
+    fn score(
+        &self,
+        frames: Range<u64>,
+        factory: &dyn PipelineFactory<Self::Interface>,
+    ) -> Result<Ran<Self::Scored>, Failure> {
+        let mut running = Running::build(self, factory)?;
+        let mut first_failure = None;
+        let mut scorer = self.scorer();
+        let mut workspace = self.workspace()?;
+        for frame in frames {
+            let processed = running.process(self.expose(&mut workspace, frame)?)?;
+            let failure = || FirstFailure::of::<Self::Interface>(frame, &processed.outcome);
+            first_failure = first_failure.or_else(failure);
+            scorer.add(&processed.truth, &processed.outcome)?;
+            Self::reuse(&mut workspace, processed.image);
+        }
+        Ok(Ran { scored: scorer.finish(), first_failure })
+    }
+}
+
+/// Which frames are made, on how many threads, and what is kept of their images.
+#[derive(Debug, Clone)]
+pub struct Flight<F> {
+    /// The frames.
+    pub frames: Range<u64>,
+    /// Threads that make frames; what is made does not depend on it.
+    pub jobs: usize,
+    /// Images to keep.
+    pub images: Option<F>,
+    /// Whether the noise-free expectation of every frame is kept with the truth, where a world has one.
+    pub expectation: Expectation,
+}
+
+/// What becomes of the noise-free expectation of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Expectation {
+    /// Written to `truth/expected/`, electrons, EXR.
+    Kept,
+    /// Dropped.
+    Dropped,
+}
+
+/// What a run gave.
+#[derive(Debug)]
+pub struct Ran<S> {
+    /// Score and verdicts.
+    pub scored: S,
+    /// The first failure of the pipeline, if it failed at all.
+    pub first_failure: Option<FirstFailure>,
+}
+
+/// The first image that a pipeline failed at, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FirstFailure {
+    /// Number of the image.
+    pub frame: u64,
+    /// The reason.
+    pub reason: String,
+}
+
+impl FirstFailure {
+    /// That of an image, if the pipeline itself failed at it.
+    fn of<I: Interface>(frame: u64, outcome: &I::Outcome) -> Option<Self> {
+        I::failure(outcome).map(|reason| Self { frame, reason: reason.to_owned() })
+    }
+}
+
+/// An image of a run, and what the pipeline answered.
+pub struct ProcessedFrame<W: World> {
+    /// The image, as it was received.
+    pub image: ImageOf<W>,
+    /// What the pipeline was told of it.
+    pub telemetry: TelemetryOf<W>,
+    /// The ground truth.
+    pub truth: W::Truth,
+    /// The pipeline's answer.
+    pub outcome: OutcomeOf<W>,
+}
+
+/// A pipeline that is given the truth as well, for the one stage whose result it replaces.
+pub trait InformedPipeline<W: World> {
+    /// Answers an image.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the truth is none.
+    fn process(
+        &mut self,
+        image: &ImageOf<W>,
+        telemetry: &TelemetryOf<W>,
+        truth: &W::Truth,
+    ) -> Result<OutcomeOf<W>, Failure>;
+}
+
+/// Writes what a run and a rendered dataset have in common: everything but answers and score.
+pub trait Dataset<W: World> {
+    /// Adds a frame.
+    ///
+    /// # Errors
+    /// [`FileError`] when a file cannot be written.
+    fn add(
+        &mut self,
+        image: &ImageOf<W>,
+        telemetry: TelemetryOf<W>,
+        truth: W::Truth,
+    ) -> Result<(), FileError>;
+
+    /// Completes the files, the telemetry last: it makes a dataset of the directory.
+    ///
+    /// # Errors
+    /// [`FileError`] when a file cannot be written.
+    fn finish(self) -> Result<(), FileError>;
+}
+
+/// Writes a pipeline's answers.
+pub trait Answers<I: Interface>: Sized {
+    /// The files: that of the measurements, which comes first, and those beside it.
+    fn files(measurements: &Path) -> Vec<PathBuf>;
+
+    /// Creates the files.
+    ///
+    /// # Errors
+    /// [`FileError`] when one exists or cannot be created.
+    fn create(files: &[PathBuf]) -> Result<Self, FileError>;
+
+    /// Adds an answer.
+    ///
+    /// # Errors
+    /// [`FileError`] when a file cannot be written.
+    fn add(&mut self, number: u64, outcome: &I::Outcome) -> Result<(), FileError>;
+
+    /// Completes the files, the measurements last: without them, nobody misses the others.
+    ///
+    /// # Errors
+    /// [`FileError`] when a file cannot be written.
+    fn finish(self) -> Result<(), FileError>;
+}
+
+/// Judges answers, one after the other.
+pub trait Scorer<W: World> {
+    /// Judges an answer, as it stands in the files of a run.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a truth that cannot be scored.
+    fn add(&mut self, truth: &W::Truth, outcome: &OutcomeOf<W>) -> Result<(), Failure>;
+
+    /// The score, with what it was counted from.
+    fn finish(self) -> W::Scored;
+}
+
+/// A scored run.
+pub trait Scored {
+    /// The content of `score.json`.
+    type Score: Serialize;
+
+    /// The score.
+    fn score(&self) -> &Self::Score;
+
+    /// The figures over all frames.
+    fn figures(&self) -> &IndexMap<String, Figure>;
+
+    /// The run frame by frame, for a comparison with another.
+    fn units(&self) -> UnitTable;
+}
+
+/// A pipeline at work on a sequence.
+struct Running<W: World> {
+    pipeline: Processor<W>,
+    feedback: W::Feedback,
+}
+
+enum Processor<W: World> {
+    Own(Box<dyn Pipeline<W::Interface>>),
+    Informed(Box<dyn InformedPipeline<W>>),
+}
+
+impl<W: World> Running<W> {
+    fn build(world: &W, factory: &dyn PipelineFactory<W::Interface>) -> Result<Self, Failure> {
+        let pipeline = match world.informed()? {
+            Some(informed) => Processor::Informed(informed),
+            None => Processor::Own(factory.build(world.setup())?),
+        };
+        Ok(Self { pipeline, feedback: W::Feedback::default() })
+    }
+
+    fn process(&mut self, exposure: W::Exposure) -> Result<ProcessedFrame<W>, Failure> {
+        let (image, telemetry, truth) = W::receive(exposure, &self.feedback);
+        let outcome = match &mut self.pipeline {
+            Processor::Own(pipeline) => pipeline.process(&image, &telemetry),
+            Processor::Informed(pipeline) => pipeline.process(&image, &telemetry, &truth)?,
+        };
+        self.feedback = W::feedback(self.feedback.clone(), &outcome);
+        Ok(ProcessedFrame { image, telemetry, truth, outcome })
+    }
+}
+
+/// Makes frames and hands them to `take`, which gives back their images: later ones are made in their memory.
+fn fly<W: World>(
+    world: &W,
+    directory: Option<&RunDirectory>,
+    flight: &Flight<W::Images>,
+    mut take: impl FnMut(W::Exposure) -> Result<ImageOf<W>, Failure>,
+) -> Result<(), Failure> {
+    let spare = Mutex::new(Vec::new());
+    let spares = || spare.lock().unwrap_or_else(PoisonError::into_inner);
+    let make = |workspace: &mut W::Workspace<'_>, frame| {
+        let reused = spares().pop();
+        reused.into_iter().for_each(|image| W::reuse(workspace, image));
+        let exposure = world.expose(workspace, frame)?;
+        if let Some(directory) = directory {
+            world.save(workspace, &exposure, directory, flight)?;
+        }
+        Ok(exposure)
+    };
+    let (frames, bytes) = (flight.frames.clone(), world.exposure_bytes() as u64);
+    in_order(
+        frames,
+        flight.jobs,
+        bytes,
+        || world.workspace(),
+        make,
+        |exposure| {
+            spares().push(take(exposure)?);
+            Ok(())
+        },
+    )
+}
+
+/// Has a pipeline process images, real ones included, and writes its answers to `measurements` and beside it.
+///
+/// # Errors
+/// A [`Failure`] when an image cannot be read or a file not be written.
+pub fn process<I: Interface, A: Answers<I>>(
+    images: impl IntoIterator<Item = Result<(I::Image, I::Telemetry), Failure>>,
+    setup: &I::Setup,
+    factory: &dyn PipelineFactory<I>,
+    measurements: &Path,
+    done: impl Fn(),
+) -> Result<Processed, Failure> {
+    // Under other names until all is done, so that a run that fails leaves nothing in the way of the next one.
+    let files = A::files(measurements);
+    let partial = PartialFiles::of(&files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
+    let waiting: Vec<PathBuf> = (0..files.len()).map(|index| partial.path(index).to_owned()).collect();
+    let processed = process_into(images, setup, factory, A::create(&waiting)?, done)?;
+    partial.complete()?;
+    Ok(processed)
+}
+
+/// Has a pipeline process images, and hands its answers to a writer.
+///
+/// # Errors
+/// As [`process`].
+pub fn process_into<I: Interface, A: Answers<I>>(
+    images: impl IntoIterator<Item = Result<(I::Image, I::Telemetry), Failure>>,
+    setup: &I::Setup,
+    factory: &dyn PipelineFactory<I>,
+    mut answers: A,
+    done: impl Fn(),
+) -> Result<Processed, Failure> {
+    let mut pipeline = factory.build(setup)?;
+    let mut processed = Processed { frames: 0, first_failure: None };
+    for image in images {
+        let (image, telemetry) = image?;
+        let (number, outcome) = (I::number(&image), pipeline.process(&image, &telemetry));
+        let failure = || FirstFailure::of::<I>(number, &outcome);
+        processed.first_failure = processed.first_failure.or_else(failure);
+        answers.add(number, &outcome)?;
+        processed.frames += 1;
+        done();
+    }
+    answers.finish()?;
+    Ok(processed)
+}
+
+/// What [`process`] did.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Processed {
+    /// Images answered.
+    pub frames: u64,
+    /// The first failure of the pipeline, if it failed at all.
+    pub first_failure: Option<FirstFailure>,
+}
