@@ -75,7 +75,7 @@ pub enum ScoreError {
 ///     inject: None,
 ///     columns: 752,
 ///     rows: 580,
-///     unproject: Box::new(unproject),
+///     unproject: Box::new(|_| Some(contract::Direction::z())),
 /// };
 /// let scored = Scorer::new(context).finish();
 /// assert_eq!(scored.score.figures["hit_rate"].value, None); // of no frame: nothing, and no NaN
