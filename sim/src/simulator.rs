@@ -10,7 +10,8 @@ use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
 use crate::optics::{OpticsConfig, Projection, Psf, PsfConfig, Radiometry, RadiometryConfig, Vignetting};
 use crate::randomness::Seed;
 use crate::scene::{Background, BackgroundConfig, Spacecraft, StarField, TargetConfig};
-use crate::sensor::{CosmicRays, Sensor, SensorConfig, Switch};
+use crate::sensor::{CosmicRays, Sensor, SensorConfig};
+use crate::switch::Switch;
 use crate::truth::{
     Attitude, AttitudeConfig, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig, Observer, OrbitConfig,
     Schedule, Trajectory,
