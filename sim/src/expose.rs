@@ -71,6 +71,16 @@ pub struct SimulatedCamera<'a> {
     spare: Option<Frame>,
 }
 
+impl Simulator {
+    /// A camera of this simulation: one a thread, reused from frame to frame.
+    ///
+    /// # Errors
+    /// None after [`Simulator::new`], which made the same checks.
+    pub fn camera(&self) -> Result<SimulatedCamera<'_>, SimError> {
+        SimulatedCamera::new(self)
+    }
+}
+
 impl<'a> SimulatedCamera<'a> {
     pub(crate) fn new(simulator: &'a Simulator) -> Result<Self, SimError> {
         let (columns, rows) = simulator.projection.detector();
