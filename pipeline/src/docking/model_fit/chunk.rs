@@ -3,8 +3,7 @@
 
 use pulp::Simd;
 
-use super::edge::GLOBALS;
-use super::samples::LOCALS;
+use super::unknowns::{GLOBALS, LOCALS};
 
 /// Pixels of a chunk.
 pub(super) const CHUNK: usize = 32;

@@ -7,10 +7,12 @@
 use contract::docking::{StandOffCross, TargetModel};
 use nalgebra::Vector3;
 
+use super::blur::Blur;
 use super::chunk::{Coverages, Places, Steps};
-use super::edge::{Blur, ByGlobals, Edge, GLOBALS, SIDES};
+use super::edge::Edge;
 use super::gaussian::LIMIT;
 use super::sampled::Tables;
+use super::unknowns::{ByGlobals, GLOBALS, SIDES};
 use crate::docking::geometry::{Seen, View};
 
 /// Edges of a feature: of the cross, front and back.
@@ -313,5 +315,5 @@ fn bars(cross: &StandOffCross, view: &View, height_m: f64, blur: Blur, tables: &
 /// How far from an edge its blur is felt, px.
 pub(super) fn reach_px(blur: Blur) -> f64 {
     // LIMIT is where nothing at all is left; three σ and a little leave 1e-3.
-    (0.6 * LIMIT) * (blur.x.max(blur.y) + super::edge::BOX_VARIANCE).sqrt() + 0.5
+    (0.6 * LIMIT) * (blur.x.max(blur.y) + super::blur::BOX_VARIANCE).sqrt() + 0.5
 }

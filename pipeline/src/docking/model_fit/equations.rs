@@ -4,9 +4,9 @@ use pulp::{Simd, WithSimd};
 
 use super::chunk::{CHUNK, COLUMNS, Coverages, Equations, FIRST_GLOBAL, Gram, Places, Steps};
 use super::coverage::{CrossImage, EDGES, MarkImage};
-use super::edge::{GRID, SIDES};
 use super::sampled::Tables;
-use super::samples::{LOCALS, Patch, Sample};
+use super::samples::{Patch, Sample};
+use super::unknowns::{GRID, LOCALS, SIDES};
 
 /// Coordinates within a patch are counted in these, px: levels and slopes are then alike in size.
 const PATCH_UNIT_PX: f64 = 10.0;

@@ -6,9 +6,7 @@
 
 use nalgebra::SVector;
 
-use super::edge::POSE;
-use super::samples::LOCALS;
-use super::solve::{GlobalMatrix, Globals};
+use super::unknowns::{GlobalMatrix, Globals, LOCALS, POSE};
 
 /// Shift, and level.
 pub(super) const EFFECTS: usize = 2;

@@ -10,6 +10,7 @@
     reason = "the pixels of a chunk are counted through several arrays at once"
 )]
 
+mod blur;
 mod chunk;
 mod coverage;
 mod edge;
@@ -20,8 +21,10 @@ mod near;
 mod sampled;
 mod sampled_marks;
 mod samples;
+mod scene;
 mod shadow;
 mod solve;
+mod unknowns;
 
 #[cfg(test)]
 mod tests;
@@ -30,13 +33,15 @@ use contract::PixelPoint;
 use contract::docking::{Field, Mark, MarkUse, NoPose, Pose, PoseEstimate, TargetModel};
 use nalgebra::{Matrix6, Vector3};
 
-use self::edge::{BLUR, Blur, GLOBALS, GRID, POSE};
+use self::blur::Blur;
 use self::lines::Lines;
 use self::sampled::Tables;
 use self::sampled_marks::SampledMarks;
 use self::samples::{Feature, Samples};
+use self::scene::Scene;
 use self::shadow::ShadowFinder;
-use self::solve::{Evaluation, Globals, Scene, Search, covariance, normals, residual, solve};
+use self::solve::{Evaluation, Search, covariance, normals, residual, solve};
+use self::unknowns::{BLUR, GLOBALS, GRID, Globals, LOCALS, POSE};
 use crate::CameraModel;
 use crate::docking::geometry::{View, project, to_pose, to_vector};
 
@@ -293,16 +298,14 @@ fn collect(
 
 /// Rejects pixels, then patches, by the residuals of the last evaluation; whether anything changed that can be seen.
 fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPose> {
-    let freedom = |used: usize| (used as f64 - samples::LOCALS as f64 - 1.0).max(1.0);
+    let freedom = |used: usize| (used as f64 - LOCALS as f64 - 1.0).max(1.0);
     variances.clear();
     variances.extend(samples.patches.iter().map(|patch| patch.squares / freedom(patch.used_samples)));
     let typical = median(variances).ok_or(NoPose::TooFewFeatures)?;
     let Samples { pixels, patches, .. } = samples;
     let mark_levels: &mut Vec<f64> = variances;
     mark_levels.clear();
-    mark_levels.extend(
-        patches.iter().filter(|p| p.feature != Feature::Cross).map(|p| p.levels[samples::LOCALS - 1]),
-    );
+    mark_levels.extend(patches.iter().filter(|p| p.feature != Feature::Cross).map(|p| p.levels[LOCALS - 1]));
     let usual_mark = median(mark_levels).unwrap_or(0.0);
     mark_levels.iter_mut().for_each(|level| *level = (*level - usual_mark).abs());
     // Of a normal distribution the median of the absolute deviations is 0.6745 σ.
@@ -310,7 +313,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
 
     let (mut is_changed, mut changed) = (false, 0);
     for patch in patches.iter_mut() {
-        let level = patch.levels[samples::LOCALS - 1];
+        let level = patch.levels[LOCALS - 1];
         let tolerated = typical + MODEL_ERROR * MODEL_ERROR * level * level;
         let gate = PIXEL_GATE * PIXEL_GATE * tolerated;
         let (mut squares, mut used) = (0.0, 0);
@@ -331,8 +334,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
             && used as f64 >= (1.0 - MOST_REJECTED) * all as f64;
         let is_seen = match patch.feature {
             Feature::Mark(_) => {
-                let sigma =
-                    (typical * patch.levels_inverse[(samples::LOCALS - 1, samples::LOCALS - 1)]).sqrt();
+                let sigma = (typical * patch.levels_inverse[(LOCALS - 1, LOCALS - 1)]).sqrt();
                 let is_darker = level < usual_mark - DARKER_MARK * sigma.max(scatter_of_marks);
                 level > FAINTEST_MARK * usual_mark && level > 0.0 && !is_darker
             }
@@ -361,7 +363,7 @@ fn judge(
     }
     let variance = evaluation.variance();
     let mut levels: Vec<f64> =
-        samples.patches.iter().filter(|patch| patch.is_used).map(|p| p.levels[samples::LOCALS - 1]).collect();
+        samples.patches.iter().filter(|patch| patch.is_used).map(|p| p.levels[LOCALS - 1]).collect();
     if median(&mut levels).is_none_or(|level| level < FAINTEST_LEVEL * variance.sqrt()) {
         return Err(too_few(samples));
     }

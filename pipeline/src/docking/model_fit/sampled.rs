@@ -4,7 +4,7 @@
 //! its own square already. Along the axes the profile of an edge becomes a chain of straight pieces; off them the pieces are
 //! rounded, and near 45° it is almost the continuous profile. The table holds the exact sum less the continuous profile.
 
-use super::edge::{BOX_VARIANCE, Blur, TAPS};
+use super::blur::{BOX_VARIANCE, Blur, TAPS};
 use super::gaussian::{Gaussian, WHOLE};
 
 /// Nodes a pixel: with an amplitude of 0.03 at a cycle a pixel, linear interpolation is good to 2e-4.

@@ -9,11 +9,11 @@ use contract::PixelPoint;
 use contract::docking::{Field, Pose};
 use nalgebra::Vector3;
 
+use super::blur::{Blur, TAPS};
 use super::coverage::MarkImage;
-use super::edge::{Blur, TAPS};
 use super::sampled::{SMOOTH_PX2, covered};
 use super::samples::{Feature, Samples};
-use super::solve::Scene;
+use super::scene::Scene;
 use crate::docking::geometry::View;
 
 /// The filter reaches this many pixels to each side.

@@ -6,11 +6,12 @@ use contract::PixelPoint;
 use contract::docking::{Field, MarkUse, TargetModel};
 use nalgebra::{SMatrix, Vector3};
 
+use super::blur::{BOX_VARIANCE, Blur};
 use super::coverage::CrossImage;
-use super::edge::{BLUR, BOX_VARIANCE, Blur, GLOBALS, SIDES};
 use super::sampled::Tables;
+use super::scene::Scene;
 use super::shadow::ShadowFinder;
-use super::solve::{Globals, Scene};
+use super::unknowns::{BLUR, GLOBALS, Globals, LOCALS, SIDES};
 use crate::CameraModel;
 use crate::docking::geometry::{View, to_pose};
 
@@ -41,9 +42,6 @@ pub(super) enum Feature {
     Mark(usize),
     Cross,
 }
-
-/// Levels of a patch: plate (constant and slope), what lies beyond the rim, feature over plate.
-pub(super) const LOCALS: usize = 5;
 
 /// A mark, or a piece of an arm of the cross, with levels of its own: a shadow on one does not change the others.
 #[derive(Debug, Clone)]

@@ -10,9 +10,9 @@ use contract::docking::{Field, TargetModel};
 use nalgebra::{Matrix2, Vector2, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 
+use super::blur::Blur;
 use super::chunk::{CHUNK, Places};
 use super::coverage::MarkImage;
-use super::edge::Blur;
 use super::sampled::Tables;
 use crate::CameraModel;
 use crate::docking::geometry::View;

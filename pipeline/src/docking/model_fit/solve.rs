@@ -5,20 +5,16 @@ use std::ops::Range;
 use nalgebra::{SMatrix, SVector, Vector3};
 use pulp::Arch;
 
+use super::blur::Blur;
 use super::chunk::{CHUNK, FIRST_GLOBAL, Gram};
 use super::coverage::{CrossImage, MarkImage};
-use super::edge::{BLUR, Blur, ByGlobals, GLOBALS, GRID, POSE, SIDES};
 use super::equations::{Cover, Image, Look, NormalEquations, Work, regressors};
 use super::lines::{LinePixel, Lines, along_lines};
-use super::sampled::Tables;
-use super::samples::{Feature, LOCALS, Patch, Sample, Samples};
-use crate::CameraModel;
+use super::samples::{Feature, Patch, Sample, Samples};
+use super::scene::Scene;
+use super::unknowns::{BLUR, ByGlobals, GLOBALS, GRID, GlobalMatrix, Globals, LOCALS, POSE, SIDES};
 use crate::docking::geometry::{View, to_pose};
 use crate::docking::portions::inverse;
-use contract::docking::TargetModel;
-
-pub(super) type Globals = SVector<f64, GLOBALS>;
-pub(super) type GlobalMatrix = SMatrix<f64, GLOBALS, GLOBALS>;
 
 /// What is expected of blur, its share on pixels and side faces before the image is seen: mean and standard deviation. Weak; it decides only
 /// where the image does not.
@@ -68,14 +64,6 @@ impl Evaluation {
     pub(super) fn variance(&self) -> f64 {
         (self.squares / self.freedom.max(1.0)).max(1e-9)
     }
-}
-
-/// A target seen by a camera.
-#[derive(Clone, Copy)]
-pub(super) struct Scene<'a> {
-    pub(super) camera: &'a CameraModel,
-    pub(super) target: &'a TargetModel,
-    pub(super) tables: &'a Tables,
 }
 
 /// The features' images at some globals.

@@ -341,22 +341,23 @@ fn what_is_not_the_target_is_no_pose() {
 
 #[test]
 fn derivatives_are_those_of_finite_differences() {
+    use super::blur::Blur;
     use super::chunk::{Coverages, Places, Steps};
     use super::coverage::{CrossImage, EDGES, MarkImage};
-    use super::edge::{BLUR, Blur, GLOBALS, SIDES};
     use super::sampled::Tables;
+    use super::unknowns::{BLUR, GLOBALS, SIDES};
     use crate::docking::geometry::View;
 
     let model = CameraModel::new(&camera(WIDE_PX, [0.0; 3])).unwrap();
     let (target, tables) = (target(), Tables::new());
     // Off the axis: side faces towards +y1 and −y2 are seen, those of the ends too.
     let truth = Pose { position_m: Vector3::new(0.3, -0.4, 1.5), phi_rad: Vector3::new(0.27, -0.2, 0.05) };
-    let mut at = super::solve::Globals::zeros();
+    let mut at = super::unknowns::Globals::zeros();
     at.fixed_rows_mut::<6>(0).copy_from(&to_vector(&truth));
     at[BLUR] = 0.5;
     at[BLUR + 1] = 0.7;
     at.fixed_rows_mut::<4>(SIDES).copy_from_slice(&[0.3, 0.4, 0.5, 0.6]);
-    let evaluate = |g: &super::solve::Globals, u: f64, v: f64| {
+    let evaluate = |g: &super::unknowns::Globals, u: f64, v: f64| {
         let pose = to_pose(g);
         let view = View::new(&model, &pose);
         let blur = Blur::new(g[BLUR], g[BLUR + 1]);
@@ -380,7 +381,7 @@ fn derivatives_are_those_of_finite_differences() {
         let seen = view.see(&Vector3::new(y1, y2, y3)).unwrap();
         let analytic = evaluate(&at, seen.u, seen.v);
         for i in 0..GLOBALS {
-            let mut step = super::solve::Globals::zeros();
+            let mut step = super::unknowns::Globals::zeros();
             step[i] = 1e-6;
             let (plus, minus) =
                 (evaluate(&(at + step), seen.u, seen.v), evaluate(&(at - step), seen.u, seen.v));

@@ -4,9 +4,9 @@ use contract::docking::Pose;
 use nalgebra::Vector3;
 use pulp::{Arch, Scalar, WithSimd};
 
+use super::super::blur::Blur;
 use super::super::chunk::{COLUMNS, FIRST_GLOBAL, Gram};
 use super::super::coverage::{CrossImage, MarkImage};
-use super::super::edge::Blur;
 use super::super::equations::{Cover, Image, Look, NormalEquations, Work, regressors};
 use super::super::sampled::Tables;
 use super::super::samples::{Feature, Patch, Sample};
