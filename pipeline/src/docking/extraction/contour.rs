@@ -4,10 +4,10 @@
 use contract::docking::Outline;
 use nalgebra::Vector2;
 
-use super::circle::{self, CircleFit};
-use super::paper_pose::range_from_outline;
-use super::view::{Lens, Overview, View};
 use super::votes::{self, Proposal};
+use crate::docking::cross_and_circle::circle::{self, CircleFit};
+use crate::docking::pose::paper_pose::range_from_outline;
+use crate::docking::preprocessing::view::{Lens, Overview, View};
 
 /// The station's outline in a field, ideal image.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -249,9 +249,9 @@ pub(crate) fn range(outline: &Outline, focal_px: f64, radius_px: f64, sigma_px: 
 
 #[cfg(test)]
 mod tests {
-    use super::super::synthetic;
-    use super::super::view::View;
     use super::*;
+    use crate::docking::preprocessing::view::View;
+    use crate::docking::synthetic;
     use contract::docking::Lines;
 
     fn look_at(field: &contract::docking::Field) -> Option<StationOutline> {

@@ -10,9 +10,9 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use self::render::{Look, camera, expected, field, target};
 use super::{Fitted, ModelFit};
 use crate::CameraModel;
-use crate::docking::geometry::{project, to_pose, to_vector};
 use crate::docking::portions::inverse;
 use crate::docking::portions::tests::uniform;
+use crate::docking::pose::geometry::{project, to_pose, to_vector};
 
 const NARROW_PX: f64 = 2917.0;
 const WIDE_PX: f64 = 1055.0;
@@ -346,7 +346,7 @@ fn derivatives_are_those_of_finite_differences() {
     use super::coverage::{CrossImage, EDGES, MarkImage};
     use super::sampled::Tables;
     use super::unknowns::{BLUR, GLOBALS, SIDES};
-    use crate::docking::geometry::View;
+    use crate::docking::pose::geometry::View;
 
     let model = CameraModel::new(&camera(WIDE_PX, [0.0; 3])).unwrap();
     let (target, tables) = (target(), Tables::new());

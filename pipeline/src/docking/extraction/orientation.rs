@@ -2,11 +2,11 @@
 
 use contract::docking::TargetModel;
 
-use super::cross::CrossFit;
 use super::docking_unit::{DiskEdge, Side};
-use super::marks::Plane;
 use super::self_check;
-use super::view::{Lens, View};
+use crate::docking::cross_and_circle::cross::CrossFit;
+use crate::docking::cross_and_circle::marks::Plane;
+use crate::docking::preprocessing::view::{Lens, View};
 
 /// What a field says of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,7 +13,7 @@ use super::scene::Scene;
 use super::shadow::ShadowFinder;
 use super::unknowns::{BLUR, GLOBALS, Globals, LOCALS, SIDES};
 use crate::CameraModel;
-use crate::docking::geometry::{View, to_pose};
+use crate::docking::pose::geometry::{View, to_pose};
 
 /// A pixel that is looked at.
 #[derive(Debug, Clone, Copy)]

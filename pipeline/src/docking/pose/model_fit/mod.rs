@@ -43,7 +43,7 @@ use self::shadow::ShadowFinder;
 use self::solve::{Evaluation, Search, covariance, normals, residual, solve};
 use self::unknowns::{BLUR, GLOBALS, GRID, Globals, LOCALS, POSE};
 use crate::CameraModel;
-use crate::docking::geometry::{View, project, to_pose, to_vector};
+use crate::docking::pose::geometry::{View, project, to_pose, to_vector};
 
 /// Variance of the blur that the first field is begun with, px².
 const FIRST_BLUR_PX2: f64 = 0.5;

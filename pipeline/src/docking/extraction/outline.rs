@@ -2,12 +2,12 @@
 
 use contract::docking::{Circle, DockingSolution, Features, NoPose, TargetModel};
 
-use super::circle::CircleFit;
 use super::contour::{self, StationOutline};
 use super::evidence::camera_circle;
-use super::histogram::Histogram;
-use super::region::Rectangle;
-use super::view::{Lens, View};
+use crate::docking::cross_and_circle::circle::CircleFit;
+use crate::docking::preprocessing::histogram::Histogram;
+use crate::docking::preprocessing::region::Rectangle;
+use crate::docking::preprocessing::view::{Lens, View};
 
 /// A field whose hundredths differ by less than this many grey values is empty.
 const EMPTY_RANGE: f64 = 12.0;

@@ -4,13 +4,13 @@ use contract::docking::{MarkUse, NoPose, TargetModel};
 use nalgebra::Vector2;
 
 use super::candidates::{self, ALL_SCALES, Candidate};
-use super::circle::{self, CircleFit};
-use super::config::DockingConfig;
-use super::cross::{self, CrossFit, CrossSeed};
-use super::marks::{MarkSearch, MarkShape, MarksFit, Plane};
-use super::region::Prediction;
 use super::self_check;
-use super::view::{Lens, Overview, View};
+use crate::docking::config::DockingConfig;
+use crate::docking::cross_and_circle::circle::{self, CircleFit};
+use crate::docking::cross_and_circle::cross::{self, CrossFit, CrossSeed};
+use crate::docking::cross_and_circle::marks::{MarkSearch, MarkShape, MarksFit, Plane};
+use crate::docking::preprocessing::region::Prediction;
+use crate::docking::preprocessing::view::{Lens, Overview, View};
 
 /// Cross and marks of one target.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use contract::docking::StandOffCross;
 use nalgebra::Vector2;
 
 use super::profile::{Levels, bar_edges, falling_edge};
-use super::view::{Lens, View};
+use crate::docking::preprocessing::view::{Lens, View};
 
 /// Where a cross may be, in the ideal image.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -331,8 +331,8 @@ fn half_length(view: &View<'_>, lens: &Lens, seed: &CrossSeed, levels: &Levels) 
 
 #[cfg(test)]
 mod tests {
-    use super::super::synthetic::{self, Scene};
     use super::*;
+    use crate::docking::synthetic::{self, Scene};
     use proptest::prelude::*;
 
     proptest! {

@@ -13,7 +13,7 @@ use super::edge::Edge;
 use super::gaussian::LIMIT;
 use super::sampled::Tables;
 use super::unknowns::{ByGlobals, GLOBALS, SIDES};
-use crate::docking::geometry::{Seen, View};
+use crate::docking::pose::geometry::{Seen, View};
 
 /// Edges of a feature: of the cross, front and back.
 pub(super) const EDGES: usize = 16;

@@ -6,7 +6,7 @@ use contract::docking::{Field, Pose, TargetModel};
 use nalgebra::Vector3;
 
 use crate::CameraModel;
-use crate::docking::geometry::project;
+use crate::docking::pose::geometry::project;
 
 /// Dark points lie this far beside a feature at least, px: beyond its blur.
 const BESIDE_PX: f64 = 1.5;

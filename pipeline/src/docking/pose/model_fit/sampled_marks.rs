@@ -14,7 +14,7 @@ use super::coverage::MarkImage;
 use super::sampled::{SMOOTH_PX2, covered};
 use super::samples::{Feature, Samples};
 use super::scene::Scene;
-use crate::docking::geometry::View;
+use crate::docking::pose::geometry::View;
 
 /// The filter reaches this many pixels to each side.
 const REACH: usize = TAPS - 1;

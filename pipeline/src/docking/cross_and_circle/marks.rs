@@ -5,7 +5,7 @@ use contract::docking::{Mark, MarkUse, TargetModel};
 use nalgebra::Vector2;
 
 use super::profile::Levels;
-use super::view::{Lens, View};
+use crate::docking::preprocessing::view::{Lens, View};
 
 /// The plane of the disk as the ideal image shows it, head on: a place (y1, y2) is seen at
 /// centre + scale (y1 h + y2 v), h = (cos, sin) and v = (sin, −cos) of the roll.
@@ -397,8 +397,8 @@ fn span(from: f64, to: f64, n: usize) -> std::ops::Range<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::synthetic::{self, Scene};
     use super::*;
+    use crate::docking::synthetic::{self, Scene};
     use contract::docking::Lines;
     use proptest::prelude::*;
 

@@ -15,7 +15,7 @@ use super::chunk::{CHUNK, Places};
 use super::coverage::MarkImage;
 use super::sampled::Tables;
 use crate::CameraModel;
-use crate::docking::geometry::View;
+use crate::docking::pose::geometry::View;
 
 /// Cells of the plate's map along a side.
 const CELLS: usize = 64;

@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 use contract::PixelPoint;
 use contract::docking::{Pose, TargetModel};
 
-use super::cross::CrossSeed;
-use super::geometry::project;
-use super::marks::Plane;
 use super::view::Lens;
 use crate::PipelineError;
+use crate::docking::cross_and_circle::cross::CrossSeed;
+use crate::docking::cross_and_circle::marks::Plane;
+use crate::docking::pose::geometry::project;
 use crate::error::require;
 
 /// A rectangle of the camera's pixels, borders included.

@@ -3,9 +3,9 @@
 use contract::docking::{Outline, TargetModel};
 use nalgebra::Vector2;
 
-use super::circle::{self, CircleFit};
-use super::marks::Plane;
-use super::view::{Lens, View};
+use crate::docking::cross_and_circle::circle::{self, CircleFit};
+use crate::docking::cross_and_circle::marks::Plane;
+use crate::docking::preprocessing::view::{Lens, View};
 
 /// A side of the target, as the image shows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -158,8 +158,8 @@ fn arc(rays: &Rays, radius: f64) -> DiskEdge {
 
 #[cfg(test)]
 mod tests {
-    use super::super::synthetic::{self, Scene};
     use super::*;
+    use crate::docking::synthetic::{self, Scene};
     use contract::docking::Lines;
 
     #[test]

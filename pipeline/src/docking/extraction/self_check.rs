@@ -3,11 +3,11 @@
 use contract::docking::{MarkUse, NoPose, PoseEstimate, TargetModel};
 
 use super::contour;
-use super::cross::CrossFit;
 use super::docking_unit::{self, DiskEdge, Side};
-use super::marks::{MarksFit, Plane};
-use super::region::Prediction;
-use super::view::{Lens, View};
+use crate::docking::cross_and_circle::cross::CrossFit;
+use crate::docking::cross_and_circle::marks::{MarksFit, Plane};
+use crate::docking::preprocessing::region::Prediction;
+use crate::docking::preprocessing::view::{Lens, View};
 
 /// Fewest good marks that tell a target from something else in a field of which nothing is known.
 pub(crate) const MIN_MARKS_TO_FIND: usize = 5;

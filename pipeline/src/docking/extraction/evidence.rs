@@ -5,11 +5,11 @@ use contract::docking::{Circle, Cross, Features, MarkUse, TargetModel};
 use nalgebra::Vector2;
 
 use super::docking_unit::{self, DiskEdge, Side};
-use super::marks::Plane;
-use super::model_fit::Fitted;
 use super::recognise::Sight;
-use super::region::Rectangle;
-use super::view::{Lens, View};
+use crate::docking::cross_and_circle::marks::Plane;
+use crate::docking::pose::model_fit::Fitted;
+use crate::docking::preprocessing::region::Rectangle;
+use crate::docking::preprocessing::view::{Lens, View};
 
 /// The square about the plate: what brightness and contrast are set by.
 pub(crate) fn plate(lens: &Lens, plane: &Plane, target: &TargetModel) -> Rectangle {

@@ -5,7 +5,7 @@ use super::chunk::{Places, Steps};
 use super::gaussian::LIMIT;
 use super::sampled::{SampledProfiles, Tables};
 use super::unknowns::{BLUR, ByGlobals, GLOBALS, GRID, POSE};
-use crate::docking::geometry::Seen;
+use crate::docking::pose::geometry::Seen;
 
 /// A straight line through the images of two points, its inside, and how it is blurred.
 ///

@@ -118,8 +118,8 @@ pub fn range_from_outline(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::docking::geometry;
-    use crate::docking::view::Lens;
+    use crate::docking::pose::geometry;
+    use crate::docking::preprocessing::view::Lens;
     use contract::{Camera, PixelPoint};
 
     const TARGET: PaperTarget = PaperTarget { radius_m: 0.25, height_m: 0.30 };

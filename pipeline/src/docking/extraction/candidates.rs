@@ -5,11 +5,11 @@ use std::ops::Range;
 use imageproc::image::GrayImage;
 use nalgebra::Vector2;
 
-use super::binarise;
 use super::components::{self, Component};
-use super::cross::CrossSeed;
-use super::edges::EdgeConfig;
-use super::view::{Lens, Overview};
+use crate::docking::cross_and_circle::cross::CrossSeed;
+use crate::docking::preprocessing::binarise;
+use crate::docking::preprocessing::edges::EdgeConfig;
+use crate::docking::preprocessing::view::{Lens, Overview};
 
 /// A place where a cross may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -193,9 +193,9 @@ fn best_first(mut found: Vec<Candidate>) -> Vec<Candidate> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::synthetic::{self, Scene};
-    use super::super::view::View;
     use super::*;
+    use crate::docking::preprocessing::view::View;
+    use crate::docking::synthetic::{self, Scene};
     use contract::docking::Lines;
 
     /// Whether one of the candidates is the scene's cross, well enough to be measured.

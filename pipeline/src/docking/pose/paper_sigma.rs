@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn the_error_of_the_formulas_is_within_the_covariance_as_a_whole() {
-        use crate::docking::geometry::target_from_camera;
+        use crate::docking::pose::geometry::target_from_camera;
         let focal_px = 2917.0;
         let mut worst = 0.0f64;
         for corner in 0..32_u32 {

@@ -13,8 +13,8 @@ use super::lines::{LinePixel, Lines, along_lines};
 use super::samples::{Feature, Patch, Sample, Samples};
 use super::scene::Scene;
 use super::unknowns::{BLUR, ByGlobals, GLOBALS, GRID, GlobalMatrix, Globals, LOCALS, POSE, SIDES};
-use crate::docking::geometry::{View, to_pose};
 use crate::docking::portions::inverse;
+use crate::docking::pose::geometry::{View, to_pose};
 
 /// What is expected of blur, its share on pixels and side faces before the image is seen: mean and standard deviation. Weak; it decides only
 /// where the image does not.

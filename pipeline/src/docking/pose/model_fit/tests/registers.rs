@@ -12,7 +12,7 @@ use super::super::sampled::Tables;
 use super::super::samples::{Feature, Patch, Sample};
 use super::render::{camera, target};
 use crate::CameraModel;
-use crate::docking::geometry::View;
+use crate::docking::pose::geometry::View;
 
 /// 75 pixels about a place: two whole chunks and a part of one.
 fn samples(u: f64, v: f64) -> Vec<Sample> {
