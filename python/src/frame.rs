@@ -15,7 +15,7 @@ use sim::truth::{FrameTruth, ObjectTruth};
 
 use crate::arrow::batch;
 use crate::errors::{raised, refused};
-use crate::scenario::{Ready, World};
+use crate::ready::{Ready, World};
 use crate::table::{Table, row};
 
 /// An image as it arrives on the ground: what a pipeline sees.

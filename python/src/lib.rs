@@ -25,6 +25,7 @@ mod errors;
 mod frame;
 mod json;
 mod python_pipeline;
+mod ready;
 mod run;
 mod scenario;
 mod score;

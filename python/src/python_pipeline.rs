@@ -12,7 +12,8 @@ use pyo3::types::PyType;
 
 use crate::errors::refused;
 use crate::frame::{FieldTelemetry, Frame, Telemetry};
-use crate::scenario::{Ready, setup};
+use crate::ready::Ready;
+use crate::scenario::setup;
 use crate::wait::Ended;
 
 /// Longest reason of an exception, in characters: it stands in a table.

@@ -19,7 +19,8 @@ use crate::arrow::batch;
 use crate::errors::{BoresightError, FileError, file_error, raised, refused};
 use crate::json;
 use crate::python_pipeline::PythonPipeline;
-use crate::scenario::{Scenario, World};
+use crate::ready::World;
+use crate::scenario::Scenario;
 use crate::table::Table;
 use crate::wait::Ended;
 

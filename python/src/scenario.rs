@@ -3,9 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use boresight::failure::Failure;
-use boresight::run::docking::renderer::DockingRenderer;
-use boresight::run::{Prepared, PreparedDocking, World as _};
+use boresight::run::World as _;
 use boresight::run_file::ScenarioFile;
 use boresight::scenario::{BUILT_IN, Scenario as Values, ScenarioSource};
 use boresight::study::{Study, value_at, with_overlay};
@@ -19,38 +17,8 @@ use crate::arguments;
 use crate::errors::{BoresightError, raised, refused};
 use crate::frame::SimulatedFrame;
 use crate::json;
+use crate::ready::{Ready, World};
 use crate::stream::FrameStream;
-
-/// A scenario with what makes its frames.
-pub(crate) struct Ready {
-    pub(crate) source: ScenarioSource,
-    pub(crate) world: World,
-}
-
-/// What makes the frames of a world.
-pub(crate) enum World {
-    FarRange(Box<Prepared>),
-    Docking(Box<PreparedDocking>),
-}
-
-impl Ready {
-    pub(crate) fn new(source: ScenarioSource) -> Result<Self, Failure> {
-        let world = match &source.scenario {
-            Values::FarRange(_) => World::FarRange(Box::new(Prepared::new(&source)?)),
-            Values::Docking(_) => {
-                World::Docking(Box::new(PreparedDocking::new(&source, DockingRenderer::Fast)?))
-            }
-        };
-        Ok(Self { source, world })
-    }
-
-    pub(crate) fn frame_count(&self) -> u64 {
-        match &self.world {
-            World::FarRange(prepared) => prepared.frame_count(),
-            World::Docking(prepared) => prepared.frame_count(),
-        }
-    }
-}
 
 /// What to simulate: a built-in scenario or a TOML file, with all its values checked.
 ///

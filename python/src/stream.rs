@@ -15,7 +15,7 @@ use sim::docking::FieldTruth;
 
 use crate::errors::{BoresightError, raised};
 use crate::frame::SimulatedFrame;
-use crate::scenario::{Ready, World};
+use crate::ready::{Ready, World};
 
 /// How often a waiting caller looks whether somebody pressed Ctrl-C.
 const LOOK: Duration = Duration::from_millis(50);

@@ -10,7 +10,8 @@ use crate::onboard::{RoiExtractor, downlink_in};
 use crate::optics::{ImagePoint, Stamp};
 use crate::painter::Painter;
 use crate::scene::{CameraMotion, Source, planets};
-use crate::sensor::{Collected, FlatLaws, Opening, Sensor, SparseImage, Switch, Track};
+use crate::sensor::{Collected, FlatLaws, Opening, Sensor, SparseImage, Track};
+use crate::switch::Switch;
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility, clock, shadow};
 use crate::view::{Drawn, View};
 use crate::{SimError, Simulator};
@@ -68,6 +69,16 @@ pub struct SimulatedCamera<'a> {
     bloomed: Stamp,
     /// A frame that nobody needs any more.
     spare: Option<Frame>,
+}
+
+impl Simulator {
+    /// A camera of this simulation: one a thread, reused from frame to frame.
+    ///
+    /// # Errors
+    /// None after [`Simulator::new`], which made the same checks.
+    pub fn camera(&self) -> Result<SimulatedCamera<'_>, SimError> {
+        SimulatedCamera::new(self)
+    }
 }
 
 impl<'a> SimulatedCamera<'a> {

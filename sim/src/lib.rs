@@ -81,6 +81,7 @@ mod simulator;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod smooth_field;
+mod switch;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"

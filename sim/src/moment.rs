@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use crate::optics::Projection;
 use crate::scene::{Appearance, CameraMotion, Lighting, Source, moon::LitMoon};
-use crate::sensor::Switch;
+use crate::switch::Switch;
 use crate::truth::{ObjectKind, Observer, States, clock, shadow};
 use crate::{SimError, Simulator};
 

@@ -5,17 +5,18 @@ use std::path::Path;
 use contract::{Body, Camera, CameraFrame, Rotation};
 use hifitime::Unit;
 
+use crate::SimError;
 use crate::catalog::{Catalog, CatalogConfig};
 use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
 use crate::optics::{OpticsConfig, Projection, Psf, PsfConfig, Radiometry, RadiometryConfig, Vignetting};
 use crate::randomness::Seed;
 use crate::scene::{Background, BackgroundConfig, Spacecraft, StarField, TargetConfig};
-use crate::sensor::{CosmicRays, Sensor, SensorConfig, Switch};
+use crate::sensor::{CosmicRays, Sensor, SensorConfig};
+use crate::switch::Switch;
 use crate::truth::{
     Attitude, AttitudeConfig, GroupConfig, Knowledge, KnowledgeConfig, MountingConfig, Observer, OrbitConfig,
     Schedule, Trajectory,
 };
-use crate::{SimError, SimulatedCamera};
 
 /// All that the simulator is told.
 #[derive(Debug, Clone, PartialEq)]
@@ -178,14 +179,6 @@ impl Simulator {
     /// The true camera model.
     pub fn projection(&self) -> &Projection {
         &self.projection
-    }
-
-    /// A camera of this simulation: one a thread, reused from frame to frame.
-    ///
-    /// # Errors
-    /// None after [`Simulator::new`], which made the same checks.
-    pub fn camera(&self) -> Result<SimulatedCamera<'_>, SimError> {
-        SimulatedCamera::new(self)
     }
 }
 

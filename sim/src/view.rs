@@ -9,7 +9,8 @@ use crate::moment::Moment;
 use crate::optics::Psf;
 use crate::scene::earth::EarthDisk;
 use crate::scene::{Background, BackgroundField, CameraMotion, Source, planets};
-use crate::sensor::{InterlaceConfig, Switch};
+use crate::sensor::InterlaceConfig;
+use crate::switch::Switch;
 use crate::truth::{ObjectKind, clock};
 use crate::{SimError, Simulator};
 

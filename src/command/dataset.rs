@@ -189,7 +189,7 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     let factory = arguments.pipeline.choice().factory(&dataset.camera().far_range, scratch.path())?;
     let measurements = arguments.out.clone().unwrap_or_else(|| arguments.directory.join("measurements.csv"));
     let clusters = measurements.with_file_name("clusters.parquet");
-    let images = dataset.frames().iter().map(|frame| Ok((dataset.read(frame)?, frame.telemetry().clone())));
+    let images = dataset.frames().iter().map(|frame| Ok((dataset.read(frame)?, *frame.telemetry())));
     let progress = output.progress(dataset.frames().len() as u64, &factory.name());
     let processed =
         run::process::<_, FrameAnswers>(images, &setup, factory.as_ref(), &measurements, || progress.inc(1));

@@ -1,10 +1,12 @@
 //! The command `boresight`: arguments in, exit status out. Printing, clocks and environment live here.
 
+mod answer;
 mod cluster;
 mod dataset;
 mod fly;
 mod gate;
 mod interrupt;
+mod missing_feature;
 mod monitor;
 mod options;
 mod output;
@@ -12,6 +14,7 @@ mod report;
 mod run;
 mod scenario;
 mod score;
+mod scratch_directory;
 mod shell;
 mod show;
 mod study;
@@ -19,8 +22,12 @@ mod visibility;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use files::Failure;
+
+use answer::Answer;
+use missing_feature::missing_feature;
+use scratch_directory::scratch_directory;
 
 /// Synthetic scene simulator and test oracle for optical navigation.
 ///
@@ -71,13 +78,6 @@ enum Command {
     Man(shell::ManArguments),
 }
 
-/// The answer of a command that ran: exit status 0 or 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Answer {
-    Yes,
-    No,
-}
-
 /// Runs the command of this process's arguments.
 pub fn main() -> ExitCode {
     ExitCode::from(run_words(std::env::args_os()))
@@ -109,8 +109,8 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Show(arguments) => show::show(&arguments, &output),
         Command::Monitor(arguments) => monitor::monitor(&arguments, &output),
         Command::Scenario(command) => scenario::scenario(&command, &output),
-        Command::Completions(arguments) => shell::completions(&arguments, &output),
-        Command::Man(arguments) => shell::man(&arguments, &output),
+        Command::Completions(arguments) => shell::completions(&arguments, Arguments::command(), &output),
+        Command::Man(arguments) => shell::man(&arguments, Arguments::command(), &output),
     };
     match answer {
         Ok(Answer::Yes) => 0,
@@ -120,17 +120,4 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
             Failure::EXIT_STATUS
         }
     }
-}
-
-/// A directory for files that nobody keeps; gone with the value.
-fn scratch_directory() -> Result<tempfile::TempDir, Failure> {
-    tempfile::tempdir()
-        .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))
-}
-
-/// The failure of a command that needs a feature which this build does not have.
-fn missing_feature(feature: &str) -> Failure {
-    Failure::Usage(format!(
-        "this boresight was built without the feature `{feature}`, expected a build with it: cargo install --path . --features {feature}"
-    ))
 }

@@ -2,12 +2,12 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Command, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 use files::{Failure, FileError, WholeFile};
 
+use super::Answer;
 use super::output::Output;
-use super::{Answer, Arguments};
 
 #[derive(Debug, Args)]
 pub(super) struct CompletionsArguments {
@@ -23,11 +23,15 @@ pub(super) struct ManArguments {
     out: PathBuf,
 }
 
-/// Prints the completions of a shell, for it to source.
-pub(super) fn completions(arguments: &CompletionsArguments, output: &Output) -> Result<Answer, Failure> {
+/// Prints the completions of a shell for `root`, for it to source.
+pub(super) fn completions(
+    arguments: &CompletionsArguments,
+    mut root: Command,
+    output: &Output,
+) -> Result<Answer, Failure> {
     output.check_free("completions")?;
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Arguments::command(), "boresight", &mut script);
+    clap_complete::generate(arguments.shell, &mut root, "boresight", &mut script);
     match std::io::stdout().write_all(&script) {
         // A reader that has gone away is not an error.
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -37,11 +41,11 @@ pub(super) fn completions(arguments: &CompletionsArguments, output: &Output) -> 
     }
 }
 
-/// Writes a manual page for the command and each of its commands.
-pub(super) fn man(arguments: &ManArguments, output: &Output) -> Result<Answer, Failure> {
+/// Writes a manual page for `root` and each of its commands.
+pub(super) fn man(arguments: &ManArguments, root: Command, output: &Output) -> Result<Answer, Failure> {
     let folder = &arguments.out;
     std::fs::create_dir_all(folder).map_err(|source| FileError::io(folder, "create", source))?;
-    let mut root = Arguments::command().disable_help_subcommand(true);
+    let mut root = root.disable_help_subcommand(true);
     root.build();
     let mut pages = Vec::new();
     write_pages(&root, "boresight", folder, &mut pages)?;

@@ -3,18 +3,18 @@
 mod docking;
 mod far_range;
 mod picture_file;
+mod shown;
 mod source;
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use contract::Window;
 use files::Failure;
 use scenario::World;
 use serde_json::{Value, json};
-use show::{Class, MOST_PANELS, Panel, PanelPlace, ShowError, Stretch, encode, picture};
+use show::{MOST_PANELS, Panel, ShowError, Stretch, encode, picture};
 
 use self::picture_file::PictureFile;
+use self::shown::{PixelSource, Shown, spoken};
 use self::source::Source;
 use super::Answer;
 use super::output::Output;
@@ -51,41 +51,6 @@ enum View {
     Frame,
     /// The surroundings of the target
     Target,
-}
-
-/// A panel, and what `--json` tells of it.
-struct Shown {
-    panel: Panel,
-    frame: u64,
-    time: String,
-    pixels: PixelSource,
-    verdict: Option<String>,
-    cause: Option<String>,
-}
-
-/// Where the pixels of a frame come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum PixelSource {
-    /// From the image in the directory.
-    Stored,
-    /// Drawn again from `run.toml`.
-    DrawnAgain,
-}
-
-impl PixelSource {
-    fn code(self) -> &'static str {
-        match self {
-            Self::Stored => "stored",
-            Self::DrawnAgain => "drawn_again",
-        }
-    }
-
-    fn words(self) -> &'static str {
-        match self {
-            Self::Stored => "stored image",
-            Self::DrawnAgain => "drawn again from run.toml",
-        }
-    }
 }
 
 pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer, Failure> {
@@ -126,40 +91,6 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
         path.display(),
     )?;
     Ok(Answer::Yes)
-}
-
-impl Shown {
-    fn document(&self, place: &PanelPlace) -> Value {
-        let mut drawn: BTreeMap<&str, usize> = BTreeMap::new();
-        for mark in self.panel.marks.iter().filter(|mark| place.frame.shows(mark.at)) {
-            *drawn.entry(mark.class.code()).or_default() += 1;
-        }
-        let meets = |region: &&Window| {
-            let view = &self.panel.view;
-            let apart = |a: usize, long: usize, b: usize, long_b: usize| a + long <= b || b + long_b <= a;
-            !(apart(region.x, region.columns, view.x, view.columns)
-                || apart(region.y, region.rows, view.y, view.rows))
-        };
-        if let Some(regions) = &self.panel.regions {
-            drawn.insert(Class::Region.code(), regions.iter().filter(meets).count());
-        }
-        json!({
-            "frame": self.frame,
-            "time": self.time,
-            "pixels": self.pixels.code(),
-            "stretch": self.panel.stretch.code(),
-            "verdict": self.verdict,
-            "cause": self.cause,
-            "panel": place.frame,
-            "close_up": place.close_up,
-            "drawn": drawn,
-        })
-    }
-}
-
-/// A word of a file as people read it: `cut by roi`.
-fn spoken(word: &str) -> String {
-    word.replace('_', " ")
 }
 
 /// The failure of a picture that cannot be drawn.

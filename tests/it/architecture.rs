@@ -33,7 +33,7 @@ const ARROWS: [(&str, &str); 19] = [
 ];
 
 /// The packages of the workspace, as their manifests declare them.
-fn workspace() -> Metadata {
+pub(crate) fn workspace() -> Metadata {
     MetadataCommand::new()
         .manifest_path(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"))
         .no_deps()

@@ -26,6 +26,7 @@ mod files_truth;
 mod frozen;
 mod gate;
 mod golden_docking;
+mod import_circles;
 mod inject;
 #[cfg(unix)]
 mod mitsuba;

@@ -5,11 +5,9 @@ use std::path::Path;
 use std::str::FromStr;
 
 use contract::{Frame, Window};
-use hifitime::Epoch;
-use nalgebra::Vector3;
 
 use super::raw_image::RawImage;
-use super::{FileError, TanSip, exr, fits, image16};
+use super::{FileError, FrameHeader, exr, fits, image16};
 
 /// The formats that frames are written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -49,28 +47,6 @@ impl FromStr for ImageFormat {
         let known = Self::ALL.into_iter().find(|format| format.extension() == text);
         known.ok_or_else(|| format!("`{text}` is not an image format; expected fits, png or exr"))
     }
-}
-
-/// What is written about a frame besides its pixels.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FrameHeader {
-    /// Middle of the exposure.
-    pub time: Epoch,
-    /// Exposure time, s.
-    pub exposure_s: f64,
-    /// Gain of the converter, e⁻/DN, if known.
-    pub gain_e_per_dn: Option<f64>,
-    /// Seed of the scenario.
-    pub seed: u64,
-    /// Version of the simulator.
-    pub version: String,
-    /// Hash of the resolved configuration, hexadecimal.
-    pub configuration_hash: String,
-    /// Velocity of the observer about the solar system's barycentre, km/s, ICRS axes: the one that aberrates the
-    /// stars. Not the geocentric velocity of `telemetry.csv`.
-    pub observer_velocity_km_s: Option<Vector3<f64>>,
-    /// World coordinates. Made from the true mapping they are truth, and a reader of the header can see them.
-    pub wcs: Option<TanSip>,
 }
 
 /// Writes a frame. PNG has no place for the header.
@@ -127,6 +103,7 @@ pub(super) fn read_image(path: &Path) -> Result<RawImage, FileError> {
 
 #[cfg(test)]
 pub(super) mod tests {
+    use nalgebra::Vector3;
     use proptest::prelude::*;
     use tempfile::tempdir;
 

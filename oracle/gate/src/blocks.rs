@@ -2,8 +2,8 @@
 use score::UnitTable;
 use statistics::effective_size;
 
-use super::effects::influence;
 use super::identity::SourceKind;
+use super::influence::influence;
 
 /// Fewer blocks than this cannot show anything at a level of 5 %: 2⁻⁵ = 3 %.
 pub const LEAST_BLOCKS: usize = 5;

@@ -40,6 +40,7 @@ mod flips;
 #[cfg(test)]
 mod hand_made;
 mod identity;
+mod influence;
 mod junit;
 mod read;
 mod report;

@@ -17,6 +17,7 @@ mod cache;
 mod command;
 mod error;
 mod process;
+mod version;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
@@ -31,12 +32,7 @@ use process::{End, last_words};
 use sim::mitsuba::{Layer, SceneFiles, Settings};
 use sim::scene::docking::{DockingScene, Lighting};
 use sim::vector::RadianceImage;
-
-/// The version that is used; another one is refused, because its images could differ.
-pub const VERSION: &str = "3.9.1";
-
-/// The variant that is used: the same bits on every machine of a kind, without a compiler or a graphics card.
-pub const VARIANT: &str = "scalar_rgb";
+pub use version::{VARIANT, VERSION};
 
 /// Threads of a render. With one or two Mitsuba can stop for ever while it writes the image; the bits do not depend on
 /// their number.

@@ -16,6 +16,9 @@ use super::ground::GroundTrack;
 use super::picture::Stretch;
 use super::session::Session;
 
+/// Most frames of a monitored run: what is known of each is kept, some kilobytes.
+pub const MOST_FRAMES: u64 = 50_000;
+
 /// What is monitored.
 pub enum Feed {
     /// Star fields with a distant spacecraft.
@@ -95,10 +98,10 @@ fn frames<F>(
         }
     };
     let count = frames.end - frames.start;
-    if count > super::MOST_FRAMES {
+    if count > MOST_FRAMES {
         return Err(Failure::Usage(format!(
             "{count} frames are monitored, expected at most {}: what is known of each is kept (--frames A..B)",
-            super::MOST_FRAMES
+            MOST_FRAMES
         )));
     }
     Ok(frames)

@@ -36,8 +36,5 @@ mod server;
 mod session;
 
 pub use assets::{BUILD_COMMAND, is_page_built};
-pub use feed::{Feed, Measurements};
+pub use feed::{Feed, MOST_FRAMES, Measurements};
 pub use server::serve;
-
-/// Most frames of a monitored run: what is known of each is kept, some kilobytes.
-pub const MOST_FRAMES: u64 = 50_000;

@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-use super::page::{DataTable, script_safe};
+use super::data_table::DataTable;
 use super::plotly::{Axis, ErrorBars, Layout, Line, Marker, Mode, Symbol, Trace, Values};
+use super::script_safe::script_safe;
 use super::thin::{extremes, sampled};
 
 /// What is true.

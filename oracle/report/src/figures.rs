@@ -2,7 +2,7 @@
 use indexmap::IndexMap;
 use score::{Figure, Kind, sense};
 
-use super::page::DataTable;
+use super::data_table::DataTable;
 
 /// A rate in percent with its interval: `93.86 (92.1–95.2)`; a dash where it is counted over nothing.
 pub(super) fn shown_percent(figure: &Figure) -> String {

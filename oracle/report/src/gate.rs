@@ -7,10 +7,11 @@ use gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
 use score::{Kind, sense};
 
 use super::chart::{Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
+use super::data_table::DataTable;
 use super::docking::{DockingRun, FieldSheet};
 use super::far_range::{FarRangeRun, FrameSheet};
 use super::figures::{cell, significant};
-use super::page::{DataTable, Page, Section};
+use super::page::{Page, Section};
 use super::picture::Picture;
 use super::plotly::{Layout, Trace};
 use super::words::{capital, figure_label, spoken};

@@ -23,6 +23,7 @@
 mod chart;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 mod colours;
+mod data_table;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 mod docking;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
@@ -35,6 +36,7 @@ mod picture;
 mod plotly;
 mod plotly_js;
 mod read;
+mod script_safe;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 mod sky_map;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
@@ -46,10 +48,11 @@ mod words;
 use std::path::{Path, PathBuf};
 
 pub use chart::Chart;
+pub use data_table::DataTable;
 pub use docking::{DockingRun, FieldSheet, PortionReport, docking_page};
 pub use far_range::{FarRangeRun, FrameSheet, InjectedRun, far_range_page, kept_budget};
 pub use gate::{FlippedFrames, gate_page};
-pub use page::{Block, DataTable, Page, Section};
+pub use page::{Block, Page, Section};
 pub use picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
 pub use read::ResultKind;
 pub use study::{StudyResult, study_page};
@@ -70,7 +73,7 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
         ResultKind::Run => match world_of(directory)? {
             World::FarRange => {
                 let mut run = FarRangeRun::read(directory)?;
-                run.budget = InjectedRun::read_all(&kept_budget(directory), &run)?;
+                run.budget = InjectedRun::read_all(&kept_budget(directory), &run.run_file, &run.score)?;
                 far_range_page(&run, &FrameSheet::open(directory)?)?
             }
             World::Docking => docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?)?,
@@ -104,7 +107,7 @@ pub fn check_budget(directory: &Path) -> Result<(), Failure> {
 pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
     check_budget(directory)?;
     let mut run = FarRangeRun::read(directory)?;
-    run.budget = InjectedRun::read_all(budget, &run)?;
+    run.budget = InjectedRun::read_all(budget, &run.run_file, &run.score)?;
     far_range_page(&run, &FrameSheet::open(directory)?)
 }
 

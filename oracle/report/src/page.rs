@@ -5,8 +5,10 @@ use files::Failure;
 use serde_json::Value;
 
 use super::chart::Chart;
+use super::data_table::DataTable;
 use super::picture::{Picture, Shape};
 use super::plotly_js::PLOTLY_JS;
+use super::script_safe::script_safe;
 
 /// A report, before it is text.
 #[derive(Debug, Clone)]
@@ -100,57 +102,6 @@ pub enum Block {
     Pictures(Vec<Picture>),
 }
 
-/// A table of words and numbers, written out.
-#[derive(Debug, Clone, Default)]
-pub struct DataTable {
-    /// A line above it; empty for none.
-    pub caption: String,
-    /// Names of the columns.
-    pub head: Vec<String>,
-    /// The rows, each as long as the head.
-    pub rows: Vec<Vec<String>>,
-    /// Whether its cells are sentences rather than numbers.
-    pub is_wordy: bool,
-    /// Whether cells may be broken, as of many columns which a page has no room for otherwise.
-    pub is_narrow: bool,
-}
-
-impl DataTable {
-    /// A table without rows.
-    pub fn new<S: Into<String>>(head: impl IntoIterator<Item = S>) -> Self {
-        Self { head: head.into_iter().map(Into::into).collect(), ..Self::default() }
-    }
-
-    /// With a line above it.
-    pub fn caption(mut self, caption: impl Into<String>) -> Self {
-        self.caption = caption.into();
-        self
-    }
-
-    /// Of sentences rather than numbers.
-    pub fn wordy(mut self) -> Self {
-        self.is_wordy = true;
-        self
-    }
-
-    /// Of many columns.
-    pub fn narrow(mut self) -> Self {
-        self.is_narrow = true;
-        self
-    }
-
-    /// With one more row.
-    pub fn row<S: Into<String>>(mut self, cells: impl IntoIterator<Item = S>) -> Self {
-        self.push(cells);
-        self
-    }
-
-    /// Adds a row.
-    pub fn push<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) {
-        self.rows.push(cells.into_iter().map(Into::into).collect());
-    }
-}
-
 #[derive(Template)]
 #[template(path = "report.html")]
 struct PageTemplate<'a> {
@@ -178,11 +129,6 @@ impl Page {
             .render()
             .map_err(|error| Failure::Usage(format!("the report cannot be put together: {error}")))
     }
-}
-
-/// JSON that can stand between script tags: the same document, without a `<` in it.
-pub(super) fn script_safe(json: &str) -> String {
-    json.replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
 #[cfg(test)]

@@ -9,8 +9,9 @@ use study::{CaseTable, Estimate, FigureSummary, Summary};
 use super::chart::{
     BESIDE, Chart, MEASURED, axes, cloud, intervals, intervals_across, plain, points, rounded,
 };
+use super::data_table::DataTable;
 use super::figures::significant;
-use super::page::{DataTable, Page, Section};
+use super::page::{Page, Section};
 use super::plotly::{Axis, ColourScale, Layout, Trace};
 use super::read::read_json;
 use super::thin::{bins, drawn, summary as summed};

@@ -9,8 +9,9 @@ use super::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, axes, dashed, intervals, line, log_axis, rounded,
     stacked,
 };
+use super::data_table::DataTable;
 use super::figures::{cell, probability, significant};
-use super::page::{DataTable, Page, Section};
+use super::page::{Page, Section};
 use super::plotly::{Axis, Layout, Marker, Mode, Symbol};
 use super::read::read_json;
 use super::sky_map::sky_map;

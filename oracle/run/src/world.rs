@@ -493,3 +493,15 @@ pub struct Processed {
     /// The first failure of the pipeline, if it failed at all.
     pub first_failure: Option<FirstFailure>,
 }
+
+pub(crate) fn unscorable(error: score::ScoreError) -> Failure {
+    Failure::Usage(format!("the truth cannot be scored: {error}"))
+}
+
+/// As many files as a writer of answers has.
+pub(crate) fn paths<const N: usize>(files: &[PathBuf]) -> Result<[&Path; N], FileError> {
+    let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
+    let count = paths.len();
+    let first = files.first().map_or_else(PathBuf::new, Clone::clone);
+    paths.try_into().map_err(|_| FileError::format(&first, "answers", format!("{count} files, expected {N}")))
+}

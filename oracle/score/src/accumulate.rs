@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use contract::{Angle, AttitudeSource, CameraFrame, Direction, Outcome, PixelPoint};
+use contract::{Angle, AttitudeSource, Outcome};
 use indexmap::IndexMap;
 use sim::truth::{FrameTruth, ObjectTruth};
 use thiserror::Error;
@@ -11,10 +11,7 @@ use super::angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
 use super::cause::{Cause, Detector};
 use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
 use super::report::{Figure, GroupScore, Score, names};
-use super::verdict::{FrameVerdict, Taken, Verdict, judge};
-
-/// The true camera's inverse projection: the direction whose image is at a point, `None` where there is none.
-pub type Unproject<'a> = dyn Fn(PixelPoint) -> Option<Direction<CameraFrame>> + 'a;
+use super::verdict::{FrameVerdict, Taken, Unproject, Verdict, judge};
 
 /// What the score needs besides the frames.
 pub struct ScoreContext<'a> {
@@ -274,7 +271,7 @@ impl UnitTable {
 mod tests {
     use super::*;
     use crate::hand_made::{CENTRE, COLUMNS, PIXEL, ROWS, detected_at, frame, target_with, unproject};
-    use contract::NoSolution;
+    use contract::{NoSolution, PixelPoint};
 
     fn scorer() -> Scorer<'static> {
         Scorer::new(ScoreContext {

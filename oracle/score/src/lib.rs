@@ -38,7 +38,7 @@ mod report;
 mod sense;
 mod verdict;
 
-pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, Unproject, figure_names};
+pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, figure_names};
 pub use angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
 pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
 pub use belonging::belonging_to;
@@ -46,4 +46,4 @@ pub use cause::Cause;
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 pub use report::{Figure, GroupScore, Score, names};
 pub use sense::{Better, Kind, Sense, sense};
-pub use verdict::{FrameVerdict, Taken, Verdict, VerdictRow};
+pub use verdict::{FrameVerdict, Taken, Unproject, Verdict, VerdictRow};

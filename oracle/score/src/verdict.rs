@@ -2,14 +2,16 @@
 
 use std::sync::Arc;
 
-use contract::{AttitudeSource, Measurement, NoSolution, Outcome, PixelPoint};
+use contract::{AttitudeSource, CameraFrame, Direction, Measurement, NoSolution, Outcome, PixelPoint};
 use serde::Serialize;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
 
-use super::accumulate::Unproject;
 use super::angles::LineOfSightError;
 use super::belonging::{brightest, holds, transmitted_electrons};
 use super::cause::{Cause, Detector, cause};
+
+/// The true camera's inverse projection: the direction whose image is at a point, `None` where there is none.
+pub type Unproject<'a> = dyn Fn(PixelPoint) -> Option<Direction<CameraFrame>> + 'a;
 
 /// What the oracle says about one frame: exactly one of three.
 #[derive(Debug, Clone, Copy, PartialEq)]

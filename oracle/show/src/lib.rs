@@ -20,6 +20,7 @@
 mod canvas;
 mod class;
 mod colour;
+mod error;
 mod label;
 mod layout;
 mod legend;
@@ -31,33 +32,10 @@ mod stretch;
 mod text;
 mod view;
 
-use thiserror::Error;
-
 pub use class::Class;
+pub use error::{MOST_PANELS, ShowError};
 pub use layout::{PanelPlace, Picture, picture};
 pub use panel::{Mark, Panel, Pixels, PlateScale, Reduction, Shape, Table, Tone, Verdict};
 pub use png_file::{encode, is_own_picture};
 pub use stretch::Stretch;
 pub use view::Placement;
-
-/// Most panels of a contact sheet.
-pub const MOST_PANELS: usize = 16;
-
-/// Why a picture cannot be drawn.
-#[derive(Debug, Error)]
-pub enum ShowError {
-    /// Too few or too many frames for a picture.
-    #[error("{0} frames are asked for, expected 1 to {MOST_PANELS}")]
-    PanelCount(usize),
-    /// A view without pixels, or a canvas that cannot be allocated.
-    #[error("a picture of {width} × {height} pixels cannot be drawn")]
-    Size {
-        /// Width, px.
-        width: usize,
-        /// Height, px.
-        height: usize,
-    },
-    /// The encoder refused.
-    #[error("the picture cannot be encoded: {0}")]
-    Encode(String),
-}

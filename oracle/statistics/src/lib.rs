@@ -28,6 +28,7 @@ mod clopper_pearson;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod exchange;
+mod interval;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
@@ -39,18 +40,7 @@ mod proportion;
 pub use autocorrelation::effective_size;
 pub use clopper_pearson::{binomial_at_least, clopper_pearson};
 pub use exchange::{BlockEffects, Exchanges, JointTest, Tested, interval_by_sets, joint_test};
+pub use interval::{Interval, Z_95};
 pub use location::{mean_interval, median, median_interval, rms_interval};
 pub use normal_quantile::normal_quantile;
 pub use proportion::wilson;
-
-/// The 97.5 % quantile of the standard normal law: every interval is two-sided with a confidence of 95 %.
-pub const Z_95: f64 = 1.959_963_984_540_054;
-
-/// A two-sided confidence interval of 95 %.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Interval {
-    /// Lower limit.
-    pub low: f64,
-    /// Upper limit.
-    pub high: f64,
-}

@@ -1,12 +1,11 @@
 //! A study in a folder: what is missing of it is made, shard by shard, until it is done.
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 use files::Failure;
 
 use super::cases::{CaseRow, CaseTable};
 use super::definition::Study;
-use super::engine::run_cases;
+use super::engine::{Workers, run_cases};
 use super::evaluate::Evaluated;
 use super::record::StudyRecord;
 use super::shard::{Plan, ShardManifest, ShardStore};
@@ -19,17 +18,6 @@ pub struct Campaign<'a> {
     study: &'a Study,
     pipeline: &'a dyn StudyPipeline,
     store: ShardStore,
-}
-
-/// How the cases of a campaign are run.
-#[derive(Debug, Clone, Copy)]
-pub struct Workers<'a> {
-    /// Threads; the rows do not depend on it.
-    pub jobs: usize,
-    /// A program finds its images in folders of its own below this one.
-    pub scratch: &'a Path,
-    /// Set from outside, it ends the campaign: no other case is begun, and those of a shard that is not whole are lost.
-    pub ended: Option<&'a AtomicBool>,
 }
 
 /// A case that a campaign knows.

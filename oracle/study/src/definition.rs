@@ -2,7 +2,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use files::sha256::{hex, sha256_hex};
+use files::sha256::hex;
 use files::{Failure, toml_file};
 use indexmap::IndexMap;
 use scenario::{Scenario, ScenarioSource};
@@ -16,7 +16,6 @@ use super::design::DesignKind;
 use super::file::StudyFile;
 use super::law::{Drawable, Law, boresight, euler_123};
 use super::overlay::ValuePath;
-use super::tried::StudyPipeline;
 
 /// Most cases of a study.
 const MOST_CASES: u64 = 1 << 40;
@@ -208,14 +207,6 @@ impl Study {
         &self.hash
     }
 
-    /// The hash of rows by a pipeline.
-    pub fn hash_with(&self, pipeline: &dyn StudyPipeline) -> String {
-        match pipeline.hash(self.scenario().world()) {
-            Some(own) => sha256_hex(format!("{} {}", self.hash, hex(own))),
-            None => self.hash.clone(),
-        }
-    }
-
     /// The scenario that the cases begin from.
     pub fn scenario(&self) -> &Scenario {
         &self.base.scenario
@@ -275,7 +266,7 @@ impl Study {
 
     /// Names of the figures that are recorded.
     pub fn figures(&self) -> Vec<String> {
-        let all = super::evaluate::figure_names(self.scenario());
+        let all = figure_names(self.scenario());
         match &self.file.record.figures {
             Some(names) => names.clone(),
             None => all,
@@ -343,7 +334,7 @@ impl Study {
 
     /// Figures and paths that there are.
     fn check_names(&self) -> Result<(), Failure> {
-        let known = super::evaluate::figure_names(self.scenario());
+        let known = figure_names(self.scenario());
         let check = |at: &str, name: &str| {
             if known.iter().any(|figure| figure == name) {
                 return Ok(());
@@ -454,4 +445,12 @@ fn recorded(value: &Value) -> Drawn {
 
 fn unwritable(error: serde_json::Error) -> Failure {
     Failure::Usage(format!("the study cannot be written as JSON: {error}"))
+}
+
+/// Names of all figures of a score of a scenario's world, in their order.
+fn figure_names(scenario: &Scenario) -> Vec<String> {
+    match scenario {
+        Scenario::FarRange(_) => score::figure_names(),
+        Scenario::Docking(_) => score::docking::figure_names(),
+    }
 }

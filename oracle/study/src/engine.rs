@@ -1,16 +1,27 @@
 //! Runs the cases of a shard on the threads of this machine.
 use std::ops::Range;
-use std::sync::atomic::Ordering;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use files::Failure;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
-use super::campaign::Workers;
 use super::cases::CaseRow;
 use super::definition::Study;
 use super::evaluate::{Evaluated, evaluate};
 use super::tried::StudyPipeline;
+
+/// How the cases of a campaign are run.
+#[derive(Debug, Clone, Copy)]
+pub struct Workers<'a> {
+    /// Threads; the rows do not depend on it.
+    pub jobs: usize,
+    /// A program finds its images in folders of its own below this one.
+    pub scratch: &'a Path,
+    /// Set from outside, it ends the campaign: no other case is begun, and those of a shard that is not whole are lost.
+    pub ended: Option<&'a AtomicBool>,
+}
 
 /// Evaluates cases on `jobs` threads, a case a thread; `done` is told of each, in no order. The rows are in order, and depend on
 /// neither. A program finds its images in folders of its own below `scratch`.

@@ -75,11 +75,3 @@ fn figures_in<W: World>(
     let ran = world.score(study.frames(world.frame_count())?, factory)?;
     Ok((ran.scored.figures().clone(), ran.first_failure))
 }
-
-/// Names of all figures of a score of a scenario's world, in their order.
-pub(super) fn figure_names(scenario: &Scenario) -> Vec<String> {
-    match scenario {
-        Scenario::FarRange(_) => score::figure_names(),
-        Scenario::Docking(_) => score::docking::figure_names(),
-    }
-}

@@ -28,6 +28,11 @@ mod cases;
 mod definition;
 mod design;
 mod engine;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod estimate;
 mod evaluate;
 mod file;
 mod law;
@@ -47,10 +52,12 @@ mod stopping;
 mod summary;
 mod tried;
 
-pub use campaign::{Campaign, Known, Workers};
+pub use campaign::{Campaign, Known};
 pub use cases::{CaseFigure, CaseRow, CaseTable, Drawn};
 pub use definition::{Case, Study};
 pub use design::DesignKind;
+pub use engine::Workers;
+pub use estimate::{Estimate, overall};
 pub use evaluate::{Evaluated, evaluate};
 pub use file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};
 pub use law::Law;
@@ -58,5 +65,5 @@ pub use overlay::{value_at, with_overlay};
 pub use record::StudyRecord;
 pub use sensitivity::{RankCorrelation, SobolIndex};
 pub use shard::{Plan, ShardManifest, ShardStore};
-pub use summary::{Estimate, FigureSummary, Summary, SweepPoint, WorstCase, command_line, overall};
-pub use tried::StudyPipeline;
+pub use summary::{FigureSummary, Summary, SweepPoint, WorstCase};
+pub use tried::{StudyPipeline, command_line};

@@ -2,7 +2,7 @@
 
 use super::cases::CaseTable;
 use super::definition::Study;
-use super::summary::overall;
+use super::estimate::overall;
 
 /// Cases after which a study looks for the first time, and the fewest from one look to the next.
 const STEP: u64 = 8;

@@ -4,13 +4,13 @@ use std::path::Path;
 use contract::docking::Docking;
 use contract::{FarRange, PipelineFactory};
 use files::Failure;
+use files::sha256::{hex, sha256_hex};
 use pipeline::docking::DockingConfig;
 use pipeline::far_range::FarRangeConfig;
 use run::pipeline_choice::PipelineChoice;
 use scenario::{Scenario, World};
 
 use super::definition::Study;
-use super::summary::command_line;
 
 /// The pipeline that a study tries, built anew for every case: one that a command line can name ([`PipelineChoice`]), or one of the
 /// caller's own, alive in this process. Cases ask it from several threads at once.
@@ -49,6 +49,16 @@ pub trait StudyPipeline: Sync {
     ) -> Result<Box<dyn PipelineFactory<Docking>>, Failure>;
 }
 
+impl Study {
+    /// The hash of rows by a pipeline.
+    pub fn hash_with(&self, pipeline: &dyn StudyPipeline) -> String {
+        match pipeline.hash(self.scenario().world()) {
+            Some(own) => sha256_hex(format!("{} {}", self.hash(), hex(own))),
+            None => self.hash().to_owned(),
+        }
+    }
+}
+
 impl StudyPipeline for PipelineChoice {
     fn check(&self, scenario: &Scenario) -> Result<(), Failure> {
         PipelineChoice::check(self, scenario)
@@ -82,4 +92,10 @@ impl StudyPipeline for PipelineChoice {
     ) -> Result<Box<dyn PipelineFactory<Docking>>, Failure> {
         PipelineChoice::docking_factory(self, docking, scratch)
     }
+}
+
+/// Words as a shell takes them.
+pub fn command_line(words: &[String]) -> String {
+    // A word of a command line has no zero byte.
+    shlex::try_join(words.iter().map(String::as_str)).unwrap_or_else(|_| words.join(" "))
 }

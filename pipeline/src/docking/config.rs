@@ -3,10 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::edges::EdgeConfig;
-use super::histogram::AutoContrastConfig;
 use super::portions::{ExactPortionConfig, PaperPortionConfig};
-use super::region::RegionConfig;
+use super::preprocessing::edges::EdgeConfig;
+use super::preprocessing::histogram::AutoContrastConfig;
+use super::preprocessing::region::RegionConfig;
 use crate::PipelineError;
 use crate::error::require;
 

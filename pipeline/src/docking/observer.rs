@@ -7,21 +7,21 @@ use contract::docking::{
 use contract::{Camera, ContractError};
 
 use super::config::DockingConfig;
-use super::contour::{self, StationOutline};
-use super::docking_unit::Side;
-use super::evidence;
-use super::histogram::Histogram;
-use super::marks::{self, MarkShape};
-use super::model_fit::{Fitted, ModelFit};
-use super::orientation::{self, Orientation, Uprightness};
-use super::outline::{self, OutlineTrack, RESOLVED_CIRCLE_PX, SMALLEST_CIRCLE_PX};
-use super::paper_pose::{PaperMeasurement, PaperTarget};
-use super::paper_sigma;
-use super::range_memory::RangeMemory;
-use super::recognise::{Recognition, Sight};
-use super::region::{Prediction, Rectangle, Sighting, Track};
-use super::self_check;
-use super::view::{Lens, View};
+use super::cross_and_circle::marks::{self, MarkShape};
+use super::extraction::contour::{self, StationOutline};
+use super::extraction::docking_unit::Side;
+use super::extraction::evidence;
+use super::extraction::orientation::{self, Orientation, Uprightness};
+use super::extraction::outline::{self, OutlineTrack, RESOLVED_CIRCLE_PX, SMALLEST_CIRCLE_PX};
+use super::extraction::range_memory::RangeMemory;
+use super::extraction::recognise::{Recognition, Sight};
+use super::extraction::self_check;
+use super::pose::model_fit::{Fitted, ModelFit};
+use super::pose::paper_pose::{PaperMeasurement, PaperTarget};
+use super::pose::paper_sigma;
+use super::preprocessing::histogram::Histogram;
+use super::preprocessing::region::{Prediction, Rectangle, Sighting, Track};
+use super::preprocessing::view::{Lens, View};
 use crate::PipelineError;
 use crate::error::require;
 

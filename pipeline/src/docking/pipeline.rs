@@ -6,11 +6,11 @@ use contract::docking::{
 use contract::{ContractError, Pipeline, PipelineFactory};
 
 use super::config::DockingConfig;
-use super::histogram::Histogram;
 use super::observer::{Observed, Observer};
-use super::paper_pose::{PaperMeasurement, PaperTarget};
 use super::portions::{ExactPortions, PaperPortions};
-use super::view::View;
+use super::pose::paper_pose::{PaperMeasurement, PaperTarget};
+use super::preprocessing::histogram::Histogram;
+use super::preprocessing::view::View;
 use crate::PipelineError;
 
 /// Builds pipelines by the docking method.

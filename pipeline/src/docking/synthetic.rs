@@ -6,9 +6,9 @@ use contract::docking::{
 use contract::{Camera, Frame};
 use nalgebra::Vector2;
 
-use super::cross::CrossSeed;
-use super::marks::Plane;
-use super::view::Lens;
+use super::cross_and_circle::cross::CrossSeed;
+use super::cross_and_circle::marks::Plane;
+use super::preprocessing::view::Lens;
 
 pub(crate) const COLUMNS: usize = 768;
 pub(crate) const ROWS: usize = 576;

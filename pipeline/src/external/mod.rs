@@ -13,10 +13,12 @@
 //! There is no shell: the command is split into words by the rules of POSIX quoting, and run.
 
 pub mod docking_protocol;
+mod exchange;
 mod group;
 mod process;
 pub mod protocol;
 
+pub use exchange::{Protocol, WriteTime};
 pub use group::end_all;
 
 use std::fmt;
@@ -25,48 +27,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use hifitime::Epoch;
-
 use contract::{ContractError, Interface, Pipeline, PipelineFactory};
 
 use process::{Fault, Process};
-
-/// What an external pipeline of an interface is told and answers, line by line.
-pub trait Protocol: Interface {
-    /// Extension of the images' files.
-    const EXTENSION: &'static str;
-
-    /// The greeting line.
-    ///
-    /// # Errors
-    /// The reason why there is none.
-    fn greeting(setup: &Self::Setup) -> Result<Vec<u8>, String>;
-
-    /// The line of an image that lies at `path`.
-    ///
-    /// # Errors
-    /// The reason why there is none.
-    fn request(
-        image: &Self::Image,
-        telemetry: &Self::Telemetry,
-        write_time: WriteTime,
-        path: &Path,
-    ) -> Result<Vec<u8>, String>;
-
-    /// The outcome that an answer to the image of a number says.
-    ///
-    /// # Errors
-    /// Why the answer cannot be used.
-    fn outcome(answer: &[u8], number: u64, setup: &Self::Setup) -> Result<Self::Outcome, String>;
-}
 
 /// Writes an image (far range: FITS of 16 bits, BZERO 32768; docking: grey PNG) at a path that does not exist yet; the error is a text
 /// for the outcome.
 pub type WriteImage<I> =
     dyn Fn(&<I as Interface>::Image, &<I as Interface>::Telemetry, &Path) -> Result<(), String> + Send + Sync;
-
-/// Writes a time as UTC in ISO 8601 with `Z`, as the caller's files have it: leap seconds are its business.
-pub type WriteTime = fn(Epoch) -> String;
 
 /// Memory of a process, MB (10⁶ bytes), where nobody says how much.
 pub const DEFAULT_MEMORY_MB: u64 = 4000;

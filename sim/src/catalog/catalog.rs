@@ -8,6 +8,8 @@ use sha2::{Digest, Sha256};
 
 use super::cone::within_cone;
 use super::config::{CatalogConfig, CatalogSource};
+use super::hex::hex;
+use super::parsed::Exclusion;
 use super::{CatalogError, CatalogStar, hipparcos, read};
 use crate::regular_file;
 
@@ -17,17 +19,6 @@ pub struct Catalog {
     stars: Vec<CatalogStar>,
     sha256: String,
     exclusions: Vec<Exclusion>,
-}
-
-/// A star that a file lists and that the catalogue does not hold.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Exclusion {
-    /// Line in the file, counted from 1.
-    pub line: usize,
-    /// Number of the star.
-    pub id: u32,
-    /// Why it is left out.
-    pub reason: &'static str,
 }
 
 impl Catalog {
@@ -119,11 +110,6 @@ fn unique(path: &Path, rows: Vec<(usize, CatalogStar)>) -> Result<Vec<CatalogSta
     let mut stars: Vec<CatalogStar> = rows.into_iter().map(|(_, star)| star).collect();
     stars.sort_by_key(|star| star.id);
     Ok(stars)
-}
-
-/// Bytes in lower-case hexadecimal.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Largest catalogue that is read, bytes: ten times hip_main.dat.

@@ -3,7 +3,7 @@
 //! `sim/data/make_hipparcos2.py` makes the bytes and describes their format; every printed digit of hip2.dat
 //! is kept.
 
-use super::catalog::hex;
+use super::hex::hex;
 use super::{CatalogStar, radial_velocity};
 
 static BYTES: &[u8] = include_bytes!("../../data/hipparcos2.bin");

@@ -9,11 +9,13 @@ mod catalog;
 mod cone;
 mod config;
 mod error;
+mod hex;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod hipparcos;
+mod parsed;
 pub mod photometry;
 #[allow(
     clippy::indexing_slicing,
@@ -23,8 +25,9 @@ mod radial_velocity;
 mod read;
 mod star;
 
-pub use catalog::{Catalog, Exclusion};
+pub use catalog::Catalog;
 pub use cone::ConeIndex;
 pub use config::{CatalogConfig, CatalogSource, ConeConfig};
 pub use error::CatalogError;
+pub use parsed::Exclusion;
 pub use star::CatalogStar;

@@ -2,6 +2,7 @@
 
 use nalgebra::{Rotation3, Unit, Vector3};
 
+use super::matrix::matrix;
 use crate::SimError;
 use crate::error::require;
 use crate::scene::docking::{Floodlight, Lighting, Sun};
@@ -82,7 +83,7 @@ impl Layer {
                 "  <emitter type=\"spot\">\n    <transform name=\"to_world\"><matrix value=\"{}\"/></transform>\n    {}\n    \
                  <float name=\"beam_width\" value=\"{}\"/>\n    <float name=\"cutoff_angle\" value=\"{}\"/>\n  \
                  </emitter>\n",
-                super::scene_xml::matrix(&axes_along(&lamp.axis), &lamp.position_m),
+                matrix(&axes_along(&lamp.axis), &lamp.position_m),
                 rgb("intensity", lamp.intensity),
                 lamp.inner_half_angle_rad.to_degrees(),
                 lamp.outer_half_angle_rad.to_degrees(),

@@ -8,6 +8,7 @@
 //! shades sunlight from behind the camera, and is left out of the other layers.
 
 mod layer;
+mod matrix;
 mod mesh;
 mod scene_xml;
 mod settings;

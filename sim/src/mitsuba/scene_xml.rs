@@ -4,6 +4,7 @@ use contract::Camera;
 use contract::docking::Pose;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+use super::matrix::matrix;
 use super::mesh::{Mesh, meshes};
 use super::{Crop, Layer, Settings};
 use crate::SimError;
@@ -116,14 +117,6 @@ fn sensor(pose: &Pose, camera: &Camera, settings: &Settings, crop: &Crop) -> Res
         matrix(&to_world, &pose.position_m),
         settings.samples,
     ))
-}
-
-/// Sixteen numbers, row by row, of the map from an object's own axes to the target frame.
-pub(super) fn matrix(rotation: &Rotation3<f64>, translation: &Vector3<f64>) -> String {
-    let homogeneous = rotation.to_homogeneous().append_translation(translation);
-    let rows: Vec<String> =
-        homogeneous.row_iter().flat_map(|row| [0, 1, 2, 3].map(|i| row[i].to_string())).collect();
-    rows.join(" ")
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::SimError;
 use crate::error::require;
-use crate::sensor::Switch;
+use crate::switch::Switch;
 
 /// How transmission and sharpness fall towards the corners. Without it the optics are the same everywhere.
 ///

@@ -11,7 +11,7 @@ use contract::{Camera, PixelPoint};
 use super::field::FieldRadius;
 use super::{OpticsConfig, Projection};
 use crate::SimError;
-use crate::sensor::Switch;
+use crate::switch::Switch;
 
 /// Transmission over the field, relative to the principal point.
 ///

@@ -3,7 +3,7 @@
 use contract::{Direction, Icrs};
 use nalgebra::Vector3;
 
-use super::ABERRATION_MARGIN_RAD;
+use super::aberration::ABERRATION_MARGIN_RAD;
 use crate::truth::shadow::EARTH_RADIUS_KM;
 
 /// The Earth's disk: a sphere of its equatorial radius, without air. The limb of the ellipsoid is up to 21 km nearer to the

@@ -7,9 +7,10 @@
 use contract::{CameraFrame, Direction, Icrs, PixelPoint, Rotation};
 use nalgebra::{Vector2, Vector3};
 
+use super::aberration::ABERRATION_MARGIN_RAD;
 use super::disk::Disk;
 use super::star_field::is_within;
-use super::{ABERRATION_MARGIN_RAD, CameraMotion, Source};
+use super::{CameraMotion, Source};
 use crate::constants::{AU_KM, LIGHT_SPEED_KM_S};
 use crate::optics::{ImagePoint, Projection, Radiometry};
 use crate::truth::moon::{self, MOON_B_V, MOON_MEAN_DISTANCE_KM, MOON_RADIUS_KM};

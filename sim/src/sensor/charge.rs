@@ -1,7 +1,7 @@
 //! What a detector has collected at the end of an exposure: light, dark current, hot pixels, tracks of particles.
 
+use super::detector::Sensor;
 use super::hot_pixels::HotPixel;
-use super::readout::Sensor;
 use crate::draw::ExpectedImage;
 use crate::optics::Stamp;
 use crate::randomness::Seed;

@@ -3,34 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::blooming::BloomingConfig;
 use super::cosmic_rays::CosmicRayConfig;
 use super::fixed_pattern::FixedPatternConfig;
 use super::interlace::InterlaceConfig;
+use super::spill::BloomingConfig;
 use super::telegraph::TelegraphConfig;
 use crate::SimError;
 use crate::error::require;
-
-/// Whether an effect is simulated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Switch {
-    /// It is.
-    #[default]
-    On,
-    /// It is left out.
-    Off,
-}
-
-impl Switch {
-    /// `value` when on, 0 when off.
-    pub fn of(self, value: f64) -> f64 {
-        match self {
-            Self::On => value,
-            Self::Off => 0.0,
-        }
-    }
-}
+use crate::switch::Switch;
 
 /// The parts of the pixel noise. They are one effect with one draw a pixel: switching a part changes that draw, and
 /// no other draw of the simulation.

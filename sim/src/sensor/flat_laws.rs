@@ -10,13 +10,13 @@ use std::collections::BTreeMap;
 use rand::Rng;
 
 use super::alias::AliasTable;
-use super::config::Switch;
 use super::exceedance::Exceedance;
 use super::own_means::OwnMeans;
 use super::pixel_law::PixelLaw;
 use super::poisson_digits::{FEW, PoissonDigits, few};
 use super::ziggurat::Ziggurat;
 use crate::randomness::{Stream, Streams};
+use crate::switch::Switch;
 
 /// Tables for the means met so far, kept from frame to frame. What they give does not depend on what they
 /// keep: an empty one works as well, only slower.

@@ -28,6 +28,7 @@ mod blooming;
 mod charge;
 mod config;
 mod cosmic_rays;
+mod detector;
 mod exceedance;
 mod fixed_pattern;
 mod flat_laws;
@@ -42,24 +43,25 @@ mod raw_image;
 mod readout;
 mod sparse;
 mod sparse_image;
+mod spill;
 mod telegraph;
 mod ziggurat;
 
-pub use blooming::BloomingConfig;
 pub use charge::{Charge, Opening};
-pub use config::{
-    HotLaw, HotPixelConfig, LineNoiseConfig, NoiseConfig, SensorConfig, Switch, TemperatureConfig,
-};
+pub use config::{HotLaw, HotPixelConfig, LineNoiseConfig, NoiseConfig, SensorConfig, TemperatureConfig};
 pub use cosmic_rays::{CosmicRayConfig, SouthAtlanticConfig};
 pub(crate) use cosmic_rays::{CosmicRays, Track};
+pub use detector::Sensor;
 pub use fixed_pattern::{DarkLaw, FixedPatternConfig};
 pub use flat_laws::FlatLaws;
 pub use hot_pixels::HotPixel;
 pub use interlace::{InterlaceConfig, RowParity};
 pub use poisson::poisson;
 pub use raw_image::RawImage;
-pub use readout::Sensor;
 pub(crate) use sparse::Collected;
 pub(crate) use sparse_image::SparseImage;
+pub use spill::BloomingConfig;
 pub use telegraph::TelegraphConfig;
 pub(crate) use ziggurat::Ziggurat;
+
+pub use crate::switch::Switch;

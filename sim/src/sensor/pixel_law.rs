@@ -4,9 +4,10 @@
 //! clips. The law is here twice: as a sampler, and as the probability of every digital number.
 
 use super::alias::AliasTable;
-use super::config::{SensorConfig, Switch};
+use super::config::SensorConfig;
 use super::poisson::poisson;
 use crate::randomness::{Stream, normal};
+use crate::switch::Switch;
 
 /// What the law of a pixel depends on besides its mean.
 #[derive(Debug, Clone, Copy, PartialEq)]

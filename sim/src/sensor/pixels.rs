@@ -2,15 +2,15 @@
 
 use rand::Rng;
 
-use super::config::Switch;
+use super::detector::Sensor;
 use super::flat_laws::FlatLaws;
 use super::own_means::{EvenMean, OwnMeans, Words};
 use super::poisson_digits::PoissonDigits;
 use super::raw_image::RawImage;
-use super::readout::Sensor;
 use crate::draw::{ExpectedImage, PART, PIECE};
 use crate::lanes::Lanes;
 use crate::randomness::Streams;
+use crate::switch::Switch;
 use crate::widest::arch;
 
 /// Electrons that the readout adds to each row and each column of a frame.

@@ -2,104 +2,15 @@
 
 use super::blooming::Overflow;
 use super::charge::Charge;
-use super::config::SensorConfig;
-use super::fixed_pattern::FixedPattern;
+use super::detector::Sensor;
 use super::flat_laws::FlatLaws;
-use super::hot_pixels::{HotPixel, hot_pixels};
-use super::pixel_law::PixelLaw;
 use super::pixels::LineOffsets;
 use super::raw_image::RawImage;
 use crate::SimError;
 use crate::draw::ExpectedImage;
 use crate::randomness::{Effect, Seed, normal};
 
-/// A detector with its readout. What is fixed for its life, hot pixels included, is made once.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sensor {
-    config: SensorConfig,
-    pub(super) law: PixelLaw,
-    pub(super) columns: usize,
-    pub(super) rows: usize,
-    /// Factor of all dark currents by the temperature.
-    warmth: f64,
-    hot_pixels: Vec<HotPixel>,
-    pattern: FixedPattern,
-}
-
 impl Sensor {
-    /// A sensor of `columns` × `rows` pixels.
-    ///
-    /// # Errors
-    /// [`SimError::Parameter`] for a number out of range.
-    pub fn new(config: &SensorConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
-        config.check()?;
-        let warmth = config.temperature.factor();
-        Ok(Self {
-            law: PixelLaw::new(config),
-            warmth,
-            hot_pixels: hot_pixels(&config.hot_pixels, columns, rows, warmth)?,
-            pattern: FixedPattern::of(&config.fixed_pattern, columns, rows)?,
-            config: config.clone(),
-            columns,
-            rows,
-        })
-    }
-
-    /// The configuration it was made of.
-    pub fn config(&self) -> &SensorConfig {
-        &self.config
-    }
-
-    /// Columns and rows.
-    pub(crate) fn size(&self) -> (usize, usize) {
-        (self.columns, self.rows)
-    }
-
-    /// What is different from pixel to pixel.
-    pub(super) fn pattern(&self) -> &FixedPattern {
-        &self.pattern
-    }
-
-    /// Its hot pixels, in the order of the image.
-    pub fn hot_pixels(&self) -> &[HotPixel] {
-        &self.hot_pixels
-    }
-
-    /// Photo-electrons of the flat sky in every pixel: the level to clear an image to.
-    pub fn sky_electrons(&self, exposure_s: f64) -> f64 {
-        self.config.background_e_per_s * exposure_s
-    }
-
-    /// Dark current of an ordinary pixel in an exposure, electrons; 0 when it is off.
-    pub fn dark_electrons(&self, exposure_s: f64) -> f64 {
-        self.config.noise.dark.of(self.config.dark_current_e_per_s * self.warmth) * exposure_s
-    }
-
-    /// Standard deviation of what the readout adds to a pixel, electrons: read noise with what rows and columns share, as
-    /// far as it is simulated, and the rounding of the converter, which is even over one digital number and has the variance
-    /// gain²/12 (Janesick, Photon Transfer, 2007, quantising noise).
-    pub fn readout_noise_e(&self) -> f64 {
-        let (pixel_e, lines) = (self.config.read_noise_e, self.config.line_noise);
-        let read_e2 = pixel_e * pixel_e + lines.row_e * lines.row_e + lines.column_e * lines.column_e;
-        let gain_e = self.config.gain_e_per_dn;
-        (self.config.noise.read.of(read_e2) + gain_e * gain_e / 12.0).sqrt()
-    }
-
-    /// An image that [`Sensor::collect`] and [`Sensor::read_out`] take.
-    pub fn new_expected(&self) -> ExpectedImage {
-        ExpectedImage::new(self.columns, self.rows).responding(&self.pattern.response)
-    }
-
-    /// A raw image for [`Sensor::read_out`].
-    pub fn new_raw(&self) -> RawImage {
-        RawImage {
-            columns: self.columns,
-            rows: self.rows,
-            bit_depth: self.config.bit_depth,
-            dn: vec![0; self.columns * self.rows],
-        }
-    }
-
     /// Draws the digital number of every pixel.
     ///
     /// A row has one stream, at place = row, of which every pixel takes 64 bits, or 32 of a high flat level, or 192 where rows and
@@ -119,7 +30,7 @@ impl Sensor {
     ) -> Result<(), SimError> {
         let expected = charge.expected();
         self.check_size(expected)?;
-        (raw.columns, raw.rows, raw.bit_depth) = (self.columns, self.rows, self.config.bit_depth);
+        (raw.columns, raw.rows, raw.bit_depth) = (self.columns, self.rows, self.config().bit_depth);
         raw.dn.resize(self.columns * self.rows, 0);
         let streams = seed.streams(frame, Effect::PixelNoise);
         let offsets = self.line_offsets(seed, frame);
@@ -128,7 +39,7 @@ impl Sensor {
             None if !expected.has_field() => self.draw_flat(expected, &streams, laws, raw),
             _ => self.draw_in_parts(expected, offsets.as_ref(), &streams, laws, raw),
         }
-        if let Some(blooming) = &self.config.blooming {
+        if let Some(blooming) = &self.config().blooming {
             let overflow = Overflow { blooming, expected, offsets: offsets.as_ref(), streams: &streams };
             self.bloom(&overflow, |index, dn| raw.dn[index] = dn);
         }
@@ -151,7 +62,7 @@ impl Sensor {
     /// it.
     fn line_offsets(&self, seed: &Seed, frame: u64) -> Option<LineOffsets> {
         let (row_e, column_e) = self.line_noise_e();
-        let fixed_e = &self.pattern.column_offsets_e;
+        let fixed_e = &self.pattern().column_offsets_e;
         let noise = |sigma_e: f64, effect: Effect, place: usize| {
             if sigma_e > 0.0 { sigma_e * normal(&mut seed.stream(frame, effect, place as u64)) } else { 0.0 }
         };
@@ -165,24 +76,24 @@ impl Sensor {
 
     /// Noise of rows and of columns, standard deviations, as far as it is simulated.
     fn line_noise_e(&self) -> (f64, f64) {
-        let read = self.config.noise.read;
-        (read.of(self.config.line_noise.row_e), read.of(self.config.line_noise.column_e))
+        let read = self.config().noise.read;
+        (read.of(self.config().line_noise.row_e), read.of(self.config().line_noise.column_e))
     }
 
     /// Whether the readout adds anything to rows or columns.
     pub(super) fn has_line_offsets(&self) -> bool {
         let (row_e, column_e) = self.line_noise_e();
-        row_e > 0.0 || column_e > 0.0 || !self.pattern.column_offsets_e.is_empty()
+        row_e > 0.0 || column_e > 0.0 || !self.pattern().column_offsets_e.is_empty()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::config::Switch;
     use super::super::config::tests::{opening, twelve_bit};
-    use super::super::{BloomingConfig, LineNoiseConfig};
+    use super::super::{BloomingConfig, LineNoiseConfig, SensorConfig};
     use super::*;
     use crate::optics::{Psf, PsfConfig, Stamp};
+    use crate::switch::Switch;
     use contract::PixelPoint;
     use sha2::{Digest, Sha256};
 

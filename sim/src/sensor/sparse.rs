@@ -28,11 +28,11 @@ use pulp::Simd;
 
 use super::blooming::Overflow;
 use super::charge::Charge;
+use super::detector::Sensor;
 use super::exceedance::{DarkLimit, Exceedance};
 use super::flat_laws::FlatLaws;
 use super::own_means::{OwnMeans, Words};
 use super::pixel_law::PixelLaw;
-use super::readout::Sensor;
 use super::sparse_image::{Parts, Pixel, SparseImage, pixels};
 use crate::SimError;
 use crate::draw::{ExpectedImage, PART, PARTS, set_bits};

@@ -12,7 +12,7 @@ use super::trajectory::States;
 use crate::SimError;
 use crate::error::require;
 use crate::randomness::{Effect, Seed};
-use crate::sensor::Switch;
+use crate::switch::Switch;
 
 /// How the chaser is pointed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -2,10 +2,11 @@
 
 use nalgebra::Vector3;
 
+use super::bounds::Sphere;
 use super::coverage::Window;
 use super::loops::Loops;
-use super::planes::{Plane, Sphere};
-use super::shadow::Source;
+use super::planes::Plane;
+use super::source::Source;
 use super::view::View;
 
 /// Four planes along the light, through the borders of a window of the image as seen on a plane of the scene.

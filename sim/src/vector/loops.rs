@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::planes::Sphere;
+use super::bounds::Sphere;
 
 /// Closed polygons, with spheres about stretches of their corners.
 #[derive(Debug, Clone, Default)]

@@ -7,6 +7,7 @@
 
 mod beam;
 mod body;
+mod bounds;
 mod clip;
 mod coverage;
 mod kept_light;
@@ -16,6 +17,7 @@ mod painting;
 mod planes;
 mod shadow;
 mod silhouette;
+mod source;
 mod view;
 
 use contract::Camera;
@@ -25,7 +27,8 @@ use self::body::Body;
 use self::coverage::Coverage;
 use self::painting::{Canvas, Painting};
 use self::planes::Prepared;
-use self::shadow::{Shadows, Source};
+use self::shadow::Shadows;
+use self::source::Source;
 use self::view::{Lens, View};
 use crate::SimError;
 use crate::scene::docking::{DockingScene, Lighting};

@@ -4,50 +4,10 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::bounds::{Extent, Sphere};
 use super::loops::Loops;
 use super::silhouette::FacetEdges;
 use crate::scene::docking::{DockingScene, Facet, Part};
-
-/// The smallest box along the target's axes about some points.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Extent {
-    low: Vector3<f64>,
-    high: Vector3<f64>,
-}
-
-impl Extent {
-    pub(super) fn of<'a>(points: impl IntoIterator<Item = &'a Vector3<f64>>) -> Self {
-        let nothing = Self { low: Vector3::repeat(f64::INFINITY), high: Vector3::repeat(f64::NEG_INFINITY) };
-        points
-            .into_iter()
-            .fold(nothing, |extent, point| Self { low: extent.low.inf(point), high: extent.high.sup(point) })
-    }
-
-    /// Whether two boxes have something in common, up to rounding.
-    pub(super) fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|axis| {
-            self.low[axis] <= other.high[axis] + SAME_PLACE_M
-                && other.low[axis] <= self.high[axis] + SAME_PLACE_M
-        })
-    }
-}
-
-/// A sphere about something.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sphere {
-    pub(super) centre: Vector3<f64>,
-    pub(super) radius: f64,
-}
-
-impl Sphere {
-    /// About the middle of the points' extent along the axes; about the origin where there are no points.
-    pub(super) fn about<'a>(points: impl Iterator<Item = &'a Vector3<f64>> + Clone) -> Self {
-        let Extent { low, high } = Extent::of(points.clone());
-        let centre = if low.x <= high.x { 0.5 * (low + high) } else { Vector3::zeros() };
-        let radius = points.map(|point| (point - centre).norm()).fold(0.0, f64::max);
-        Self { centre, radius }
-    }
-}
 
 /// Facets of one part in one plane.
 #[derive(Debug, Clone)]
@@ -132,8 +92,6 @@ impl Prepared {
 
 /// How far apart normals and, in metres, offsets of one plane may be.
 const SAME_PLANE: f64 = 1e-9;
-/// Boxes nearer than this touch, m: a plane along the axes has a flat one.
-const SAME_PLACE_M: f64 = 1e-6;
 
 /// How near the corners of parts that touch are, m: circles of few and of many sides differ by some millimetres.
 const TOUCHING_M: f64 = 5e-3;

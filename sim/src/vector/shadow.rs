@@ -8,45 +8,15 @@
 use nalgebra::Vector3;
 
 use super::beam::Beam;
+use super::bounds::{Extent, Sphere};
 use super::clip::keep_above;
 use super::coverage::Window;
-use super::planes::{Extent, Plane, Prepared, Sphere};
+use super::planes::{Plane, Prepared};
 use super::silhouette::Silhouette;
+use super::source::Source;
 use super::view::View;
-use crate::scene::docking::Facet;
-
-/// Where light comes from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Source {
-    /// From very far: the unit vector towards it.
-    Parallel(Vector3<f64>),
-    /// From a point, m.
-    Point(Vector3<f64>),
-}
 
 impl Source {
-    /// The vector towards the light from a point: a unit vector from very far.
-    fn from(&self, point: &Vector3<f64>) -> Vector3<f64> {
-        match self {
-            Self::Parallel(towards) => *towards,
-            Self::Point(position) => position - point,
-        }
-    }
-
-    /// Whether a plane has its front to the light.
-    pub(super) fn lights(&self, plane: &Plane) -> bool {
-        match self {
-            Self::Parallel(towards) => plane.normal.dot(towards) > 0.0,
-            Self::Point(position) => plane.height(position) > 0.0,
-        }
-    }
-
-    /// Whether a facet is on the side of its part that casts.
-    fn casts(&self, facet: &Facet, dark_side: bool) -> bool {
-        let Some(corner) = facet.outer.first() else { return false };
-        (facet.normal.dot(&self.from(corner)) <= 0.0) == dark_side
-    }
-
     /// Where the outline of what casts is, seen from a plane; `sphere` is about all of it.
     fn place(&self, outline: &Silhouette, sphere: &Sphere, plane: &Plane) -> Place {
         let highest = match self {

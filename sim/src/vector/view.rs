@@ -4,9 +4,9 @@ use contract::docking::Pose;
 use contract::{Camera, PixelPoint};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+use super::bounds::Sphere;
 use super::clip::keep_above;
 use super::coverage::Window;
-use super::planes::Sphere;
 use crate::SimError;
 use crate::optics::Projection;
 

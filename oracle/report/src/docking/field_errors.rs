@@ -2,10 +2,11 @@
 
 use contract::docking::DockingOutcome;
 
+use super::limits::{limits, outside, told_outside};
 use super::run::DockingRun;
-use super::{limits, outside, told_outside};
 use crate::chart::{Chart, MEASURED, Panel, WRONG, cloud, crosses, points, rounded, stacked};
-use crate::page::{DataTable, Section};
+use crate::data_table::DataTable;
+use crate::page::Section;
 use crate::plotly::Axis;
 use crate::thin::{bins, drawn, sampled, summary};
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use contract::docking::DockingSetup;
+use contract::docking::{DockingOutcome, DockingSetup, DockingSolution};
 use contract::{PixelPoint, Window};
 use files::Failure;
 use files::docking::FeatureRow;
@@ -10,7 +10,7 @@ use run::docking::renderer::DockingRenderer;
 use scenario::ScenarioSource;
 use sim::docking::{DockingSimulator, FieldTruth};
 
-use super::{DockingRun, answer_words};
+use super::DockingRun;
 use crate::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
 use crate::read::rows_of_each;
 use crate::words::{capital, spoken};
@@ -154,4 +154,16 @@ fn feature_mark(row: &FeatureRow) -> Mark {
         }
     };
     Mark { at, shape, class, title }
+}
+
+/// What a field's answer was, in words.
+fn answer_words(outcome: Option<&DockingOutcome>) -> String {
+    match outcome.map(|outcome| &outcome.solution) {
+        None => "no answer".to_owned(),
+        Some(DockingSolution::Measured(measured)) => {
+            format!("ρ measured {:.3} m", measured.best.pose.position_m.norm())
+        }
+        Some(DockingSolution::RangeOnly { range_m, .. }) => format!("range alone {range_m:.2} m"),
+        Some(DockingSolution::NoSolution(reason)) => format!("the pipeline says: {reason}"),
+    }
 }

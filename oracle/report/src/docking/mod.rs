@@ -2,10 +2,10 @@
 
 mod field_errors;
 mod field_sheet;
+mod limits;
 mod motion;
 mod run;
 
-use contract::docking::{DockingOutcome, DockingSolution};
 use indexmap::IndexMap;
 
 pub use field_sheet::FieldSheet;
@@ -13,8 +13,9 @@ pub use run::{DockingRun, PortionReport};
 
 use super::chart::{BESIDE, Chart, MEASURED, bars, rounded, stacked_bars};
 use super::colours::colour_of;
+use super::data_table::DataTable;
 use super::figures::{figure_table, least_to_most, percent_cell, shown_percent};
-use super::page::{DataTable, Page, Section};
+use super::page::{Page, Section};
 use super::plotly::Trace;
 use super::words::spoken;
 use files::Failure;
@@ -175,39 +176,4 @@ fn fields(run: &DockingRun, sheet: &FieldSheet) -> Result<Section, Failure> {
         Some(reason) => section.text(format!("There are no pictures: {reason}")),
         None => section.pictures(sheet.pictures(run, &chosen)?),
     })
-}
-
-/// What a field's answer was, in words.
-fn answer_words(outcome: Option<&DockingOutcome>) -> String {
-    match outcome.map(|outcome| &outcome.solution) {
-        None => "no answer".to_owned(),
-        Some(DockingSolution::Measured(measured)) => {
-            format!("ρ measured {:.3} m", measured.best.pose.position_m.norm())
-        }
-        Some(DockingSolution::RangeOnly { range_m, .. }) => format!("range alone {range_m:.2} m"),
-        Some(DockingSolution::NoSolution(reason)) => format!("the pipeline says: {reason}"),
-    }
-}
-
-/// How many of some values an axis leaves out.
-fn outside(range: [f64; 2], values: impl Iterator<Item = f64>) -> usize {
-    values.filter(|value| *value < range[0] || *value > range[1]).count()
-}
-
-/// What a caption says of errors that the axes leave out.
-fn told_outside(count: usize, of: usize) -> String {
-    match count {
-        0 => format!("All {of} errors lie inside of the axes."),
-        _ => format!("{count} of {of} errors lie outside of the axes; zoom out (double click) for them."),
-    }
-}
-
-/// Limits of an axis that shows all but the wildest hundredth of some values.
-fn limits(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    let mut sorted: Vec<f64> = values.filter(|value| value.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let Some(last) = sorted.len().checked_sub(1) else { return [-1.0, 1.0] };
-    let (low, high) = (sorted[last / 200], sorted[last - last / 200]);
-    let room = (0.08 * (high - low)).max(1e-9);
-    [low - room, high + room]
 }

@@ -4,12 +4,13 @@ use contract::docking::{Motion, Pose};
 use nalgebra::Vector3;
 use score::docking::Shown;
 
+use super::limits::{limits, outside, told_outside};
 use super::run::{DockingRun, PortionReport};
-use super::{limits, outside, told_outside};
 use crate::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, band, cloud, line, points, rounded, stacked,
 };
-use crate::page::{DataTable, Section};
+use crate::data_table::DataTable;
+use crate::page::Section;
 use crate::plotly::{Axis, Trace};
 use crate::thin::{bins, drawn, summary, thinned};
 

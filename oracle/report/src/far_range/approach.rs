@@ -5,7 +5,8 @@ use sim::truth::Trajectory;
 
 use super::run::{FarRangeRun, shown_time};
 use crate::chart::{Chart, MEASURED, Panel, line, rounded, stacked};
-use crate::page::{DataTable, Section};
+use crate::data_table::DataTable;
+use crate::page::Section;
 use crate::plotly::Axis;
 use crate::thin::{bins, evenly};
 

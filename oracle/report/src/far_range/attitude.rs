@@ -6,7 +6,8 @@ use sim::truth::Observer;
 
 use super::run::{FarRangeRun, broken, by_bins, shown_time_ms, time_axis};
 use crate::chart::{BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, cloud, line, points, rounded, stacked};
-use crate::page::{DataTable, Section};
+use crate::data_table::DataTable;
+use crate::page::Section;
 use crate::thin::{bins, drawn, thinned};
 
 /// Rows of the table behind the correction of aberration.

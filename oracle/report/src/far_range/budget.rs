@@ -1,87 +1,13 @@
 //! The error budget: the same frames with the truth in the place of one stage's result, beside the honest run.
 
-use std::path::{Path, PathBuf};
-
-use clap::ValueEnum;
-use files::Failure;
-use scenario::run_file::RunFile;
-use scenario::{FarRangeScenario, Stage, World};
 use score::{Score, names};
 
 use super::FarRangeRun;
 use crate::chart::{BESIDE, Chart, MEASURED, axes, intervals, rounded};
+use crate::data_table::DataTable;
 use crate::figures::{cell, percent_cell};
-use crate::page::{DataTable, Section};
+use crate::page::Section;
 use crate::plotly::Trace;
-use crate::read::{missing, read_json, world_of};
-
-/// A run of the same frames that was told the truth for one stage.
-pub struct InjectedRun {
-    stage: Stage,
-    score: Score,
-}
-
-impl InjectedRun {
-    /// Reads the directory of one, to be held against `honest`.
-    ///
-    /// # Errors
-    /// A [`Failure`] for a directory that is none, or is of other frames.
-    fn read(directory: &Path, honest: &FarRangeRun) -> Result<Self, Failure> {
-        for name in ["run.toml", "score.json"] {
-            if !directory.join(name).is_file() {
-                return Err(missing(directory, name));
-            }
-        }
-        let path = directory.join("run.toml");
-        let refuse = |what: &str| Err(Failure::Usage(format!("{}: {what}", path.display())));
-        if world_of(directory)? != World::FarRange {
-            return refuse("`scenario.world` is that of docking, expected a run of the far range");
-        }
-        let run_file = RunFile::<FarRangeScenario>::read(&path)?;
-        let Some(stage) = run_file.inject else {
-            return refuse("`inject` is missing, expected a run with --inject STAGE");
-        };
-        let (own, mut scenario) = (&honest.run_file, run_file.scenario);
-        if stage == Stage::Roi {
-            scenario.roi.clone_from(&own.scenario.roi);
-        }
-        if own.inject.is_some() {
-            return Err(Failure::Usage(
-                "--budget is given, expected with the report of an honest run alone".to_owned(),
-            ));
-        }
-        if scenario != own.scenario {
-            return refuse("`scenario` is another one, expected that of the honest run");
-        }
-        let score: Score = read_json(&directory.join("score.json"), "score")?;
-        let frames = |score: &Score| {
-            score.groups.iter().map(|(name, group)| (name.clone(), group.frames)).collect::<Vec<_>>()
-        };
-        if frames(&score) != frames(&honest.score) {
-            return refuse("the run is of other frames, expected those of the honest run");
-        }
-        Ok(Self { stage, score })
-    }
-
-    /// Reads several, in the order of the stages.
-    ///
-    /// # Errors
-    /// A [`Failure`] for a directory that is none, or is of other frames.
-    pub fn read_all(directories: &[PathBuf], honest: &FarRangeRun) -> Result<Vec<Self>, Failure> {
-        let runs: Result<Vec<Self>, _> =
-            directories.iter().map(|directory| Self::read(directory, honest)).collect();
-        let mut runs = runs?;
-        runs.sort_by_key(|run| run.stage as u8);
-        Ok(runs)
-    }
-}
-
-/// The runs of an error budget that are kept with a run, in `budget/STAGE`.
-pub fn kept_budget(directory: &Path) -> Vec<PathBuf> {
-    let folder = |stage: &Stage| directory.join("budget").join(stage.to_string());
-    let folders = Stage::value_variants().iter().map(folder);
-    folders.filter(|folder| folder.join("score.json").is_file()).collect()
-}
 
 /// What each stage costs.
 pub(super) fn budget(run: &FarRangeRun) -> Section {

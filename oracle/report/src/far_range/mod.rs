@@ -5,20 +5,22 @@ mod attitude;
 mod budget;
 mod frame_sheet;
 mod image;
+mod injected;
 mod run;
 mod series;
 
 use indexmap::IndexMap;
 
-pub use budget::{InjectedRun, kept_budget};
 pub use frame_sheet::FrameSheet;
+pub use injected::{InjectedRun, kept_budget};
 pub use run::FarRangeRun;
 
 use self::run::shown_time;
 use super::chart::{Chart, bars, rounded, stacked_bars};
 use super::colours::colour_of;
+use super::data_table::DataTable;
 use super::figures::{figure_table, least_to_most, percent_cell, shown_percent};
-use super::page::{DataTable, Page, Section};
+use super::page::{Page, Section};
 use super::plotly::Trace;
 use super::words::spoken;
 use files::Failure;

@@ -22,8 +22,8 @@ use scenario::run_file::RunFile;
 use score::{FrameVerdict, Score};
 use sim::truth::{FrameTruth, clock};
 
-use super::InjectedRun;
-use crate::page::DataTable;
+use super::injected::InjectedRun;
+use crate::data_table::DataTable;
 use crate::plotly::Axis;
 use crate::read::{missing, read_json};
 use crate::thin::{bins, summary};

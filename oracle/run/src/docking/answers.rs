@@ -7,7 +7,7 @@ use contract::docking::{Docking, DockingOutcome};
 use files::docking::{FeatureRow, FieldMeasurementWriter, MotionWriter, outcome_as_filed, report_as_filed};
 use files::{FileError, TableWriter};
 
-use crate::world::Answers;
+use crate::world::{Answers, paths};
 
 /// Writes measurements, motions and features.
 pub struct FieldAnswers {
@@ -34,7 +34,7 @@ impl Answers<Docking> for FieldAnswers {
     }
 
     fn create(files: &[PathBuf]) -> Result<Self, FileError> {
-        let [measurements, motion, features] = crate::paths(files)?;
+        let [measurements, motion, features] = paths(files)?;
         Ok(Self {
             measurements: FieldMeasurementWriter::create(measurements)?,
             more: Some((MotionWriter::create(motion)?, TableWriter::create(features)?)),

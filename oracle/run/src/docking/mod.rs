@@ -5,7 +5,10 @@
 
 pub mod answers;
 pub mod dataset;
+mod prepared;
 pub mod renderer;
+
+pub use prepared::PreparedDocking;
 
 use std::ops::Range;
 use std::path::Path;
@@ -15,65 +18,19 @@ use contract::docking::{Digitiser, Docking, DockingOutcome, DockingSetup, Field,
 use files::docking::{SetupFile, read_field_measurements, read_motion, truth_as_filed};
 use files::{Failure, RunDirectory, TableReader, Y4mWriter};
 use indexmap::IndexMap;
+use scenario::DockingScenario;
 use scenario::run_file::RunFile;
-use scenario::{DockingScenario, ScenarioSource};
 use score::docking::{DockingContext, DockingScore, DockingScorer, TrueField};
 use score::{Figure, UnitTable};
-use sim::docking::{DockingSimulator, DockingWorkspace, FieldExposure, FieldTruth};
+use sim::docking::{DockingWorkspace, FieldExposure, FieldTruth};
 
 use self::answers::{FieldAnswers, answer_as_filed};
 use self::dataset::{FieldDataset, FieldImages};
-use self::renderer::DockingRenderer;
 use crate::by_number::ByNumber;
 use crate::flight::in_order;
-use crate::world::{self, Flight, World};
-
-/// A docking scenario with its simulator, ready to fly.
-pub struct PreparedDocking {
-    simulator: DockingSimulator,
-    setup: DockingSetup,
-    renderer: DockingRenderer,
-    run_file: RunFile<DockingScenario>,
-}
+use crate::world::{self, Flight, World, unscorable};
 
 impl PreparedDocking {
-    /// Checks a scenario and prepares its simulator.
-    ///
-    /// # Errors
-    /// A [`Failure`] with the place of the first value that is not allowed.
-    pub fn new(source: &ScenarioSource, renderer: DockingRenderer) -> Result<Self, Failure> {
-        let scenario = source.docking("docking")?;
-        let simulator = source.docking_simulator(scenario)?;
-        let mut run_file = RunFile::new(&source.name, scenario, None, None)?;
-        run_file.mitsuba = renderer.record().cloned();
-        Ok(Self { setup: simulator.setup(), simulator, renderer, run_file })
-    }
-
-    /// What makes its fields, as the fast renderer draws them.
-    pub fn simulator(&self) -> &DockingSimulator {
-        &self.simulator
-    }
-
-    /// The scenario.
-    pub fn scenario(&self) -> &DockingScenario {
-        &self.run_file.scenario
-    }
-
-    /// Who draws the scene.
-    pub fn renderer(&self) -> &DockingRenderer {
-        &self.renderer
-    }
-
-    /// Draws a field and forgets it: before anything is written, it shows whether the renderer can.
-    ///
-    /// # Errors
-    /// A [`Failure`] when there is no such field, or the renderer gives no image.
-    pub fn probe(&self, field: u64) -> Result<(), Failure> {
-        let mut workspace = self.simulator.workspace()?;
-        self.renderer.expose(&self.simulator, &self.setup, &mut workspace, field)?;
-        Ok(())
-    }
-
     /// Makes fields, digitised as they are by default, and writes them to standard output as Y4M.
     ///
     /// # Errors
@@ -167,7 +124,7 @@ impl World for PreparedDocking {
             for truth in &rows {
                 let truth = scorer.true_field(truth);
                 let judged = scorer.scorer.add_with_report(&truth, outcome.as_ref(), report.as_ref());
-                judged.map_err(crate::unscorable)?;
+                judged.map_err(unscorable)?;
             }
         }
         answers.end()?;
@@ -202,7 +159,7 @@ impl world::Scorer<PreparedDocking> for Scorer {
     /// Truth and answer are judged as their files would give them back, so that a run and its files have the same score to the bit.
     fn add(&mut self, truth: &FieldTruth, outcome: &DockingOutcome) -> Result<(), Failure> {
         let truth = self.true_field(&truth_as_filed(truth.clone()));
-        self.scorer.add(&truth, Some(&answer_as_filed(outcome))).map_err(crate::unscorable)
+        self.scorer.add(&truth, Some(&answer_as_filed(outcome))).map_err(unscorable)
     }
 
     fn finish(self) -> ScoredFields {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use contract::{FarRange, Outcome};
 use files::{FileError, FrameCluster, MeasurementWriter, TableWriter};
 
-use crate::world::Answers;
+use crate::world::{Answers, paths};
 
 /// Writes measurements, and what clusters were taken for.
 pub struct FrameAnswers {
@@ -19,7 +19,7 @@ impl Answers<FarRange> for FrameAnswers {
     }
 
     fn create(files: &[PathBuf]) -> Result<Self, FileError> {
-        let [measurements, clusters] = crate::paths(files)?;
+        let [measurements, clusters] = paths(files)?;
         Ok(Self {
             measurements: MeasurementWriter::create(measurements)?,
             clusters: TableWriter::create(clusters)?,

@@ -3,102 +3,30 @@
 pub mod answers;
 pub mod dataset;
 mod inject;
+mod prepared;
 pub mod star_list;
+
+pub use prepared::{Prepared, SceneTruth};
 
 use std::path::Path;
 
 use contract::{FarRange, Frame, Outcome, Setup, Telemetry};
 use files::{
-    Expected, Failure, FrameCluster, ImageFormat, RunDirectory, StarRow, TableReader, read_measurements,
+    Expected, Failure, FrameCluster, ImageFormat, RunDirectory, TableReader, read_measurements,
     write_expected,
 };
-use hifitime::Epoch;
 use indexmap::IndexMap;
+use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
-use scenario::{FarRangeScenario, ScenarioSource, Stage};
 use score::{Figure, Score, ScoreContext, Scored, UnitTable};
-use sim::Simulator;
 use sim::optics::Projection;
 use sim::truth::{FrameTruth, ObjectTruth};
 
 use self::answers::FrameAnswers;
 use self::dataset::{FrameDataset, save_image};
 use self::inject::InjectedPipeline;
-use self::star_list::star_list;
 use crate::by_number::ByNumber;
-use crate::world::{self, Expectation, Flight, InformedPipeline, World};
-
-/// A scenario with its simulator and star list, ready to fly.
-pub struct Prepared {
-    simulator: Simulator,
-    run_file: RunFile,
-    setup: Setup,
-    stars: Vec<StarRow>,
-    star_epoch: Epoch,
-}
-
-/// The ground truth of a frame.
-#[derive(Debug, Clone)]
-pub struct SceneTruth {
-    /// The frame.
-    pub frame: FrameTruth,
-    /// Every object in it.
-    pub objects: Vec<ObjectTruth>,
-}
-
-impl Prepared {
-    /// Checks a scenario and prepares its simulator.
-    ///
-    /// # Errors
-    /// A [`Failure`] with the place of the first value that is not allowed.
-    pub fn new(source: &ScenarioSource) -> Result<Self, Failure> {
-        Self::with_truth_for(source, None)
-    }
-
-    /// [`Prepared::new`], for a run of the built-in pipeline in which the truth stands in the place of a stage's result.
-    ///
-    /// # Errors
-    /// As [`Prepared::new`]; [`Failure::Usage`] for the regions of interest of a scenario that has none.
-    pub fn with_truth_for(source: &ScenarioSource, inject: Option<Stage>) -> Result<Self, Failure> {
-        let mut scenario = source.far_range("far range")?.clone();
-        if inject == Some(Stage::Roi) && scenario.roi.take().is_none() {
-            return Err(Failure::Usage(format!(
-                "--inject is roi, expected a scenario with regions of interest: `{}` has no [roi]",
-                source.name
-            )));
-        }
-        let simulator = source.simulator(&scenario)?;
-        let run_file = RunFile::new(&source.name, &scenario, Some(simulator.catalog().sha256()), inject)?;
-        let (_, star_epoch) = simulator
-            .schedule()
-            .frame(0)
-            .ok_or_else(|| Failure::Usage(format!("scenario `{}` has no frame", source.name)))?;
-        let stars = star_list(simulator.catalog(), scenario.star_list.magnitude_limit, star_epoch);
-        let setup = setup(&run_file.scenario, &stars);
-        Ok(Self { simulator, run_file, setup, stars, star_epoch })
-    }
-
-    /// The scenario.
-    pub fn scenario(&self) -> &FarRangeScenario {
-        &self.run_file.scenario
-    }
-
-    /// What makes its frames.
-    pub fn simulator(&self) -> &Simulator {
-        &self.simulator
-    }
-}
-
-fn setup(scenario: &FarRangeScenario, stars: &[StarRow]) -> Setup {
-    Setup {
-        camera: scenario.camera.clone(),
-        camera_from_body: scenario.mounting.nominal.camera_from_body(),
-        bit_depth: scenario.sensor.bit_depth,
-        readout: Some(scenario.readout()),
-        zero_suppression_dn: scenario.zero_suppression_dn,
-        stars: stars.iter().map(StarRow::listed).collect(),
-    }
-}
+use crate::world::{self, Expectation, Flight, InformedPipeline, World, unscorable};
 
 impl World for Prepared {
     type Interface = FarRange;
@@ -207,7 +135,7 @@ impl World for Prepared {
                 outcome.clusters = table.rows_of(number)?.into_iter().map(|row| row.cluster).collect();
             }
             for truth in &truths {
-                scorer.add(truth, &objects, outcome.as_ref()).map_err(crate::unscorable)?;
+                scorer.add(truth, &objects, outcome.as_ref()).map_err(unscorable)?;
             }
         }
         answers.end()?;
@@ -220,7 +148,7 @@ pub struct Scorer<'a>(score::Scorer<'a>);
 
 impl world::Scorer<Prepared> for Scorer<'_> {
     fn add(&mut self, truth: &SceneTruth, outcome: &Outcome) -> Result<(), Failure> {
-        self.0.add(&truth.frame, &truth.objects, Some(outcome)).map_err(crate::unscorable)?;
+        self.0.add(&truth.frame, &truth.objects, Some(outcome)).map_err(unscorable)?;
         Ok(())
     }
 

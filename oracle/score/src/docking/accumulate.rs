@@ -8,6 +8,7 @@ use super::bins::{bin, group_name, lens_names};
 use super::cause::MissCause;
 use super::consistency::{nees, within_3_sigma};
 use super::errors::{PoseErrors, phi_error};
+use super::field_verdict::FieldVerdict;
 use super::figures::definitions;
 use super::portions::{MotionVerdict, PortionVerdict};
 use super::report::{DockingGroup, DockingScore, names};
@@ -30,35 +31,6 @@ pub struct DockingContext {
     pub renderer: String,
     /// The true cameras and the target's true dimensions.
     pub setup: DockingSetup,
-}
-
-/// What the score keeps of a field.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct FieldVerdict {
-    /// Number of the field.
-    field: u64,
-    /// Bin of the true range, and camera.
-    group: (usize, usize),
-    /// True ρ, m.
-    pub(super) range_m: f64,
-    /// Whether the target is resolved and wholly in the image.
-    pub(super) is_clear: bool,
-    /// Of a clear field, from a second after the first measured one: whether the last report is at most a second old.
-    pub(super) is_renewed: Option<bool>,
-    /// Whether all six parameters were given.
-    pub(super) is_measured: bool,
-    /// Whether all six can be asked for: the target is resolved, or they were given all the same.
-    pub(super) is_asked: bool,
-    pub(super) verdict: Verdict,
-    /// Of a success: NEES over its dimension.
-    pub(super) nees: Option<f64>,
-    /// Of a success: whether each parameter is within three standard deviations.
-    pub(super) within: Option<[Option<bool>; 6]>,
-    /// Errors of the paper's pose, where there is one.
-    pub(super) paper: Option<PoseErrors>,
-    pub(super) paper_is_wrong: bool,
-    /// The report, where the field ends a portion.
-    pub(super) portion: Option<PortionVerdict>,
 }
 
 /// Scores the fields of a docking run one after the other.

@@ -1,7 +1,7 @@
 //! The figures of a docking score, from the verdicts of fields and of the portions that they end.
 
-use super::accumulate::FieldVerdict;
 use super::errors::PoseErrors;
+use super::field_verdict::FieldVerdict;
 use super::portions::{MotionVerdict, PortionVerdict};
 use super::report::names;
 use super::verdict::Verdict;

@@ -10,6 +10,7 @@ mod bins;
 mod cause;
 pub mod consistency;
 mod errors;
+mod field_verdict;
 mod figures;
 #[cfg(test)]
 mod hand_made;

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::inverse;
-use crate::docking::geometry::{to_pose, to_vector};
+use crate::docking::pose::geometry::{to_pose, to_vector};
 use crate::error::{PipelineError, require};
 
 /// (d, φ, d', φ').

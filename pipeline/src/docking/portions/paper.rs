@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::inverse;
-use crate::docking::paper_pose::{PaperMeasurement, PaperTarget};
+use crate::docking::pose::paper_pose::{PaperMeasurement, PaperTarget};
 use crate::error::{PipelineError, require};
 
 /// Weights and forgetting of the paper's portions.

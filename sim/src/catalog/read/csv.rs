@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use super::super::{CatalogError, CatalogStar, photometry};
-use super::Field;
+use super::field::Field;
 
 /// A column that a file may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::super::{CatalogError, CatalogStar, radial_velocity};
-use super::Field;
+use super::field::Field;
 
 /// Bytes of a line up to the last column used; the whole line has 276.
 const LENGTH: usize = 171;

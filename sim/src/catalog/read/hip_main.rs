@@ -3,9 +3,9 @@
 
 use std::path::Path;
 
-use super::super::catalog::Exclusion;
+use super::super::parsed::{Exclusion, Parsed};
 use super::super::{CatalogError, CatalogStar, radial_velocity};
-use super::{Field, Parsed};
+use super::field::Field;
 
 /// H0 to H77.
 const FIELDS: usize = 78;

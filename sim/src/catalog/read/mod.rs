@@ -1,16 +1,14 @@
 //! Reading a user's catalogue.
 
 mod csv;
+mod field;
 mod hip2;
 mod hip_main;
 
 use std::path::Path;
 
-use super::catalog::Exclusion;
-use super::{CatalogError, CatalogStar};
-
-/// What a file holds: stars with the line each stands in, and the stars left out.
-type Parsed = (Vec<(usize, CatalogStar)>, Vec<Exclusion>);
+use super::CatalogError;
+use super::parsed::Parsed;
 
 /// Parses a file of any known format; `path` tells the format and is named in errors.
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Parsed, CatalogError> {
@@ -28,76 +26,6 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Parsed, CatalogError> {
         Ok((hip2::parse(path, text)?, Vec::new()))
     } else {
         Err(CatalogError::UnknownFormat { path: path.to_path_buf() })
-    }
-}
-
-/// A field of a line, and where it stands.
-#[derive(Clone, Copy)]
-struct Field<'a> {
-    path: &'a Path,
-    line: usize,
-    /// First character in the line, counted from 1.
-    column: usize,
-    name: &'static str,
-    text: &'a str,
-}
-
-impl Field<'_> {
-    fn error(&self, expected: &'static str) -> CatalogError {
-        let blanks = self.text.chars().take_while(|character| character.is_whitespace()).count();
-        CatalogError::Field {
-            path: self.path.to_path_buf(),
-            line: self.line,
-            column: if blanks < self.text.chars().count() { self.column + blanks } else { self.column },
-            field: self.name,
-            value: self.text.trim().to_owned(),
-            expected,
-        }
-    }
-
-    fn is_blank(&self) -> bool {
-        self.text.trim().is_empty()
-    }
-
-    fn id(&self) -> Result<u32, CatalogError> {
-        self.text.trim().parse().map_err(|_| self.error("a whole number from 0 to 4294967295"))
-    }
-
-    /// A finite number from `low` to `high`.
-    fn number(&self, low: f64, high: f64, expected: &'static str) -> Result<f64, CatalogError> {
-        match self.text.trim().parse::<f64>() {
-            // No NaN and no infinity lies between finite ends.
-            Ok(value) if (low..=high).contains(&value) => Ok(value),
-            _ => Err(self.error(expected)),
-        }
-    }
-
-    fn optional(&self, low: f64, high: f64, expected: &'static str) -> Result<Option<f64>, CatalogError> {
-        if self.is_blank() { Ok(None) } else { self.number(low, high, expected).map(Some) }
-    }
-
-    fn ra_deg(&self) -> Result<f64, CatalogError> {
-        self.number(0.0, 360.0, "degrees from 0 to 360")
-    }
-
-    fn dec_deg(&self) -> Result<f64, CatalogError> {
-        self.number(-90.0, 90.0, "degrees from -90 to 90")
-    }
-
-    fn magnitude(&self) -> Result<f64, CatalogError> {
-        self.number(-30.0, 40.0, "a magnitude from -30 to 40")
-    }
-
-    fn parallax_mas(&self) -> Result<Option<f64>, CatalogError> {
-        self.optional(-1e4, 1e4, "blank, or mas from -10000 to 10000")
-    }
-
-    fn proper_motion_mas_per_yr(&self) -> Result<Option<f64>, CatalogError> {
-        self.optional(-1e5, 1e5, "blank, or mas per year from -100000 to 100000")
-    }
-
-    fn colour(&self) -> Result<Option<f64>, CatalogError> {
-        self.optional(-10.0, 20.0, "blank, or a colour index from -10 to 20 mag")
     }
 }
 

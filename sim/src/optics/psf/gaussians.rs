@@ -11,7 +11,7 @@ use pulp::Simd;
 
 use super::condense::condensed;
 use super::error_function::ErrorFunction;
-use super::pixels_within;
+use super::pixels_within::pixels_within;
 use super::share_table::ShareTable;
 use crate::optics::{ImagePoint, Stamp};
 use crate::widest::{Eight, LANES, Work, widest};

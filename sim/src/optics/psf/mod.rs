@@ -7,6 +7,7 @@ mod defocus;
 mod error_function;
 mod gaussians;
 mod moffat;
+mod pixels_within;
 mod sampled;
 mod share_table;
 mod tabulated;
@@ -25,6 +26,7 @@ use super::{ImagePoint, Stamp};
 use crate::SimError;
 use crate::widest::{Eight, LANES, Work, widest};
 use gaussians::{Gaussians, Profiles};
+use pixels_within::pixels_within;
 use tabulated::{Edges, Tabulated};
 
 /// A point-spread function, ready to draw: how the light of a point spreads over pixels, each of which integrates what
@@ -244,17 +246,6 @@ impl Work for Emptied<'_> {
             Eight::of(simd, pixels).or_none_below(below).store(pixels);
         }
     }
-}
-
-/// The range of pixels of an axis of `count` whose centres lie within `reach_px` of the interval `span`.
-#[inline(always)]
-fn pixels_within(span: (f64, f64), reach_px: f64, count: usize) -> (usize, usize) {
-    let last = count as f64;
-    // A cast of a float saturates, and NaN gives 0: an empty range.
-    (
-        (span.0 - reach_px).ceil().clamp(0.0, last) as usize,
-        (span.1 + reach_px + 1.0).floor().clamp(0.0, last) as usize,
-    )
 }
 
 #[cfg(test)]

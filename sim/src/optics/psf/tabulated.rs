@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use super::pixels_within;
+use super::pixels_within::pixels_within;
 use crate::optics::{ImagePoint, Stamp};
 
 /// A tabulated shape, centred on the origin.

@@ -8,8 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::Facet;
 use super::checks::check_source;
 use super::docking_unit::DockingUnitTable;
-use super::shapes::flat;
-use super::station::StationTable;
+use super::shapes::{Circle, flat};
 use crate::SimError;
 use crate::error::require;
 use crate::randomness::{Effect, Seed, Stream, uniform};
@@ -45,21 +44,24 @@ pub struct BlanketsTable {
 }
 
 impl BlanketsTable {
-    pub(super) fn check(&self, station: &StationTable, unit: &DockingUnitTable) -> Result<(), SimError> {
+    /// Checks every number; `face` is what lies inside the rim, `depth_m` behind the disk's plane.
+    ///
+    /// # Errors
+    /// [`SimError::Parameter`] for the first field outside its range.
+    pub(super) fn check(&self, face: &Circle, depth_m: f64, unit: &DockingUnitTable) -> Result<(), SimError> {
         check_source("station.blankets.source", &self.source)?;
         require("station.blankets.rings", self.rings as f64, "1 to 20", |n| (1.0..=20.0).contains(&n))?;
-        let inside_m = station.radius_m - station.rim_m;
         require(
             "station.blankets.ring_width_m",
             self.ring_width_m,
             "greater than 0, all rings inside the rim",
-            |w| w > 0.0 && w * self.rings as f64 <= inside_m,
+            |w| w > 0.0 && w * self.rings as f64 <= face.radius_m,
         )?;
         require(
             "station.blankets.tile_width_m",
             self.tile_width_m,
             "greater than 0, so large that there are at most 1000 tiles",
-            |w| w > 0.0 && 2.0 * PI * inside_m / w * self.rings as f64 <= MAX_TILES,
+            |w| w > 0.0 && 2.0 * PI * face.radius_m / w * self.rings as f64 <= MAX_TILES,
         )?;
         let least_m = self.ring_width_m.min(self.tile_width_m);
         require("station.blankets.gap_m", self.gap_m, "0 or more, less than a quarter of a tile", |gap| {
@@ -72,7 +74,7 @@ impl BlanketsTable {
             "station.blankets.thickness_m",
             self.thickness_m,
             "greater than 0, less than the docking unit stands out from the face",
-            |t| t > 0.0 && t < station.depth_m - unit.depth_m,
+            |t| t > 0.0 && t < depth_m - unit.depth_m,
         )?;
         let [least, greatest] = self.reflectance;
         require("station.blankets.reflectance", least, "0 to 1, the least first", |rho| {
@@ -81,11 +83,12 @@ impl BlanketsTable {
         require("station.blankets.reflectance", greatest, "0 to 1", |rho| (0.0..=1.0).contains(&rho))
     }
 
-    pub(super) fn facets(&self, station: &StationTable, unit: &DockingUnitTable) -> Vec<Facet> {
-        let y3_m = self.thickness_m - station.depth_m;
+    /// The tiles on `face`, which lies `depth_m` behind the disk's plane.
+    pub(super) fn facets(&self, face: &Circle, depth_m: f64, unit: &DockingUnitTable) -> Vec<Facet> {
+        let y3_m = self.thickness_m - depth_m;
         let mut facets = Vec::new();
         for ring in 0..self.rings {
-            let outer_m = station.radius_m - station.rim_m - self.ring_width_m * ring as f64;
+            let outer_m = face.radius_m - self.ring_width_m * ring as f64;
             let inner_m = outer_m - self.ring_width_m;
             // Three at least, so that a tile spans less than half a turn.
             let count = (PI * (inner_m + outer_m) / self.tile_width_m).round().max(3.0) as usize;
@@ -93,7 +96,7 @@ impl BlanketsTable {
                 let Some((tile, reflectance)) = self.tile([inner_m, outer_m], ring, i, count) else {
                     continue;
                 };
-                let tile = tile.map(|[y1, y2]| [station.centre_m[0] + y1, station.centre_m[1] + y2]);
+                let tile = tile.map(|[y1, y2]| [face.centre_m[0] + y1, face.centre_m[1] + y2]);
                 if distance(&tile, unit.axis_m) > unit.outer_radius_m {
                     facets.push(flat(&tile, &[], y3_m, reflectance));
                 }

@@ -60,16 +60,16 @@ impl StationTable {
         })?;
         check_reflectance("station.rim_reflectance", self.rim_reflectance)?;
         check_reflectance("station.face_reflectance", self.face_reflectance)?;
-        self.blankets.as_ref().map_or(Ok(()), |blankets| blankets.check(self, unit))
+        let face = self.face();
+        self.blankets.as_ref().map_or(Ok(()), |blankets| blankets.check(&face, self.depth_m, unit))
     }
 
     /// Wall, face and blankets, back to front. The face is open where the docking unit stands on it.
     pub(super) fn parts(&self, unit: &DockingUnitTable) -> Vec<Part> {
         let outline = Circle { centre_m: self.centre_m, radius_m: self.radius_m };
-        let inside = Circle { radius_m: self.radius_m - self.rim_m, ..outline };
         // Smaller than the docking unit's wall, which covers the edge.
         let opening = Circle { centre_m: unit.axis_m, radius_m: unit.inner_radius_m };
-        let inside = inside.polygon_within(COARSE_SAGITTA_M);
+        let inside = self.face().polygon_within(COARSE_SAGITTA_M);
         let face = vec![
             flat(&inside, &[&opening.polygon_within(COARSE_SAGITTA_M)], -self.depth_m, self.face_reflectance),
             flat(&outline.polygon_within(COARSE_SAGITTA_M), &[&inside], -self.depth_m, self.rim_reflectance),
@@ -84,9 +84,14 @@ impl StationTable {
         // Wall and face are one closed body to the Sun, and cast its shadow together; the blankets lie on the face.
         let mut parts = vec![part("station wall", wall, true), part("station face", face, true)];
         if let Some(blankets) = &self.blankets {
-            parts.push(part("blankets", blankets.facets(self, unit), false));
+            parts.push(part("blankets", blankets.facets(&self.face(), self.depth_m, unit), false));
         }
         parts
+    }
+
+    /// The face inside the rim.
+    fn face(&self) -> Circle {
+        Circle { centre_m: self.centre_m, radius_m: self.radius_m - self.rim_m }
     }
 
     /// How far the end of the module's wall lies behind the disk's plane, m.

@@ -24,7 +24,7 @@ use crate::optics::{ImagePoint, SUN_V_MAG_AT_1_AU};
 use crate::truth::{States, TargetAttitudeConfig};
 use body::LitBody;
 use plate::Plate;
-use sphere::LitSphere;
+use sphere::{LitSphere, lambert_phase};
 
 /// Plates that a body may have, those of boxes included: each is held against each.
 const MAX_PLATES: usize = 200;
@@ -231,12 +231,6 @@ impl Appearance {
         };
         share.unwrap_or(psf_share)
     }
-}
-
-/// Phase law of a Lambert sphere, 1 at full phase, 0 at π: (sin α + (π − α) cos α)/π (Russell 1916, ApJ 43, 173).
-fn lambert_phase(phase_rad: f64) -> f64 {
-    let (sin, cos) = libm::sincos(phase_rad);
-    ((sin + (std::f64::consts::PI - phase_rad) * cos) / std::f64::consts::PI).max(0.0)
 }
 
 #[cfg(test)]

@@ -6,7 +6,6 @@ use contract::PixelPoint;
 use nalgebra::{Vector2, Vector3};
 
 use super::body::gather;
-use super::lambert_phase;
 use crate::optics::ImagePoint;
 use crate::scene::disk::Disk;
 
@@ -125,6 +124,12 @@ impl LitSphere {
         let direction = towards_sun.try_normalize(1e-12).unwrap_or_else(Vector3::zeros);
         direction * (self.radius_m * 3.0 * PI / 16.0 * ratio)
     }
+}
+
+/// Phase law of a Lambert sphere, 1 at full phase, 0 at π: (sin α + (π − α) cos α)/π (Russell 1916, ApJ 43, 173).
+pub(super) fn lambert_phase(phase_rad: f64) -> f64 {
+    let (sin, cos) = libm::sincos(phase_rad);
+    ((sin + (PI - phase_rad) * cos) / PI).max(0.0)
 }
 
 #[cfg(test)]

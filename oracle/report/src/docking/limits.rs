@@ -1,0 +1,24 @@
+//! Axes that leave out the wildest values, and tell of it.
+
+/// How many of some values an axis leaves out.
+pub(super) fn outside(range: [f64; 2], values: impl Iterator<Item = f64>) -> usize {
+    values.filter(|value| *value < range[0] || *value > range[1]).count()
+}
+
+/// What a caption says of errors that the axes leave out.
+pub(super) fn told_outside(count: usize, of: usize) -> String {
+    match count {
+        0 => format!("All {of} errors lie inside of the axes."),
+        _ => format!("{count} of {of} errors lie outside of the axes; zoom out (double click) for them."),
+    }
+}
+
+/// Limits of an axis that shows all but the wildest hundredth of some values.
+pub(super) fn limits(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let mut sorted: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let Some(last) = sorted.len().checked_sub(1) else { return [-1.0, 1.0] };
+    let (low, high) = (sorted[last / 200], sorted[last - last / 200]);
+    let room = (0.08 * (high - low)).max(1e-9);
+    [low - room, high + room]
+}

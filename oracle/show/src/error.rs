@@ -1,0 +1,25 @@
+//! Why a picture cannot be drawn.
+
+use thiserror::Error;
+
+/// Most panels of a contact sheet.
+pub const MOST_PANELS: usize = 16;
+
+/// Why a picture cannot be drawn.
+#[derive(Debug, Error)]
+pub enum ShowError {
+    /// Too few or too many frames for a picture.
+    #[error("{0} frames are asked for, expected 1 to {MOST_PANELS}")]
+    PanelCount(usize),
+    /// A view without pixels, or a canvas that cannot be allocated.
+    #[error("a picture of {width} × {height} pixels cannot be drawn")]
+    Size {
+        /// Width, px.
+        width: usize,
+        /// Height, px.
+        height: usize,
+    },
+    /// The encoder refused.
+    #[error("the picture cannot be encoded: {0}")]
+    Encode(String),
+}

@@ -1,0 +1,309 @@
+//! The station's outline: the circle of its end face among the edges of the field, and the range from it before the
+//! target is resolved.
+
+use contract::docking::Outline;
+use nalgebra::Vector2;
+
+use super::votes::{self, Proposal};
+use crate::docking::cross_and_circle::circle::{self, CircleFit};
+use crate::docking::pose::paper_pose::range_from_outline;
+use crate::docking::preprocessing::view::{Lens, Overview, View};
+
+/// The station's outline in a field, ideal image.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StationOutline {
+    pub(crate) circle: CircleFit,
+    /// How many points of its edge lie on it.
+    pub(crate) points: u32,
+    /// Standard deviation of its radius, px.
+    pub(crate) sigma_px: f64,
+}
+
+/// Circles of the search that are measured.
+const MEASURED: usize = 16;
+
+/// Rays from a circle's centre along which its edge is looked for.
+const RAYS: usize = 72;
+
+/// Share of the rays that must meet the edge on the circle: less does not tell a circle from panels and shadows …
+const MIN_SHARE: f64 = 0.6;
+
+/// … nor, below [`SMALL_RADIUS_PX`], from the end of a bar or a character of an overlay.
+const MIN_SMALL_SHARE: f64 = 0.8;
+
+/// Largest root mean square of the edge's distances from the circle, as a part of the radius: characters of 8 to 11 px have 0.055
+/// to 0.13, a station of 12 px 0.05.
+const MAX_RMS: f64 = 0.054;
+
+/// Share of a predicted outline that must be in the image to say whether it is there.
+const MIN_INSIDE: f64 = 0.45;
+
+/// A circle of fewer pixels fits many things.
+const SMALL_RADIUS_PX: f64 = 30.0;
+
+/// Least height of an edge, grey values, and as a multiple of the median difference of neighbours, which is the noise.
+const MIN_STEP: (f64, f64) = (8.0, 3.0);
+
+/// The outline of a bright round face; `None` when there is none, or when too much of it is outside the image.
+///
+/// The face stands before structure that is now darker, now as bright: no threshold cuts it out. The circles with most votes
+/// are measured on the field, ray by ray, and the largest one that is whole enough is the outline.
+pub(crate) fn find(view: &View<'_>, overview: &Overview, lens: &Lens) -> Option<StationOutline> {
+    let min_step = least_step(view);
+    let mut proposals = votes::propose(&overview.grey, min_step);
+    proposals.sort_by(|a, b| b.share.total_cmp(&a.share));
+    let mut kept: Vec<Proposal> = Vec::new();
+    for proposal in proposals {
+        let repeats = |other: &Proposal| {
+            libm::hypot(other.x - proposal.x, other.y - proposal.y) < 0.15 * other.radius
+                && (proposal.radius / other.radius - 1.0).abs() < 0.1
+        };
+        if kept.len() < MEASURED && !kept.iter().any(repeats) {
+            kept.push(proposal);
+        }
+    }
+    let measured: Vec<StationOutline> = kept
+        .iter()
+        .filter_map(|proposal| {
+            let centre = lens.to_ideal(overview.to_camera(proposal.x, proposal.y))?;
+            let radius = proposal.radius * Overview::PIXEL;
+            measure(view, lens, (centre, radius), min_step, [MIN_SHARE, least_share(radius)])
+        })
+        .filter(StationOutline::is_round)
+        .collect();
+    let largest = measured.iter().map(|outline| outline.circle.radius).fold(0.0, f64::max);
+    // Several proposals come to the same circle by other points. The largest of them would be too large: the one that its
+    // points fit best is taken.
+    measured
+        .into_iter()
+        .filter(|outline| outline.circle.radius > 0.93 * largest)
+        .min_by(|a, b| a.circle.rms.total_cmp(&b.circle.rms))
+}
+
+/// The outline about where the field before has it; `None` when it is not there.
+pub(crate) fn follow(view: &View<'_>, lens: &Lens, before: &CircleFit) -> Option<StationOutline> {
+    let place = (before.centre, before.radius);
+    let share = least_share(before.radius);
+    let reach = (0.07 * before.radius).max(3.0);
+    fit(view, lens, place, reach, least_step(view), share).filter(StationOutline::is_round)
+}
+
+impl StationOutline {
+    fn is_round(&self) -> bool {
+        self.circle.rms <= MAX_RMS * self.circle.radius
+    }
+}
+
+/// Share of the rays on which a circle of this radius must have its edge.
+fn least_share(radius_px: f64) -> f64 {
+    if radius_px < SMALL_RADIUS_PX { MIN_SMALL_SHARE } else { MIN_SHARE }
+}
+
+/// Least height of an edge in this field, grey values.
+fn least_step(view: &View<'_>) -> f64 {
+    MIN_STEP.0.max(MIN_STEP.1 * noise(view))
+}
+
+/// Median difference of horizontal neighbours, each the mean of two pixels, grey values; of every fourth row.
+fn noise(view: &View<'_>) -> f64 {
+    let mut counts = [0u32; 256];
+    let mut total = 0;
+    for row in (0..view.rows()).step_by(4) {
+        let mean = |pair: usize| (view.at(2 * pair, row) + view.at(2 * pair + 1, row)) / 2.0;
+        for pair in 1..view.columns() / 2 {
+            counts[((mean(pair) - mean(pair - 1)).abs() + 0.5).min(View::WHITE) as usize] += 1;
+            total += 1;
+        }
+    }
+    let mut below = 0;
+    counts
+        .iter()
+        .position(|count| {
+            below += count;
+            2 * below >= total
+        })
+        .unwrap_or(0) as f64
+}
+
+/// Whether the outline is seen where `centre` and `radius` predict it; `None` when too much of it is outside the image to
+/// say. A tenth of the radius is what tilt and parallax may move it by.
+pub(crate) fn confirms(
+    view: &View<'_>,
+    lens: &Lens,
+    (centre, radius): (Vector2<f64>, f64),
+    min_step: f64,
+) -> Option<bool> {
+    let inside = (0..RAYS)
+        .filter(|ray| {
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * *ray as f64 / RAYS as f64);
+            lens.to_camera(centre + 1.2 * radius * Vector2::new(cos, sin))
+                .is_some_and(|place| view.holds(place, 2.0))
+        })
+        .count();
+    let inside = inside as f64 / RAYS as f64;
+    if inside < MIN_INSIDE {
+        return None;
+    }
+    // Shadows and what stands behind may hide half of it.
+    let seen = measure(view, lens, (centre, radius), min_step, [0.25 * inside, 0.45 * inside]);
+    Some(seen.is_some_and(|seen| (seen.circle.radius / radius - 1.0).abs() < 0.12))
+}
+
+/// The outline where it is predicted, when most of it is seen.
+pub(crate) fn measure_at(
+    view: &View<'_>,
+    lens: &Lens,
+    place: (Vector2<f64>, f64),
+    min_step: f64,
+) -> Option<StationOutline> {
+    measure(view, lens, place, min_step, [MIN_SHARE, MIN_SHARE]).filter(StationOutline::is_round)
+}
+
+/// The circle through the steepest falls of brightness on rays from a centre, twice, the second time about the first; on it
+/// must be the given shares of the rays.
+fn measure(
+    view: &View<'_>,
+    lens: &Lens,
+    (centre, radius): (Vector2<f64>, f64),
+    min_step: f64,
+    [first_share, share]: [f64; 2],
+) -> Option<StationOutline> {
+    let reach = (0.15 * radius).max(3.5);
+    let first = fit(view, lens, (centre, radius), reach, min_step, first_share)?;
+    let CircleFit { centre, radius, .. } = first.circle;
+    fit(view, lens, (centre, radius), (0.07 * radius).max(3.0), min_step, share)
+}
+
+fn fit(
+    view: &View<'_>,
+    lens: &Lens,
+    (centre, radius): (Vector2<f64>, f64),
+    reach: f64,
+    min_step: f64,
+    min_share: f64,
+) -> Option<StationOutline> {
+    let step = (reach / 12.0).max(0.5);
+    let count = (2.0 * reach / step).ceil() as usize + 1;
+    // An edge is the difference of the means of some samples on either side: tiles and seams are narrower. The longer the sides, the
+    // farther out a rim that is brighter than what is inside it moves the steepest fall.
+    let side = ((0.01 * radius).max(1.0) / step).round().max(1.0) as usize;
+    let mut points = Vec::with_capacity(RAYS);
+    let mut values = Vec::with_capacity(count);
+    for ray in 0..RAYS {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * ray as f64 / RAYS as f64);
+        let direction = Vector2::new(cos, sin);
+        values.clear();
+        values.extend((0..count + 2 * side).map_while(|i| {
+            let distance = radius - reach + step * (i as f64 - side as f64);
+            view.sample(lens.to_camera(centre + direction * distance)?)
+        }));
+        if values.len() < count + 2 * side {
+            continue;
+        }
+        let fall = |i: usize| -> f64 {
+            let sum = |part: &[f64]| part.iter().sum::<f64>();
+            (sum(&values[i..i + side]) - sum(&values[i + side + 1..i + 2 * side + 1])) / side as f64
+        };
+        let steepest = (0..count - 1).map(|i| (i, fall(i))).max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((i, height)) = steepest
+            && height >= min_step
+            && i > 0
+            && i + 2 < count
+        {
+            // The vertex of the parabola through three falls.
+            let (before, after) = (fall(i - 1), fall(i + 1));
+            let bend = before - 2.0 * height + after;
+            let shift = if bend < 0.0 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 };
+            points.push(centre + direction * (radius - reach + step * (i as f64 + shift)));
+        }
+    }
+    if points.len() < 8 || (points.len() as f64) < min_share * RAYS as f64 {
+        return None;
+    }
+    let tolerance = (0.012 * radius).max(1.0);
+    let (circle, _) = circle::fit_robustly(&points, tolerance)?;
+    if (circle.centre - centre).norm() > reach || (circle.radius - radius).abs() > reach {
+        return None;
+    }
+    let on_it: Vec<Vector2<f64>> =
+        points.iter().filter(|p| circle.residual(p).abs() <= 2.0 * tolerance).copied().collect();
+    let share = on_it.len() as f64 / RAYS as f64;
+    if share < min_share {
+        return None;
+    }
+    let circle = circle::refine(&on_it, &circle)?;
+    // Neighbouring rays of a small circle meet the same pixels. The rim's own shape, its shading and what shows behind it
+    // move the edge together on all rays: by a part of the width of the blur and of the rim.
+    let independent = (on_it.len() as f64).min(3.0 * circle.radius);
+    let common_px = 0.15 + 0.004 * circle.radius;
+    let sigma_px = (circle.rms * circle.rms / independent / share + common_px * common_px).sqrt();
+    Some(StationOutline { circle, points: on_it.len() as u32, sigma_px })
+}
+
+/// d3 and its standard deviation, m: Rs = f r_s/(d3 + h_s). `None` unless it is positive.
+pub(crate) fn range(outline: &Outline, focal_px: f64, radius_px: f64, sigma_px: f64) -> Option<(f64, f64)> {
+    let range_m = range_from_outline(focal_px, outline.radius_m, outline.depth_m, radius_px)?;
+    let sigma_m = (range_m + outline.depth_m) * sigma_px / radius_px;
+    sigma_m.is_finite().then_some((range_m, sigma_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::docking::preprocessing::view::View;
+    use crate::docking::synthetic;
+    use contract::docking::Lines;
+
+    fn look_at(field: &contract::docking::Field) -> Option<StationOutline> {
+        let view = View::new(field);
+        find(&view, &view.overview(), &synthetic::lens())
+    }
+
+    fn disk(x: usize, y: usize, centre: (f64, f64), radius: f64) -> bool {
+        libm::hypot(x as f64 - centre.0, y as f64 - centre.1) <= radius
+    }
+
+    #[test]
+    fn the_range_is_that_of_the_formula() {
+        let outline = synthetic::target().station;
+        // f r_s/(d3 + h_s) at 100 m.
+        let radius = 1055.0 * 2.05 / 100.45;
+        let (range_m, sigma_m) = range(&outline, 1055.0, radius, 0.1).unwrap();
+        assert!((range_m - 100.0).abs() < 1e-9);
+        assert!((sigma_m - 100.45 * 0.1 / radius).abs() < 1e-9);
+        assert_eq!(range(&outline, 1055.0, 1e9, 0.1), None);
+        assert_eq!(range(&outline, 1055.0, 0.0, 0.1), None);
+    }
+
+    #[test]
+    fn the_body_is_measured_and_its_panels_are_not() {
+        for radius in [12.0, 40.0, 150.0] {
+            let centre = (400.2, 290.7);
+            let field = synthetic::drawn(Lines::Even, |x, y| {
+                let panel =
+                    (x as f64 - centre.0).abs() < 3.0 * radius && (y as f64 - centre.1).abs() < 0.15 * radius;
+                if panel || disk(x, y, centre, radius) { 140 } else { 8 }
+            });
+            let found = look_at(&field).unwrap();
+            let error = found.circle.radius - radius;
+            assert!(error.abs() < 3.0 * found.sigma_px, "{radius}: {found:?}");
+            assert!(error.abs() < 1.0 + 0.02 * radius, "{radius}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_body_cut_by_the_border_is_measured_on_what_is_left() {
+        let field =
+            synthetic::drawn(Lines::Odd, |x, y| if disk(x, y, (380.0, 400.0), 220.0) { 140 } else { 8 });
+        let found = look_at(&field).unwrap();
+        assert!((found.circle.radius - 220.0).abs() < 3.0, "{found:?}");
+    }
+
+    #[test]
+    fn nothing_is_found_where_there_is_no_circle() {
+        let look = |grey: &dyn Fn(usize, usize) -> u16| look_at(&synthetic::drawn(Lines::Odd, grey));
+        assert_eq!(look(&|_, _| 30), None);
+        assert_eq!(look(&|x, _| if x < 300 { 30 } else { 200 }), None);
+        assert_eq!(look(&|x, y| if x == 300 && y < 20 { 200 } else { 10 }), None);
+    }
+}

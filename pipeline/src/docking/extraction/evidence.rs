@@ -1,0 +1,93 @@
+//! What was recognised in a field, told in the camera's pixels.
+
+use contract::PixelPoint;
+use contract::docking::{Circle, Cross, Features, MarkUse, TargetModel};
+use nalgebra::Vector2;
+
+use super::docking_unit::{self, DiskEdge, Side};
+use super::recognise::Sight;
+use crate::docking::cross_and_circle::marks::Plane;
+use crate::docking::pose::model_fit::Fitted;
+use crate::docking::preprocessing::region::Rectangle;
+use crate::docking::preprocessing::view::{Lens, View};
+
+/// The square about the plate: what brightness and contrast are set by.
+pub(crate) fn plate(lens: &Lens, plane: &Plane, target: &TargetModel) -> Rectangle {
+    let half_side = target.plate_radius_m * plane.scale_px_m;
+    lens.to_camera(plane.centre).map_or(Rectangle::ALL, |centre| Rectangle::about(centre, half_side))
+}
+
+/// Centre and mean radius, in the camera's pixels, of a circle of the ideal image.
+pub(crate) fn camera_circle(lens: &Lens, centre: Vector2<f64>, radius: f64) -> Option<(PixelPoint, f64)> {
+    const POINTS: usize = 8;
+    let rim: Vec<PixelPoint> = (0..POINTS)
+        .map(|i| {
+            let (sin, cos) = libm::sincos(std::f64::consts::TAU * i as f64 / POINTS as f64);
+            lens.to_camera(centre + radius * Vector2::new(cos, sin))
+        })
+        .collect::<Option<_>>()?;
+    let n = POINTS as f64;
+    let middle =
+        PixelPoint::new(rim.iter().map(|p| p.x).sum::<f64>() / n, rim.iter().map(|p| p.y).sum::<f64>() / n);
+    Some((middle, rim.iter().map(|p| p.distance(middle)).sum::<f64>() / n))
+}
+
+/// What was recognised, in the camera's pixels.
+pub(crate) fn evidence(lens: &Lens, sight: &Sight, unit: &DiskEdge) -> Features {
+    let seed = &sight.cross.seed;
+    let half = 0.5 * seed.half_length_px;
+    let cross = (|| {
+        let (left, right) = (lens.to_camera(seed.place(-half, 0.0))?, lens.to_camera(seed.place(half, 0.0))?);
+        Some(Cross {
+            centre: lens.to_camera(seed.centre)?,
+            raw_centre: lens.to_camera(sight.cross.raw_centre)?,
+            slope: (right.y - left.y) / (right.x - left.x),
+            horizontal_pairs: sight.cross.pairs.0 as u32,
+            vertical_pairs: sight.cross.pairs.1 as u32,
+        })
+    })();
+    let circle = (|| {
+        let (centre, radius_px) = camera_circle(lens, sight.circle.centre, sight.circle.radius_px)?;
+        let (raw_centre, _) = camera_circle(lens, sight.circle.raw_centre, sight.circle.radius_px)?;
+        Some(Circle { centre, raw_centre, radius_px, points: sight.circle.points })
+    })();
+    Features {
+        cross,
+        circle,
+        station: None,
+        docking_unit: disk(lens, unit, 0.4),
+        marks: sight.marks.marks.iter().map(|seen| seen.mark).collect(),
+    }
+}
+
+/// Takes over what the best estimator says of the features: centres with perspective, and marks that it rejected.
+pub(crate) fn refine(features: &mut Features, fitted: &Fitted) {
+    if let Some(cross) = &mut features.cross {
+        cross.centre = fitted.cross_centre;
+    }
+    if let Some(circle) = &mut features.circle {
+        circle.centre = fitted.circle_centre;
+    }
+    for mark in &mut features.marks {
+        let rejected =
+            fitted.marks.iter().any(|other| other.index == mark.index && other.usage == MarkUse::Rejected);
+        if rejected && mark.usage == MarkUse::Used {
+            mark.usage = MarkUse::Rejected;
+        }
+    }
+}
+
+/// The circle of a disk's edge that is seen in at least `share` of its directions.
+fn disk(lens: &Lens, edge: &DiskEdge, share: f64) -> Option<Circle> {
+    let fit = edge.circle.filter(|_| edge.share >= share)?;
+    let (centre, radius_px) = camera_circle(lens, fit.centre, fit.radius)?;
+    Some(Circle { centre, raw_centre: centre, radius_px, points: edge.points })
+}
+
+/// The station's outline, where cross and marks say that it is.
+pub(crate) fn station(view: &View<'_>, lens: &Lens, target: &TargetModel, sight: &Sight) -> Option<Circle> {
+    let (plane, cross) = (&sight.marks.plane, sight.cross.seed.centre);
+    let place = docking_unit::predict(target, &target.station, lens.focal_px(), plane, cross, Side::Nominal);
+    let edge = docking_unit::find(view, lens, place, (0.12 * sight.cross.levels.contrast()).max(8.0));
+    disk(lens, &edge, 0.5)
+}

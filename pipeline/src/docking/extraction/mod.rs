@@ -1,0 +1,13 @@
+//! What is found in the field, and whether it has the structure that the scene must have (docking paper, section 2, step 3).
+
+pub(super) mod candidates;
+pub(super) mod components;
+pub(super) mod contour;
+pub(super) mod docking_unit;
+pub(super) mod evidence;
+pub(super) mod orientation;
+pub(super) mod outline;
+pub(super) mod range_memory;
+pub(super) mod recognise;
+pub(super) mod self_check;
+pub(super) mod votes;

@@ -1,0 +1,150 @@
+//! Whether what was found has the structure that the scene must have.
+
+use contract::docking::{MarkUse, NoPose, PoseEstimate, TargetModel};
+
+use super::contour;
+use super::docking_unit::{self, DiskEdge, Side};
+use crate::docking::cross_and_circle::cross::CrossFit;
+use crate::docking::cross_and_circle::marks::{MarksFit, Plane};
+use crate::docking::preprocessing::region::Prediction;
+use crate::docking::preprocessing::view::{Lens, View};
+
+/// Fewest good marks that tell a target from something else in a field of which nothing is known.
+pub(crate) const MIN_MARKS_TO_FIND: usize = 5;
+
+/// Fewest good marks that fix the disk's place and size.
+pub(crate) const MIN_MARKS_TO_MEASURE: usize = 3;
+
+/// Largest distance between cross and disk's centre, as a share of the marks' circle: farther from the target's axis than
+/// some 20° the marks are hidden or foreshortened beyond recognition.
+const MAX_PARALLAX: f64 = 0.5;
+
+/// Cross and marks against each other.
+///
+/// # Errors
+/// [`NoPose::Inconsistent`] when sizes, places or angles contradict the target's model, [`NoPose::TooFewFeatures`] and
+/// [`NoPose::OutOfField`] when too few marks are left.
+pub(crate) fn cross_and_marks(
+    model: &TargetModel,
+    focal_px: f64,
+    cross: &CrossFit,
+    marks: &MarksFit,
+) -> Result<(), NoPose> {
+    if marks.count(MarkUse::Used) < MIN_MARKS_TO_MEASURE {
+        return Err(if 2 * marks.count(MarkUse::OutOfField) > marks.marks.len() {
+            NoPose::OutOfField
+        } else {
+            NoPose::TooFewFeatures
+        });
+    }
+    let plane = &marks.plane;
+    let d3 = focal_px / plane.scale_px_m;
+    let depth = d3 - model.cross.height_m;
+    let radius_px = model.mark_circle_radius_m * plane.scale_px_m;
+    // The cross is inside the circle of the marks.
+    let inside = (cross.seed.centre - plane.centre).norm() < MAX_PARALLAX * radius_px * d3 / depth;
+    // The bars and the circle have the sizes of one target at one distance.
+    let expected_px = focal_px * model.cross.half_length_m / depth;
+    let error_px = (cross.seed.half_length_px - expected_px).abs();
+    let sizes = depth > 0.0 && error_px < 0.08 * expected_px + 1.2;
+    // The marks stand at the angles that the bars say.
+    let turn = (libm::atan(cross.seed.slope) - plane.roll_rad).abs();
+    let angles = turn < 0.03 + 1.5 / radius_px;
+    if inside && sizes && angles { Ok(()) } else { Err(NoPose::Inconsistent) }
+}
+
+/// Looks for the docking unit's disk where the target says that it is.
+pub(crate) fn docking_unit(
+    view: &View<'_>,
+    lens: &Lens,
+    model: &TargetModel,
+    cross: &CrossFit,
+    plane: &Plane,
+    side: Side,
+) -> DiskEdge {
+    let place =
+        docking_unit::predict(model, &model.docking_unit, lens.focal_px(), plane, cross.seed.centre, side);
+    docking_unit::find(view, lens, place, (0.12 * cross.levels.contrast()).max(8.0))
+}
+
+/// Largest standard deviation of the range as a part of it: three of them are 5 %.
+const MAX_RANGE_SIGMA: f64 = 1.0 / 60.0;
+
+/// Whether the station stands about a small target. In a few pixels a cross with marks is found in anything that has
+/// strokes: letters of an overlay, tiles of a thermal blanket.
+///
+/// # Errors
+/// [`NoPose::NoTarget`] when the station's outline is not there, or mostly outside the image.
+pub(crate) fn on_station(
+    view: &View<'_>,
+    lens: &Lens,
+    model: &TargetModel,
+    cross: &CrossFit,
+    plane: &Plane,
+) -> Result<(), NoPose> {
+    if model.mark_circle_radius_m * plane.scale_px_m > SMALL_CIRCLE_PX {
+        return Ok(());
+    }
+    let centre = cross.seed.centre;
+    let place = docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
+    match contour::confirms(view, lens, place, MIN_OUTLINE_STEP) {
+        Some(true) => Ok(()),
+        _ => Err(NoPose::NoTarget),
+    }
+}
+
+/// Whether the range of a small target is known at all, and is the one that the station's outline has where most of that is in the
+/// image. A pose of few pixels may be that of noise about a cross.
+///
+/// # Errors
+/// [`NoPose::TooFewFeatures`] when the range's standard deviation is larger than a sixtieth of it,
+/// [`NoPose::Inconsistent`] when the two ranges differ by more than three times their standard deviations.
+pub(crate) fn range(
+    view: &View<'_>,
+    lens: &Lens,
+    model: &TargetModel,
+    cross: &CrossFit,
+    plane: &Plane,
+    best: &PoseEstimate,
+) -> Result<(), NoPose> {
+    if model.mark_circle_radius_m * plane.scale_px_m > SMALL_CIRCLE_PX {
+        return Ok(());
+    }
+    let sigma_m = best.covariance[(2, 2)].max(0.0).sqrt();
+    if sigma_m > MAX_RANGE_SIGMA * best.pose.position_m.z {
+        return Err(NoPose::TooFewFeatures);
+    }
+    let centre = cross.seed.centre;
+    let place = docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
+    let Some(outline) = contour::measure_at(view, lens, place, MIN_OUTLINE_STEP) else { return Ok(()) };
+    let (focal_px, radius_px) = (lens.focal_px(), outline.circle.radius);
+    let Some((range_m, sigma_m)) = contour::range(&model.station, focal_px, radius_px, outline.sigma_px)
+    else {
+        return Ok(());
+    };
+    let sigma_m = libm::hypot(sigma_m, best.covariance[(2, 2)].max(0.0).sqrt());
+    let agrees = (best.pose.position_m.z - range_m).abs() <= 3.0 * sigma_m;
+    if agrees { Ok(()) } else { Err(NoPose::Inconsistent) }
+}
+
+/// Radius of the circle of the marks, px, up to which a target must have its station around it.
+const SMALL_CIRCLE_PX: f64 = 18.0;
+
+/// Least height of the station's edge, grey values.
+const MIN_OUTLINE_STEP: f64 = 8.0;
+
+/// Whether so much of the predicted target lies outside the image that cross and circle cannot be measured: most of the marks,
+/// or an end of a bar.
+pub(crate) fn leaves_field(
+    view: &View<'_>,
+    lens: &Lens,
+    model: &TargetModel,
+    prediction: &Prediction,
+) -> bool {
+    let is_inside = |ideal| lens.to_camera(ideal).is_some_and(|point| view.holds(point, 1.0));
+    let half = prediction.cross.half_length_px;
+    let ends = [(half, 0.0), (-half, 0.0), (0.0, half), (0.0, -half)];
+    let middle = |corners: &[[f64; 2]; 4]| [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<f64>() / 4.0);
+    let outside = model.marks.iter().filter(|c| !is_inside(prediction.plane.place(middle(c)))).count();
+    2 * outside > model.marks.len() || ends.iter().any(|(x, y)| !is_inside(prediction.cross.place(*x, *y)))
+}

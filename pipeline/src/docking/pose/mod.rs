@@ -1,0 +1,6 @@
+//! The pose of a field (docking paper, 3.1): by the paper's formulas, and the pipeline's own best.
+
+pub mod geometry;
+pub mod model_fit;
+pub mod paper_pose;
+pub(super) mod paper_sigma;

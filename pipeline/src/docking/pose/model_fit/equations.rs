@@ -1,0 +1,162 @@
+//! Coverage of a patch's pixels and their equations at a pose, chunk by chunk.
+
+use pulp::{Simd, WithSimd};
+
+use super::chunk::{CHUNK, COLUMNS, Coverages, Equations, FIRST_GLOBAL, Gram, Places, Steps};
+use super::coverage::{CrossImage, EDGES, MarkImage};
+use super::sampled::Tables;
+use super::samples::{Patch, Sample};
+use super::unknowns::{GRID, LOCALS, SIDES};
+
+/// Coordinates within a patch are counted in these, px: levels and slopes are then alike in size.
+const PATCH_UNIT_PX: f64 = 10.0;
+
+/// Columns without the derivatives by the side faces, which many chunks do not show.
+const WITHOUT_SIDES: usize = FIRST_GLOBAL + SIDES + 1;
+
+/// The image of a feature at a pose, and what its profiles are read from.
+#[derive(Clone, Copy)]
+pub(super) struct Look<'a> {
+    pub(super) image: Image<'a>,
+    pub(super) tables: &'a Tables,
+    /// Share of the blur that acts on pixels.
+    pub(super) share: f64,
+}
+
+/// The image of a feature.
+#[derive(Clone, Copy)]
+pub(super) enum Image<'a> {
+    Mark(&'a MarkImage),
+    Cross(&'a CrossImage),
+}
+
+/// A chunk of pixels; a buffer.
+pub(super) struct Work {
+    places: Places<CHUNK>,
+    corner: [f64; CHUNK],
+    steps: [Steps<CHUNK>; EDGES],
+    coverage: Coverages<CHUNK>,
+    equations: Equations,
+    gram: Gram,
+}
+
+impl Work {
+    pub(super) const NEW: Self = Self {
+        places: Places { u: [0.0; CHUNK], v: [0.0; CHUNK] },
+        corner: [0.0; CHUNK],
+        steps: [const { Steps::FAR }; EDGES],
+        coverage: Coverages::NONE,
+        equations: [[0.0; CHUNK]; COLUMNS],
+        gram: Gram::ZERO,
+    };
+
+    fn place(&mut self, l: usize, pixel: &Sample) {
+        (self.places.u[l], self.places.v[l]) = (pixel.u, pixel.v);
+        self.corner[l] = pixel.corner;
+    }
+
+    #[inline(always)]
+    fn cover(&mut self, look: &Look) {
+        let Self { places, steps, coverage, .. } = self;
+        match look.image {
+            Image::Mark(mark) => mark.cover(look.tables, places, steps, coverage),
+            Image::Cross(cross) => cross.cover(look.tables, places, steps, coverage),
+        }
+        for l in 0..CHUNK {
+            coverage.value[l] += look.share * self.corner[l];
+            coverage.by[GRID][l] += self.corner[l];
+        }
+    }
+}
+
+/// The coverage of a chunk of pixels with its derivatives; beyond the last pixel it is that of the last.
+pub(super) struct Cover<'a> {
+    pub(super) look: Look<'a>,
+    pub(super) pixels: &'a [Sample],
+    pub(super) work: &'a mut Work,
+}
+
+impl<'a> WithSimd for Cover<'a> {
+    type Output = &'a Coverages<CHUNK>;
+
+    // Inline, all of it: only so is it compiled for the registers of the machine.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let Self { look, pixels, work } = self;
+        for l in 0..CHUNK {
+            let Some(pixel) = pixels.get(l).or(pixels.last()) else { break };
+            work.place(l, pixel);
+        }
+        work.cover(&look);
+        &work.coverage
+    }
+}
+
+/// The normal equations of a patch's used pixels, of which every `stride`-th is looked at; the coverages of those are renewed.
+pub(super) struct NormalEquations<'a> {
+    pub(super) look: Look<'a>,
+    /// The patch's centre, and its level of the feature as known so far.
+    pub(super) centre: (f64, f64),
+    pub(super) level: f64,
+    pub(super) pixels: &'a mut [Sample],
+    /// What DN are counted from.
+    pub(super) origin: f64,
+    pub(super) stride: usize,
+    pub(super) work: &'a mut Work,
+}
+
+impl<'a> WithSimd for NormalEquations<'a> {
+    /// Products of the equations, and how many pixels are used.
+    type Output = (&'a Gram, usize);
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self { look, centre, level, pixels, origin, stride, work } = self;
+        // The feature stands over a plate that a shadow darkens by so much more, in units of its level over the light one.
+        let per_level = if level > 0.0 { 1.0 / level } else { 0.0 };
+        let mut used = 0;
+        for (index, pixels) in pixels.chunks_mut(CHUNK * stride).enumerate() {
+            let count = pixels.len().div_ceil(stride);
+            let mut over = [0.0; CHUNK];
+            let (mut dn, mut shadow_dn) = ([0.0; CHUNK], [0.0; CHUNK]);
+            for l in 0..CHUNK {
+                let pixel = &pixels[l.min(count - 1) * stride];
+                work.place(l, pixel);
+                let weight = if l < count && pixel.is_used { 1.0 } else { 0.0 };
+                used += usize::from(weight > 0.0);
+                (dn[l], shadow_dn[l]) = (pixel.dn, pixel.shadow_dn);
+                work.equations[1][l] = weight;
+                work.equations[4][l] = weight * pixel.beyond_rim;
+                over[l] = weight * (1.0 + pixel.shadow_dn * per_level);
+            }
+            work.cover(&look);
+            let Work { places, coverage, equations, gram, .. } = &mut *work;
+            for l in 0..CHUNK {
+                let weight = equations[1][l];
+                // A shadow darkens the plate where the feature does not hide it.
+                equations[0][l] = weight * (dn[l] + shadow_dn[l] * (1.0 - coverage.value[l]) - origin);
+                equations[2][l] = weight * ((places.u[l] - centre.0) / PATCH_UNIT_PX);
+                equations[3][l] = weight * ((places.v[l] - centre.1) / PATCH_UNIT_PX);
+                equations[LOCALS][l] = weight * coverage.value[l];
+            }
+            for (column, by) in equations[FIRST_GLOBAL..].iter_mut().zip(&coverage.by) {
+                for l in 0..CHUNK {
+                    column[l] = over[l] * by[l];
+                }
+            }
+            let columns = if coverage.has_sides { COLUMNS } else { WITHOUT_SIDES };
+            gram.add(simd, equations, columns, index == 0);
+            for (pixel, value) in pixels.iter_mut().step_by(stride).zip(&coverage.value) {
+                pixel.coverage = *value;
+            }
+        }
+        (&work.gram, used)
+    }
+}
+
+/// The regressors of a pixel's levels.
+pub(super) fn regressors(patch: &Patch, pixel: &Sample, coverage: f64) -> [f64; LOCALS] {
+    let across = (pixel.u - patch.centre.0) / PATCH_UNIT_PX;
+    let down = (pixel.v - patch.centre.1) / PATCH_UNIT_PX;
+    [1.0, across, down, pixel.beyond_rim, coverage]
+}

@@ -1,0 +1,194 @@
+//! What the pixels of a line have in common: a shift and a level of the line's own.
+//!
+//! The fit takes pixels as independent. A line that comes a little early or late moves all its edges at once, and one that is a
+//! little brighter is so in all its pixels. How much lines scatter beyond what noise explains is measured from the residuals, and
+//! goes into the covariance.
+
+use nalgebra::SVector;
+
+use super::unknowns::{GlobalMatrix, Globals, LOCALS, POSE};
+
+/// Shift, and level.
+pub(super) const EFFECTS: usize = 2;
+
+/// A scatter of lines is believed when chance makes it so large once in 40 fields: standard deviations of the sum of squares.
+const SEEN: f64 = 2.0;
+
+/// Sums over the pixels of a line.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    /// Σ e r by effect: e is what a unit of the effect adds to a pixel, r the residual.
+    seen: [f64; EFFECTS],
+    /// Σ e², less what the patches' levels take of it.
+    squares: [f64; EFFECTS],
+    /// Σ J e: the gradient by a unit of the effect.
+    scores: [Globals; EFFECTS],
+}
+
+/// Sums over a line's pixels in one patch, for what the patch's levels take.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    squares: [f64; EFFECTS],
+    by_levels: [SVector<f64, LOCALS>; EFFECTS],
+}
+
+/// Sums line by line; owns its buffers.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    lines: Vec<Line>,
+    pieces: Vec<Piece>,
+    pixels: f64,
+}
+
+/// A pixel as the sums need it.
+pub(super) struct LinePixel {
+    pub(super) row: usize,
+    pub(super) residual: f64,
+    /// What a unit of each effect adds to it, DN.
+    pub(super) effects: [f64; EFFECTS],
+    /// Its derivatives by the globals, levels eliminated.
+    pub(super) slopes: Globals,
+    /// Its regressors of the levels.
+    pub(super) levels: SVector<f64, LOCALS>,
+}
+
+impl Lines {
+    pub(super) fn clear(&mut self) {
+        self.lines.clear();
+        self.pixels = 0.0;
+    }
+
+    /// Adds a pixel of the patch that is open.
+    pub(super) fn add(&mut self, pixel: &LinePixel) {
+        let LinePixel { row, residual, effects, slopes, levels } = pixel;
+        if self.lines.len() <= *row {
+            let zero = [Globals::zeros(); EFFECTS];
+            self.lines.resize(row + 1, Line { seen: [0.0; EFFECTS], squares: [0.0; EFFECTS], scores: zero });
+        }
+        if self.pieces.len() <= *row {
+            let zero = [SVector::zeros(); EFFECTS];
+            self.pieces.resize(row + 1, Piece { squares: [0.0; EFFECTS], by_levels: zero });
+        }
+        let (line, piece) = (&mut self.lines[*row], &mut self.pieces[*row]);
+        for (k, effect) in effects.iter().enumerate() {
+            line.seen[k] += effect * residual;
+            line.scores[k] += slopes * *effect;
+            piece.squares[k] += effect * effect;
+            piece.by_levels[k] += levels * *effect;
+        }
+        self.pixels += 1.0;
+    }
+
+    /// Closes a patch, whose levels have this inverse of their normal equations.
+    pub(super) fn close(&mut self, inverse: &nalgebra::SMatrix<f64, LOCALS, LOCALS>) {
+        for (line, piece) in self.lines.iter_mut().zip(&self.pieces) {
+            for k in 0..EFFECTS {
+                let taken = piece.by_levels[k].dot(&(inverse * piece.by_levels[k]));
+                line.squares[k] += (piece.squares[k] - taken).max(0.0);
+            }
+        }
+        self.pieces.clear();
+    }
+
+    /// Covariance of the gradient from what the lines have in common, DN², and what it takes off the variance of a pixel.
+    ///
+    /// With q = Σ e² of a line, its sum Σ e r has the variance σ² q + τ² q², and all pixels together have N σ² + τ² Σ q. Of both,
+    /// τ² is found, the variance of the effect.
+    pub(super) fn scatter(&self, variance: f64) -> (GlobalMatrix, f64) {
+        let (mut covariance, mut explained) = (GlobalMatrix::zeros(), 0.0);
+        for k in 0..EFFECTS {
+            let sum = |of: &dyn Fn(&Line) -> f64| self.lines.iter().map(of).sum::<f64>();
+            let (once, twice) = (sum(&|l| l.squares[k]), sum(&|l| l.squares[k] * l.squares[k]));
+            let above = sum(&|l| l.seen[k] * l.seen[k]) - variance * once;
+            let weight = twice - once * once / self.pixels.max(1.0);
+            if weight <= 0.0 || above <= SEEN * variance * (2.0 * twice).sqrt() {
+                continue;
+            }
+            // The pose has taken its part of what the lines do: so many lines of the same weight are there, less its freedom.
+            let lines = once * once / twice;
+            let of_effect = above / weight * lines / (lines - POSE as f64).max(1.0);
+            explained += of_effect * once / self.pixels;
+            for line in &self.lines {
+                covariance += line.scores[k] * line.scores[k].transpose() * of_effect;
+            }
+        }
+        (covariance, explained)
+    }
+}
+
+/// How a change of the pose by these shifts the image by a pixel along the lines, from how it moves an image point; `None` when no
+/// turn of the camera does.
+pub(super) fn along_lines(by_pose: &nalgebra::SMatrix<f64, 2, POSE>) -> Option<SVector<f64, POSE>> {
+    let (a, b, c, d) = (by_pose[(0, 3)], by_pose[(0, 4)], by_pose[(1, 3)], by_pose[(1, 4)]);
+    let determinant = a * d - b * c;
+    (determinant.abs() > 1e-9).then(|| {
+        let mut turn = SVector::zeros();
+        (turn[3], turn[4]) = (d / determinant, -c / determinant);
+        turn
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Normal to a few percent: twelve uniform numbers of a multiplicative congruential sequence (Park and Miller 1988).
+    fn normal(state: &mut u64) -> f64 {
+        let mut uniform = || {
+            *state = *state * 48_271 % 2_147_483_647;
+            *state as f64 / 2_147_483_647.0
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+
+    /// 200 lines of 20 pixels with noise of 1 DN, shifted by so much, px, and brighter by so much, DN.
+    fn lines(shift_px: f64, level_dn: f64) -> Lines {
+        let (mut lines, mut state) = (Lines::default(), 12_345);
+        lines.clear();
+        for row in 0..200 {
+            let (shift, level) = (shift_px * normal(&mut state), level_dn * normal(&mut state));
+            for x in 0..20 {
+                // Edges of both signs.
+                let slope = if x % 2 == 0 { 50.0 } else { -40.0 };
+                let mut slopes = Globals::zeros();
+                (slopes[0], slopes[1]) = (slope, 1.0);
+                lines.add(&LinePixel {
+                    row,
+                    residual: slope * shift + level + normal(&mut state),
+                    effects: [slope, 1.0],
+                    slopes,
+                    levels: SVector::zeros(),
+                });
+            }
+        }
+        lines.close(&nalgebra::SMatrix::zeros());
+        lines
+    }
+
+    #[test]
+    fn noise_alone_is_no_scatter_of_lines() {
+        let (covariance, explained) = lines(0.0, 0.0).scatter(1.0);
+        assert_eq!((covariance.abs().max(), explained), (0.0, 0.0));
+    }
+
+    #[test]
+    fn shifts_of_lines_are_found_in_their_size() {
+        let shift_px = 0.1;
+        // Squares of 50 and 40 in equal parts.
+        let square = 2050.0;
+        let variance = 1.0 + shift_px * shift_px * square;
+        let (covariance, explained) = lines(shift_px, 0.0).scatter(variance);
+        // 200 lines tell a variance to √(2/200) = 10 %; three of it.
+        assert!((explained / (shift_px * shift_px * square) - 1.0).abs() < 0.3, "{explained}");
+        let of_line = 20.0 * square * shift_px;
+        let expected = 200.0 * of_line * of_line;
+        assert!((covariance[(0, 0)] / expected - 1.0).abs() < 0.3, "{}", covariance[(0, 0)]);
+    }
+
+    #[test]
+    fn levels_of_lines_are_found_in_their_size() {
+        let (covariance, explained) = lines(0.0, 1.0).scatter(2.0);
+        assert!((explained - 1.0).abs() < 0.3, "{explained}");
+        assert!((covariance[(1, 1)] / (200.0 * 400.0) - 1.0).abs() < 0.3, "{}", covariance[(1, 1)]);
+    }
+}

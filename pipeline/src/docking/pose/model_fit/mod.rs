@@ -1,0 +1,425 @@
+//! The pipeline's best estimator: the pose that makes the known features look as they do, by maximum likelihood on the pixels.
+//!
+//! Expected DN of a pixel = plate + what lies beyond the rim × its share + feature × blurred coverage at the pose. Known are
+//! the marks (y3 = 0), the cross's front face (y3 = b) and its side faces; pose, blur and brightness of the side faces are
+//! common to the field, the levels belong to patches (a mark, a piece of an arm), so that a shadow or a slope of brightness
+//! biases nothing. A pixel or a patch that does not look like the model is rejected and told.
+
+#![allow(
+    clippy::needless_range_loop,
+    reason = "the pixels of a chunk are counted through several arrays at once"
+)]
+
+mod blur;
+mod chunk;
+mod coverage;
+mod edge;
+mod equations;
+mod gaussian;
+mod lines;
+mod near;
+mod sampled;
+mod sampled_marks;
+mod samples;
+mod scene;
+mod shadow;
+mod solve;
+mod unknowns;
+
+#[cfg(test)]
+mod tests;
+
+use contract::PixelPoint;
+use contract::docking::{Field, Mark, MarkUse, NoPose, Pose, PoseEstimate, TargetModel};
+use nalgebra::{Matrix6, Vector3};
+
+use self::blur::Blur;
+use self::lines::Lines;
+use self::sampled::Tables;
+use self::sampled_marks::SampledMarks;
+use self::samples::{Feature, Samples};
+use self::scene::Scene;
+use self::shadow::ShadowFinder;
+use self::solve::{Evaluation, Search, covariance, normals, residual, solve};
+use self::unknowns::{BLUR, GLOBALS, GRID, Globals, LOCALS, POSE};
+use crate::CameraModel;
+use crate::docking::pose::geometry::{View, project, to_pose, to_vector};
+
+/// Variance of the blur that the first field is begun with, px².
+const FIRST_BLUR_PX2: f64 = 0.5;
+
+/// The first guess may be this far off, px: pixels are looked at so much farther from the edges.
+const SLACK_PX: f64 = 1.5;
+
+/// Coarse stages: variances added to the blur, px², and how many of the globals are held. A lateral position that is free too
+/// early tilts the plate to make up for a shift.
+const COARSE: [(f64, usize); 4] = [(4.0, 2), (1.0, 2), (1.0, 0), (0.0, 0)];
+
+/// The same from a rough place, whose range shows the marks up to 3 px off, and how far the arrangement is searched for as a
+/// part of the focal length.
+const NEAR_SLACK_PX: f64 = 3.0;
+const NEAR_COARSE: [(f64, usize); 5] = [(9.0, 0), (4.0, 2), (1.0, 2), (1.0, 0), (0.0, 0)];
+const NEAR_REACH: f64 = 0.013;
+
+/// Pixels that are collected at most, roughly, for the coarse stages and for the answer; more are thinned evenly.
+const COLLECTED_COARSE: f64 = 6_000.0;
+const COLLECTED: f64 = 30_000.0;
+
+/// Pixels are thinned to about this many in the coarse stages …
+const COARSE_SAMPLES: usize = 1500;
+/// … and to this many while blur and brightness of the side faces are first looked for.
+const MIDDLE_SAMPLES: usize = 4000;
+
+/// A residual beyond this many σ is not noise.
+const PIXEL_GATE: f64 = 4.5;
+
+/// A patch is rejected when its variance is above the others' by this many standard deviations of a variance …
+const PATCH_GATE: f64 = 5.0;
+
+/// … or when more than this part of its pixels is.
+const MOST_REJECTED: f64 = 0.15;
+
+/// Error of the model that is no reason for a rejection, as a part of the feature's level.
+const MODEL_ERROR: f64 = 0.005;
+
+/// A mark fainter than this part of the median mark is not seen.
+const FAINTEST_MARK: f64 = 0.15;
+
+/// A mark is darker than the others when its level is below their median by so many standard deviations, its own or those of the
+/// others' scatter: a part of it is in shadow, and what is left lies off its middle.
+const DARKER_MARK: f64 = 4.0;
+
+/// The middle feature's level over the noise below which nothing is seen at all.
+const FAINTEST_LEVEL: f64 = 4.0;
+
+/// One pixel of so many more or less changes nothing that can be seen.
+const UNSEEN: usize = 2000;
+
+/// Rounds of rejection.
+const ROUNDS: usize = 3;
+
+/// Largest σ of range and of lateral position, as parts of the range, and of an angle, rad: beyond these the features in the
+/// field do not determine a pose.
+const LARGEST_SIGMA: (f64, f64, f64) = (0.05, 0.15, 0.15);
+
+/// A fitted field.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fitted {
+    /// The pose and its covariance: the inverse information of the pixels that were used, levels, blur and side faces left
+    /// free, times the variance of their residuals.
+    pub estimate: PoseEstimate,
+    /// What became of every mark, with its centre as the pose predicts it.
+    pub marks: Vec<Mark>,
+    /// Image of the cross's centre (the front face's), as the pose predicts it.
+    pub cross_centre: PixelPoint,
+    /// Image of the disk's centre, as the pose predicts it: perspective corrected, not the centre of an ellipse.
+    pub circle_centre: PixelPoint,
+    /// Blur of lens and video along columns and rows, standard deviations without the pixel's own box, px.
+    pub blur_px: [f64; 2],
+    /// Standard deviation of the residuals, DN.
+    pub noise_dn: f64,
+    /// Pixels that were used.
+    pub pixels: u32,
+}
+
+/// Fits fields of one camera after the other; owns its buffers and begins with the blur of the last field.
+#[derive(Debug)]
+pub struct ModelFit {
+    tables: Tables,
+    samples: Samples,
+    shadows: ShadowFinder,
+    marks: SampledMarks,
+    lines: Lines,
+    variances: Vec<f64>,
+    blur: Blur,
+}
+
+impl Default for ModelFit {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ModelFit {
+    /// No field seen yet.
+    pub fn new() -> Self {
+        Self {
+            tables: Tables::new(),
+            samples: Samples::default(),
+            shadows: ShadowFinder::default(),
+            marks: SampledMarks::default(),
+            lines: Lines::default(),
+            variances: Vec::new(),
+            blur: Blur::new(FIRST_BLUR_PX2, FIRST_BLUR_PX2),
+        }
+    }
+
+    /// The pose of a field from a first guess that is off by 2 px in the image at most.
+    ///
+    /// # Errors
+    /// [`NoPose::OutOfField`] when most marks are outside the image and the rest does not determine a pose,
+    /// [`NoPose::TooFewFeatures`] when too little is seen, [`NoPose::Inconsistent`] when what is seen is not the target.
+    pub fn fit(
+        &mut self,
+        field: &Field,
+        camera: &CameraModel,
+        target: &TargetModel,
+        initial: &Pose,
+    ) -> Result<Fitted, NoPose> {
+        self.fit_from(field, camera, target, initial, SLACK_PX, &COARSE)
+    }
+
+    /// The pose of a field from a rough place: position within about 1 % of the range, angles within about a degree.
+    ///
+    /// The image's arrangement of bright and dark is searched for about the place; what shift is found is taken for one of the
+    /// position and for one of the attitude, and the better of the two fits is the answer.
+    ///
+    /// # Errors
+    /// Those of [`ModelFit::fit`]; [`NoPose::NoTarget`] when the target is not seen about the place.
+    pub fn fit_near(
+        &mut self,
+        field: &Field,
+        camera: &CameraModel,
+        target: &TargetModel,
+        rough: &Pose,
+    ) -> Result<Fitted, NoPose> {
+        let is_finite = to_vector(rough).iter().all(|v| v.is_finite());
+        if !(is_finite && rough.position_m.z > target.cross.height_m) {
+            return Err(NoPose::Inconsistent);
+        }
+        let reach_px = NEAR_REACH * camera.focal_px().0 + SLACK_PX;
+        let by = near::shift(field, camera, target, rough, reach_px).ok_or(NoPose::NoTarget)?;
+        let [moved, turned] = near::shifted(camera, rough, by);
+        let moved = self.fit_from(field, camera, target, &moved, NEAR_SLACK_PX, &NEAR_COARSE);
+        let turned = self.fit_from(field, camera, target, &turned, NEAR_SLACK_PX, &NEAR_COARSE);
+        match (moved, turned) {
+            (Ok(a), Ok(b)) => Ok(if b.noise_dn < a.noise_dn { b } else { a }),
+            (a, b) => a.or(b),
+        }
+    }
+
+    fn fit_from(
+        &mut self,
+        field: &Field,
+        camera: &CameraModel,
+        target: &TargetModel,
+        initial: &Pose,
+        slack_px: f64,
+        coarse: &[(f64, usize)],
+    ) -> Result<Fitted, NoPose> {
+        let pose = to_vector(initial);
+        if !(pose.iter().all(|v| v.is_finite()) && initial.position_m.z > target.cross.height_m) {
+            return Err(NoPose::Inconsistent);
+        }
+        let mut globals = Globals::zeros();
+        globals.fixed_rows_mut::<POSE>(0).copy_from(&pose);
+        globals[BLUR] = self.blur.x;
+        globals[BLUR + 1] = self.blur.y;
+        globals.fixed_rows_mut::<{ GLOBALS - GRID }>(GRID).fill(0.5);
+
+        let scene = Scene { camera, target, tables: &self.tables };
+        let samples = &mut self.samples;
+        let wide = Blur::new(self.blur.x + 0.5, self.blur.y + 0.5);
+        collect(samples, field, &scene, &globals, wide, slack_px, COLLECTED_COARSE)?;
+        let stride = samples.pixels.len().div_ceil(COARSE_SAMPLES);
+        let mut noise = 4.0;
+        for (extra_blur_px2, held) in coarse.iter().copied() {
+            let search = Search { extra_blur_px2, free: held..POSE, stride, steps: 6, decrement: 1.0 };
+            noise = solve(&scene, samples, &mut globals, &search, noise)
+                .ok_or(NoPose::TooFewFeatures)?
+                .variance();
+        }
+
+        prepare(&mut self.tables, camera, target, &globals)?;
+        let scene = Scene { camera, target, tables: &self.tables };
+        let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
+        let cross_dn = samples.cross_dn();
+        collect(samples, field, &scene, &globals, blur, 0.0, COLLECTED)?;
+        samples.shade(&mut self.shadows, field, &scene, &globals, cross_dn);
+        let search = Search { extra_blur_px2: 0.0, free: 0..GLOBALS, stride: 1, steps: 12, decrement: 2e-2 };
+        let stride = samples.pixels.len().div_ceil(MIDDLE_SAMPLES);
+        if stride > 1 {
+            noise = solve(&scene, samples, &mut globals, &Search { stride, ..search.clone() }, noise)
+                .ok_or(NoPose::TooFewFeatures)?
+                .variance();
+        }
+        let mut evaluation =
+            solve(&scene, samples, &mut globals, &search, noise).ok_or(NoPose::TooFewFeatures)?;
+        // The first field of a video finds its blur only now, and the marks' corners ask for the pose to a hundredth of a pixel.
+        let is_renewed = prepare(&mut self.tables, camera, target, &globals)?;
+        let scene = Scene { camera, target, tables: &self.tables };
+        let blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
+        let is_corrected = self.marks.correct(samples, field, &scene, &to_pose(&globals), blur);
+        if is_renewed || is_corrected {
+            evaluation = solve(&scene, samples, &mut globals, &search, evaluation.variance())
+                .ok_or(NoPose::TooFewFeatures)?;
+        }
+        for _ in 0..ROUNDS {
+            let is_changed = reject(samples, &mut self.variances)?;
+            if !is_changed {
+                break;
+            }
+            evaluation = solve(&scene, samples, &mut globals, &search, evaluation.variance())
+                .ok_or(NoPose::TooFewFeatures)?;
+        }
+        let fitted = judge(samples, &mut self.lines, &scene, &globals, &evaluation)?;
+        self.blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
+        Ok(fitted)
+    }
+}
+
+/// Makes the sampled profiles that the edges at some globals need; whether any was not there yet.
+fn prepare(
+    tables: &mut Tables,
+    camera: &CameraModel,
+    target: &TargetModel,
+    globals: &Globals,
+) -> Result<bool, NoPose> {
+    let scene = Scene { camera, target, tables };
+    let (normals, blur) = normals(&scene, globals).ok_or(NoPose::TooFewFeatures)?;
+    Ok(tables.prepare(&normals, &blur))
+}
+
+fn collect(
+    samples: &mut Samples,
+    field: &Field,
+    scene: &Scene,
+    globals: &Globals,
+    blur: Blur,
+    slack_px: f64,
+    most: f64,
+) -> Result<(), NoPose> {
+    let view = View::new(scene.camera, &to_pose(globals));
+    samples
+        .collect(field, scene.camera, scene.target, scene.tables, &view, blur, slack_px, most)
+        .ok_or(NoPose::Inconsistent)?;
+    if samples.patches.is_empty() { Err(too_few(samples)) } else { Ok(()) }
+}
+
+/// Rejects pixels, then patches, by the residuals of the last evaluation; whether anything changed that can be seen.
+fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPose> {
+    let freedom = |used: usize| (used as f64 - LOCALS as f64 - 1.0).max(1.0);
+    variances.clear();
+    variances.extend(samples.patches.iter().map(|patch| patch.squares / freedom(patch.used_samples)));
+    let typical = median(variances).ok_or(NoPose::TooFewFeatures)?;
+    let Samples { pixels, patches, .. } = samples;
+    let mark_levels: &mut Vec<f64> = variances;
+    mark_levels.clear();
+    mark_levels.extend(patches.iter().filter(|p| p.feature != Feature::Cross).map(|p| p.levels[LOCALS - 1]));
+    let usual_mark = median(mark_levels).unwrap_or(0.0);
+    mark_levels.iter_mut().for_each(|level| *level = (*level - usual_mark).abs());
+    // Of a normal distribution the median of the absolute deviations is 0.6745 σ.
+    let scatter_of_marks = median(mark_levels).unwrap_or(0.0) / 0.6745;
+
+    let (mut is_changed, mut changed) = (false, 0);
+    for patch in patches.iter_mut() {
+        let level = patch.levels[LOCALS - 1];
+        let tolerated = typical + MODEL_ERROR * MODEL_ERROR * level * level;
+        let gate = PIXEL_GATE * PIXEL_GATE * tolerated;
+        let (mut squares, mut used) = (0.0, 0);
+        let all = patch.end - patch.first;
+        for pixel in &mut pixels[patch.first..patch.end] {
+            let residual = residual(patch, pixel);
+            let square = residual * residual;
+            let is_used = square <= gate;
+            changed += usize::from(is_used != pixel.is_used);
+            pixel.is_used = is_used;
+            if is_used {
+                squares += square;
+                used += 1;
+            }
+        }
+        let variance = squares / freedom(used);
+        let is_like_the_others = variance <= tolerated * (1.0 + PATCH_GATE * (2.0 / all as f64).sqrt())
+            && used as f64 >= (1.0 - MOST_REJECTED) * all as f64;
+        let is_seen = match patch.feature {
+            Feature::Mark(_) => {
+                let sigma = (typical * patch.levels_inverse[(LOCALS - 1, LOCALS - 1)]).sqrt();
+                let is_darker = level < usual_mark - DARKER_MARK * sigma.max(scatter_of_marks);
+                level > FAINTEST_MARK * usual_mark && level > 0.0 && !is_darker
+            }
+            Feature::Cross => level > 0.0,
+        };
+        // Pixels that were rejected make the rest look well: what was rejected once must be clean to come back.
+        let is_used = is_like_the_others && is_seen && !patch.is_shaded && (patch.is_used || used == all);
+        is_changed |= is_used != patch.is_used;
+        patch.is_used = is_used;
+    }
+    Ok(is_changed || changed > pixels.len() / UNSEEN)
+}
+
+/// The answer, if what was used determines a pose and enough of what is seen looks like the target.
+fn judge(
+    samples: &Samples,
+    lines: &mut Lines,
+    scene: &Scene,
+    globals: &Globals,
+    evaluation: &Evaluation,
+) -> Result<Fitted, NoPose> {
+    let used = samples.patches.iter().filter(|patch| patch.is_used);
+    let used_pixels: usize = used.clone().map(|patch| patch.used_samples).sum();
+    if 2 * used.count() < samples.patches.len() {
+        return Err(NoPose::Inconsistent);
+    }
+    let variance = evaluation.variance();
+    let mut levels: Vec<f64> =
+        samples.patches.iter().filter(|patch| patch.is_used).map(|p| p.levels[LOCALS - 1]).collect();
+    if median(&mut levels).is_none_or(|level| level < FAINTEST_LEVEL * variance.sqrt()) {
+        return Err(too_few(samples));
+    }
+    let covariance =
+        covariance(scene, samples, lines, globals, evaluation).ok_or_else(|| too_few(samples))?;
+    let covariance: Matrix6<f64> = covariance.fixed_view::<POSE, POSE>(0, 0).into();
+    let pose = to_pose(globals);
+    let range = pose.position_m.norm();
+    let sigma = covariance.diagonal().map(f64::sqrt);
+    let is_determined = sigma[2] <= LARGEST_SIGMA.0 * range
+        && sigma[0].max(sigma[1]) <= LARGEST_SIGMA.1 * range
+        && sigma[3].max(sigma[4]).max(sigma[5]) <= LARGEST_SIGMA.2;
+    if !is_determined {
+        return Err(too_few(samples));
+    }
+    let see = |point: Vector3<f64>| project(scene.camera, &pose, &point).ok_or(NoPose::Inconsistent);
+    Ok(Fitted {
+        estimate: PoseEstimate { pose, covariance },
+        marks: marks(samples, scene, &pose),
+        cross_centre: see(Vector3::new(0.0, 0.0, scene.target.cross.height_m))?,
+        circle_centre: see(Vector3::zeros())?,
+        blur_px: [globals[BLUR].sqrt(), globals[BLUR + 1].sqrt()],
+        noise_dn: variance.sqrt(),
+        pixels: used_pixels as u32,
+    })
+}
+
+fn marks(samples: &Samples, scene: &Scene, pose: &Pose) -> Vec<Mark> {
+    // A mark whose pixels were all left out, in shadow or beside it, has no patch any more.
+    let is_used = |index: usize| {
+        samples.patches.iter().any(|patch| patch.feature == Feature::Mark(index) && patch.is_used)
+    };
+    scene
+        .target
+        .marks
+        .iter()
+        .zip(&samples.marks)
+        .enumerate()
+        .filter_map(|(index, (corners, usage))| {
+            let middle = |i: usize| 0.25 * corners.iter().map(|corner| corner[i]).sum::<f64>();
+            Some(Mark {
+                index: index as u32,
+                position: project(scene.camera, pose, &Vector3::new(middle(0), middle(1), 0.0))?,
+                usage: if *usage == MarkUse::Used && !is_used(index) { MarkUse::Rejected } else { *usage },
+            })
+        })
+        .collect()
+}
+
+fn too_few(samples: &Samples) -> NoPose {
+    let outside = samples.marks.iter().filter(|usage| **usage == MarkUse::OutOfField).count();
+    if 2 * outside > samples.marks.len() { NoPose::OutOfField } else { NoPose::TooFewFeatures }
+}
+
+/// The middle value (the lower of two), sorting in place.
+fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len().saturating_sub(1) / 2).copied()
+}

@@ -1,0 +1,341 @@
+//! Least squares with levels of its own for each patch: the levels are eliminated patch by patch.
+
+use std::ops::Range;
+
+use nalgebra::{SMatrix, SVector, Vector3};
+use pulp::Arch;
+
+use super::blur::Blur;
+use super::chunk::{CHUNK, FIRST_GLOBAL, Gram};
+use super::coverage::{CrossImage, MarkImage};
+use super::equations::{Cover, Image, Look, NormalEquations, Work, regressors};
+use super::lines::{LinePixel, Lines, along_lines};
+use super::samples::{Feature, Patch, Sample, Samples};
+use super::scene::Scene;
+use super::unknowns::{BLUR, ByGlobals, GLOBALS, GRID, GlobalMatrix, Globals, LOCALS, POSE, SIDES};
+use crate::docking::portions::inverse;
+use crate::docking::pose::geometry::{View, to_pose};
+
+/// What is expected of blur, its share on pixels and side faces before the image is seen: mean and standard deviation. Weak; it decides only
+/// where the image does not.
+const BLUR_PRIOR_PX2: (f64, f64) = (0.5, 1.0);
+const SHARE_PRIOR: (f64, f64) = (0.5, 0.5);
+
+/// Ranges of blur, and of its share on pixels and side faces.
+const BLUR_RANGE_PX2: (f64, f64) = (0.02, 25.0);
+const SHARE_RANGE: (f64, f64) = (-0.5, 2.0);
+
+/// A step moves no edge farther than this, px.
+const LONGEST_STEP_PX: f64 = 1.5;
+
+/// Pixels of a patch that are looked at in any case.
+const LEAST_OF_PATCH: usize = 3 * LOCALS;
+
+/// A step that promises less than this part of the noise's variance and does not keep it is the last.
+const UNSEEN_STEP: f64 = 0.5;
+
+/// How a solution is looked for.
+#[derive(Debug, Clone)]
+pub(super) struct Search {
+    /// Added to the blur's variances: a blurred model finds its way from farther off.
+    pub(super) extra_blur_px2: f64,
+    /// The globals that are free.
+    pub(super) free: Range<usize>,
+    /// Every how many pixels is looked at.
+    pub(super) stride: usize,
+    pub(super) steps: usize,
+    /// Converged when a step promises less than this part of the noise's variance.
+    pub(super) decrement: f64,
+}
+
+/// The equations at some globals.
+#[derive(Debug, Clone)]
+pub(super) struct Evaluation {
+    pub(super) information: GlobalMatrix,
+    gradient: Globals,
+    objective: f64,
+    /// Sum of squares, and its degrees of freedom.
+    squares: f64,
+    freedom: f64,
+}
+
+impl Evaluation {
+    /// Variance of a pixel, DN².
+    pub(super) fn variance(&self) -> f64 {
+        (self.squares / self.freedom.max(1.0)).max(1e-9)
+    }
+}
+
+/// The features' images at some globals.
+struct Images {
+    marks: Vec<Option<MarkImage>>,
+    cross: CrossImage,
+}
+
+impl Images {
+    fn new(scene: &Scene, globals: &Globals, extra_blur_px2: f64) -> Option<Self> {
+        let pose = to_pose(globals);
+        let view = View::new(scene.camera, &pose);
+        let (x, y) = (globals[BLUR] + extra_blur_px2, globals[BLUR + 1] + extra_blur_px2);
+        let blur = Blur::on_grid(x, y, globals[GRID]);
+        let sides = [0, 1, 2, 3].map(|k| globals[SIDES + k]);
+        Some(Self {
+            marks: scene
+                .target
+                .marks
+                .iter()
+                .map(|corners| MarkImage::new(corners, &view, blur, scene.tables))
+                .collect(),
+            cross: CrossImage::new(scene.target, &view, &pose.position_m, blur, sides, scene.tables)?,
+        })
+    }
+
+    fn of(&self, feature: Feature) -> Option<Image<'_>> {
+        match feature {
+            Feature::Mark(index) => self.marks[index].as_ref().map(Image::Mark),
+            Feature::Cross => Some(Image::Cross(&self.cross)),
+        }
+    }
+
+    fn shift(&self, by: &ByGlobals) -> f64 {
+        self.marks.iter().flatten().map(|mark| mark.shift(by)).fold(self.cross.shift(by), f64::max)
+    }
+}
+
+/// The directions of all edges at some globals, and their blur; `None` when the features are not in front of the camera.
+pub(super) fn normals(scene: &Scene, globals: &Globals) -> Option<(Vec<(f64, f64)>, Blur)> {
+    let images = Images::new(scene, globals, 0.0)?;
+    let marks = images.marks.iter().flatten().flat_map(MarkImage::normals);
+    let blur = Blur::on_grid(globals[BLUR], globals[BLUR + 1], globals[GRID]);
+    Some((marks.chain(images.cross.normals()).collect(), blur))
+}
+
+/// Looks for the least squares from `globals` on by Levenberg and Marquardt's method. `noise` is the variance of a pixel
+/// that the priors are weighed against. `None` when the features leave the front of the camera or nothing is determined.
+pub(super) fn solve(
+    scene: &Scene,
+    samples: &mut Samples,
+    globals: &mut Globals,
+    search: &Search,
+    noise: f64,
+) -> Option<Evaluation> {
+    let mut images = Images::new(scene, globals, search.extra_blur_px2)?;
+    let mut now = evaluate(scene, samples, &images, globals, search, noise)?;
+    let (mut damping, mut is_last_better) = (0.0, true);
+    for _ in 0..search.steps {
+        let (mut damped, mut gradient) = (now.information, now.gradient);
+        for i in 0..GLOBALS {
+            damped[(i, i)] *= 1.0 + damping;
+            if is_held(i, globals[i], gradient[i]) {
+                hold(i, &mut damped, &mut gradient);
+            }
+        }
+        let mut step = inverse(&damped)? * gradient;
+        let promised = step.dot(&gradient);
+        if promised <= search.decrement * now.variance() {
+            // The last step is taken on trust: what it changes in the residuals is less than can be seen.
+            *globals = bounded(&(*globals + step));
+            break;
+        }
+        let shift = images.shift(&step.into());
+        if !shift.is_finite() {
+            return None;
+        }
+        if shift > LONGEST_STEP_PX {
+            step *= LONGEST_STEP_PX / shift;
+        }
+        let trial = bounded(&(*globals + step));
+        let trial_images = Images::new(scene, &trial, search.extra_blur_px2)?;
+        let next = evaluate(scene, samples, &trial_images, &trial, search, noise)?;
+        let is_better = next.objective <= now.objective * (1.0 + 1e-9);
+        is_last_better = is_better;
+        if is_better {
+            *globals = trial;
+            images = trial_images;
+            now = next;
+            damping *= 0.1;
+        } else if promised <= UNSEEN_STEP * now.variance() || damping > 1e6 {
+            // The derivatives are those of a model that is nearly this one: they promise what is not there.
+            break;
+        } else {
+            damping = (damping * 10.0f64).max(1e-3);
+        }
+    }
+    if !is_last_better {
+        // The samples hold a rejected trial's coverages.
+        evaluate(scene, samples, &images, globals, search, noise)?;
+    }
+    Some(now)
+}
+
+/// Covariance of the globals at a solution: that of noise, independent from pixel to pixel, and of what lines have in common.
+///
+/// The estimate is off by H⁻¹ Jᵀ n, H being the information: with noise of σ² that has the covariance σ² H⁻¹, and with lines that
+/// are off by s_l e_l as well, of variance τ², H⁻¹ (σ² H + τ² Σ_l (Jᵀ e_l)(Jᵀ e_l)ᵀ) H⁻¹. `None` when nothing is determined.
+pub(super) fn covariance(
+    scene: &Scene,
+    samples: &Samples,
+    lines: &mut Lines,
+    globals: &Globals,
+    evaluation: &Evaluation,
+) -> Option<GlobalMatrix> {
+    let inverse = inverse(&evaluation.information)?;
+    let images = Images::new(scene, globals, 0.0)?;
+    let centre = View::new(scene.camera, &to_pose(globals)).see(&Vector3::zeros())?;
+    let Some(turn) = along_lines(&centre.by_pose) else { return Some(inverse * evaluation.variance()) };
+    lines.clear();
+    let mut work = Work::NEW;
+    for patch in samples.patches.iter().filter(|patch| patch.is_used) {
+        let level = patch.levels[LOCALS - 1];
+        let look = Look { image: images.of(patch.feature)?, tables: scene.tables, share: globals[GRID] };
+        for pixels in samples.pixels[patch.first..patch.end].chunks(CHUNK) {
+            let coverage = Arch::new().dispatch(Cover { look, pixels, work: &mut work });
+            for (l, pixel) in pixels.iter().enumerate().filter(|(_, pixel)| pixel.is_used) {
+                let levels = SVector::from(regressors(patch, pixel, coverage.value[l]));
+                let slopes = Globals::from_fn(|i, _| coverage.by[i][l]);
+                let shift = level * slopes.fixed_rows::<POSE>(0).dot(&turn);
+                lines.add(&LinePixel {
+                    row: pixel.row,
+                    residual: residual(patch, pixel),
+                    effects: [shift, 1.0],
+                    slopes: (slopes - patch.levels_by_globals.transpose() * levels) * level,
+                    levels,
+                });
+            }
+        }
+        lines.close(&patch.levels_inverse);
+    }
+    let (of_lines, explained) = lines.scatter(evaluation.variance());
+    let noise = (evaluation.variance() - explained).max(0.0);
+    Some(inverse * noise + inverse * of_lines * inverse)
+}
+
+/// Whether a global is at the end of its range and would leave it.
+fn is_held(i: usize, value: f64, gradient: f64) -> bool {
+    let (low, high) = match i {
+        0..BLUR => return false,
+        BLUR..GRID => BLUR_RANGE_PX2,
+        _ => SHARE_RANGE,
+    };
+    (value <= low && gradient < 0.0) || (value >= high && gradient > 0.0)
+}
+
+/// Takes a global out of the equations: no step, and no coupling.
+fn hold(i: usize, information: &mut GlobalMatrix, gradient: &mut Globals) {
+    information.row_mut(i).fill(0.0);
+    information.column_mut(i).fill(0.0);
+    information[(i, i)] = 1.0;
+    gradient[i] = 0.0;
+}
+
+fn bounded(globals: &Globals) -> Globals {
+    let mut bounded = *globals;
+    for i in BLUR..GRID {
+        bounded[i] = bounded[i].clamp(BLUR_RANGE_PX2.0, BLUR_RANGE_PX2.1);
+    }
+    for i in GRID..GLOBALS {
+        bounded[i] = bounded[i].clamp(SHARE_RANGE.0, SHARE_RANGE.1);
+    }
+    bounded
+}
+
+/// The equations of all patches that are used; levels and squares of all patches are renewed.
+fn evaluate(
+    scene: &Scene,
+    samples: &mut Samples,
+    images: &Images,
+    globals: &Globals,
+    search: &Search,
+    noise: f64,
+) -> Option<Evaluation> {
+    let mut sum = Evaluation {
+        information: GlobalMatrix::zeros(),
+        gradient: Globals::zeros(),
+        objective: 0.0,
+        squares: 0.0,
+        freedom: -(POSE as f64),
+    };
+    let Samples { pixels, patches, .. } = samples;
+    let mut work = Work::NEW;
+    for patch in patches.iter_mut() {
+        let origin = pixels[patch.first].dn;
+        let look = Look { image: images.of(patch.feature)?, tables: scene.tables, share: globals[GRID] };
+        // A small patch keeps enough to know its levels by.
+        let stride = search.stride.min((patch.end - patch.first) / LEAST_OF_PATCH).max(1);
+        let pixels = &mut pixels[patch.first..patch.end];
+        let (centre, level) = (patch.centre, patch.levels[LOCALS - 1]);
+        let equations = NormalEquations { look, centre, level, pixels, origin, stride, work: &mut work };
+        let (gram, used) = Arch::new().dispatch(equations);
+        patch.used_samples = used;
+        fold(patch, gram, origin, &mut sum);
+    }
+    for i in 0..GLOBALS {
+        if !search.free.contains(&i) {
+            hold(i, &mut sum.information, &mut sum.gradient);
+        } else if i >= BLUR {
+            let (mean, sigma) = if i < GRID { BLUR_PRIOR_PX2 } else { SHARE_PRIOR };
+            let weight = noise / (sigma * sigma);
+            let off = mean - globals[i];
+            sum.information[(i, i)] += weight;
+            sum.gradient[i] += weight * off;
+            sum.objective += weight * off * off;
+        }
+    }
+    Some(sum)
+}
+
+/// What a pixel is over what it should be by the patch's levels and its last coverage, DN.
+pub(super) fn residual(patch: &Patch, pixel: &Sample) -> f64 {
+    let regressors = regressors(patch, pixel, pixel.coverage);
+    let model: f64 = regressors.iter().zip(&patch.levels).map(|(x, level)| x * level).sum();
+    pixel.dn + pixel.shadow_dn * (1.0 - pixel.coverage) - model
+}
+
+/// Solves a patch's levels and adds what is left of its equations (their Schur complement) to the sum.
+///
+/// With L the regressors of the levels ℓ, A = Lᵀ L and D the derivatives of the coverage, the feature's level a being one of ℓ:
+/// information a² (DᵀD − DᵀL A⁻¹ LᵀD), gradient a Dᵀ(y − L ℓ).
+fn fold(patch: &mut Patch, gram: &Gram, origin: f64, sum: &mut Evaluation) {
+    let mut normal = SMatrix::<f64, LOCALS, LOCALS>::from_fn(|i, j| gram.at(1 + i.min(j), 1 + i.max(j)));
+    for i in 0..LOCALS {
+        // A level that no pixel of the patch shows is zero; another is hardly touched.
+        normal[(i, i)] = if normal[(i, i)] > 1e-9 { normal[(i, i)] * (1.0 + 1e-9) } else { 1.0 };
+    }
+    let Some(normal) = inverse(&normal) else {
+        patch.is_used = false;
+        return;
+    };
+    let right = SVector::<f64, LOCALS>::from_fn(|i, _| gram.at(0, 1 + i));
+    let levels = normal * right;
+    patch.squares = (gram.at(0, 0) - right.dot(&levels)).max(0.0);
+    patch.levels = levels.into();
+    patch.levels[0] += origin;
+    if !patch.is_used {
+        return;
+    }
+    sum.objective += patch.squares;
+    sum.squares += patch.squares;
+    sum.freedom += patch.used_samples as f64 - LOCALS as f64;
+    let feature = levels[LOCALS - 1];
+    if feature <= 0.0 {
+        // Darker than the plate: whatever this is, the feature is not where the patch was looked for.
+        return;
+    }
+    let mixed = SMatrix::<f64, LOCALS, GLOBALS>::from_fn(|i, j| gram.at(1 + i, FIRST_GLOBAL + j));
+    patch.levels_inverse = normal;
+    patch.levels_by_globals = normal * mixed;
+    for i in 0..GLOBALS {
+        for j in i..GLOBALS {
+            let eliminated = mixed.column(i).dot(&patch.levels_by_globals.column(j));
+            let term = feature * feature * (gram.at(FIRST_GLOBAL + i, FIRST_GLOBAL + j) - eliminated);
+            sum.information[(i, j)] += term;
+            if i != j {
+                sum.information[(j, i)] += term;
+            }
+        }
+    }
+    let residual = mixed.transpose() * levels;
+    for i in 0..GLOBALS {
+        sum.gradient[i] += feature * (gram.at(0, FIRST_GLOBAL + i) - residual[i]);
+    }
+}

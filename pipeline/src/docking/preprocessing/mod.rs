@@ -1,0 +1,7 @@
+//! The region of interest and what is done to it before anything is looked for (docking paper, section 2, steps 1 and 2).
+
+pub(super) mod binarise;
+pub(super) mod edges;
+pub(super) mod histogram;
+pub(super) mod region;
+pub(super) mod view;

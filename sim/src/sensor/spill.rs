@@ -1,0 +1,223 @@
+//! Where the charge goes that the full wells of a column do not hold.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::SimError;
+use crate::error::require;
+
+/// Blooming of a CCD: charge above the full well spills to the neighbours up and down the column. Columns are parted
+/// by channel stops, so that nothing goes sideways.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BloomingConfig {
+    /// Part of the charge above the full well that spills, 0 to 1; anti-blooming drains take the rest at once. 1: a
+    /// detector without drains; 0: all the excess is lost.
+    pub spill_fraction: f64,
+}
+
+impl BloomingConfig {
+    pub(super) fn check(&self) -> Result<(), SimError> {
+        require("sensor.blooming.spill_fraction", self.spill_fraction, "0 to 1", |v| (0.0..=1.0).contains(&v))
+    }
+
+    /// Lets the charge of one column spill until no pixel holds more than `full_well_e`. `column` has the electrons of
+    /// its pixels, top to bottom; whole numbers stay whole. What leaves at either end is lost.
+    ///
+    /// A pixel above the full well passes its excess on, half up, half down, and so on until all is held. The end does
+    /// not depend on the order of the steps (the divisible sandpile: Levine & Peres, "Strong spherical asymptotics for
+    /// rotor-router aggregation and the divisible sandpile", Potential Analysis 30, 2009, Sec. 3), and every step keeps
+    /// the column's charge and its centre. So a run of full pixels gives to the two pixels beside it what keeps both;
+    /// where one of them can not hold it, the run grows.
+    pub(super) fn spill(&self, column: &mut [f64], full_well_e: f64) {
+        for electrons in column.iter_mut().filter(|electrons| **electrons > full_well_e) {
+            *electrons -= ((1.0 - self.spill_fraction) * (*electrons - full_well_e)).round();
+        }
+        let mut runs: Vec<Run> = Vec::new();
+        let mut next = 0;
+        while let Some(offset) = column[next..].iter().position(|&electrons| electrons > full_well_e) {
+            let mut run = Run::new(next + offset, column[next + offset] - full_well_e);
+            loop {
+                let (up_e, down_e) = run.gives();
+                // The run above may have given to the pixel between the two.
+                let (above_end, above_e) = runs.last().map_or((0, 0.0), |above| (above.end, above.gives().1));
+                let shared_e = if run.start == above_end + 1 { above_e } else { 0.0 };
+                if let Some(above) = runs.pop_if(|above| above.end == run.start) {
+                    run = above.joined(&run);
+                } else if run.start > 0 && column[run.start - 1] + shared_e + up_e > full_well_e {
+                    run.grow_up(column[run.start - 1] - full_well_e);
+                } else if run.end < column.len() && column[run.end] + down_e > full_well_e {
+                    run.grow_down(column[run.end] - full_well_e);
+                } else {
+                    break;
+                }
+            }
+            next = run.end;
+            runs.push(run);
+        }
+        for run in runs {
+            let (up_e, down_e) = run.gives();
+            column[run.start..run.end].fill(full_well_e);
+            if run.start > 0 {
+                column[run.start - 1] += up_e;
+            }
+            if run.end < column.len() {
+                column[run.end] += down_e;
+            }
+        }
+    }
+}
+
+/// A run of full pixels of a column: rows `start..end`.
+#[derive(Debug, Clone, Copy)]
+struct Run {
+    start: usize,
+    end: usize,
+    /// Electrons above the full well, summed over its pixels.
+    excess_e: f64,
+    /// The same, each pixel's weighted by its distance from the row before `start`.
+    moment_e: f64,
+}
+
+impl Run {
+    fn new(row: usize, excess_e: f64) -> Self {
+        Self { start: row, end: row + 1, excess_e, moment_e: excess_e }
+    }
+
+    fn length(&self) -> f64 {
+        (self.end - self.start) as f64
+    }
+
+    /// Electrons that the pixel before the run and the pixel after it get: those that leave sum and centre as they
+    /// were, to a whole electron.
+    fn gives(&self) -> (f64, f64) {
+        let down_e = (self.moment_e / (self.length() + 1.0)).round().clamp(0.0, self.excess_e.max(0.0));
+        (self.excess_e - down_e, down_e)
+    }
+
+    fn grow_up(&mut self, excess_e: f64) {
+        self.start -= 1;
+        self.excess_e += excess_e;
+        self.moment_e += self.excess_e;
+    }
+
+    fn grow_down(&mut self, excess_e: f64) {
+        self.end += 1;
+        self.excess_e += excess_e;
+        self.moment_e += excess_e * self.length();
+    }
+
+    /// This run and the one that begins where it ends.
+    fn joined(&self, below: &Self) -> Self {
+        Self {
+            start: self.start,
+            end: below.end,
+            excess_e: self.excess_e + below.excess_e,
+            moment_e: self.moment_e + below.moment_e + below.excess_e * self.length(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::randomness::{Effect, Seed, uniform};
+    use rand::Rng;
+
+    const ALL: BloomingConfig = BloomingConfig { spill_fraction: 1.0 };
+
+    fn spilt(column: &[f64], full_well_e: f64) -> Vec<f64> {
+        let mut column = column.to_vec();
+        ALL.spill(&mut column, full_well_e);
+        column
+    }
+
+    #[test]
+    fn a_single_excess_spreads_evenly_up_and_down() {
+        let mut column = [10.0; 21];
+        column[10] = 100.0 + 4.0 * 90.0 + 60.0;
+        let mut expected = [10.0; 21];
+        expected[8..=12].fill(100.0);
+        (expected[7], expected[13]) = (40.0, 40.0);
+        assert_eq!(spilt(&column, 100.0), expected);
+    }
+
+    #[test]
+    fn an_empty_column_and_one_that_nothing_overflows_stay_as_they_are() {
+        assert_eq!(spilt(&[], 100.0), [0.0; 0]);
+        assert_eq!(spilt(&[100.0, 0.0, 99.0], 100.0), [100.0, 0.0, 99.0]);
+    }
+
+    #[test]
+    fn drains_take_their_share_of_the_excess() {
+        let mut column = [0.0, 0.0, 500.0, 0.0, 0.0];
+        BloomingConfig { spill_fraction: 0.25 }.spill(&mut column, 100.0);
+        assert_eq!(column, [0.0, 50.0, 100.0, 50.0, 0.0]);
+        let mut column = [0.0, 500.0, 0.0];
+        BloomingConfig { spill_fraction: 0.0 }.spill(&mut column, 100.0);
+        assert_eq!(column, [0.0, 100.0, 0.0]);
+    }
+
+    #[test]
+    fn what_reaches_an_end_is_lost() {
+        // A gambler's ruin: from the second of three rows half leaves at either end once all are full.
+        assert_eq!(spilt(&[100.0, 1000.0, 100.0], 100.0), [100.0; 3]);
+        // Beside the upper end more is lost there than goes down: of 900, 660.
+        assert_eq!(spilt(&[1000.0, 100.0, 0.0, 0.0, 0.0], 100.0), [100.0, 100.0, 100.0, 100.0, 40.0]);
+    }
+
+    /// Columns of random charge with some bright rows, whole electrons, an integer full well.
+    fn columns() -> impl Iterator<Item = Vec<f64>> {
+        (0..300).map(|place| {
+            let mut stream = Seed { seed: 9, case: 0 }.stream(0, Effect::PixelNoise, place);
+            let mut column: Vec<f64> = (0..400).map(|_| (60.0 * uniform(&mut stream)).floor()).collect();
+            for _ in 0..1 + stream.next_u32() % 6 {
+                let row = 150 + (stream.next_u32() % 100) as usize;
+                column[row] += (1500.0 * uniform(&mut stream)).floor();
+            }
+            column
+        })
+    }
+
+    #[test]
+    fn charge_is_kept_to_the_electron_and_its_centre_to_the_rounding() {
+        for column in columns() {
+            let after = spilt(&column, 100.0);
+            assert_eq!(after.iter().sum::<f64>(), column.iter().sum::<f64>());
+            assert!(
+                after.iter().all(|&electrons| (0.0..=100.0).contains(&electrons) && electrons.fract() == 0.0)
+            );
+            let moment = |column: &[f64]| column.iter().enumerate().map(|(y, e)| y as f64 * e).sum::<f64>();
+            // Each of at most six runs rounds half an electron over its own length.
+            let rounding = 6.0 * 0.5 * 150.0;
+            assert!((moment(&after) - moment(&column)).abs() <= rounding);
+        }
+    }
+
+    /// The definition itself, step by step: every pixel above the well gives half of its excess to either side.
+    #[test]
+    fn the_end_is_that_of_spilling_step_by_step() {
+        for column in columns().take(30) {
+            let mut slow = column.clone();
+            for _ in 0..200_000 {
+                let mut largest = 0.0_f64;
+                for y in 1..slow.len() - 1 {
+                    let excess = slow[y] - 100.0;
+                    if excess > 0.0 {
+                        largest = largest.max(excess);
+                        slow[y] = 100.0;
+                        slow[y - 1] += 0.5 * excess;
+                        slow[y + 1] += 0.5 * excess;
+                    }
+                }
+                if largest < 1e-6 {
+                    break;
+                }
+            }
+            for (y, (fast, slow)) in spilt(&column, 100.0).iter().zip(&slow).enumerate() {
+                // Rounding to a whole electron: half of one from either side, and one more where it decides who is full.
+                assert!((fast - slow).abs() < 2.0, "row {y}: {fast} and {slow}");
+            }
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! What is shown of a frame.
+
+use std::collections::BTreeMap;
+
+use contract::Window;
+use serde_json::{Value, json};
+use show::{Class, Panel, PanelPlace};
+
+/// A panel, and what `--json` tells of it.
+pub(super) struct Shown {
+    pub(super) panel: Panel,
+    pub(super) frame: u64,
+    pub(super) time: String,
+    pub(super) pixels: PixelSource,
+    pub(super) verdict: Option<String>,
+    pub(super) cause: Option<String>,
+}
+
+/// Where the pixels of a frame come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum PixelSource {
+    /// From the image in the directory.
+    Stored,
+    /// Drawn again from `run.toml`.
+    DrawnAgain,
+}
+
+impl PixelSource {
+    pub(super) fn code(self) -> &'static str {
+        match self {
+            Self::Stored => "stored",
+            Self::DrawnAgain => "drawn_again",
+        }
+    }
+
+    pub(super) fn words(self) -> &'static str {
+        match self {
+            Self::Stored => "stored image",
+            Self::DrawnAgain => "drawn again from run.toml",
+        }
+    }
+}
+
+impl Shown {
+    pub(super) fn document(&self, place: &PanelPlace) -> Value {
+        let mut drawn: BTreeMap<&str, usize> = BTreeMap::new();
+        for mark in self.panel.marks.iter().filter(|mark| place.frame.shows(mark.at)) {
+            *drawn.entry(mark.class.code()).or_default() += 1;
+        }
+        let meets = |region: &&Window| {
+            let view = &self.panel.view;
+            let apart = |a: usize, long: usize, b: usize, long_b: usize| a + long <= b || b + long_b <= a;
+            !(apart(region.x, region.columns, view.x, view.columns)
+                || apart(region.y, region.rows, view.y, view.rows))
+        };
+        if let Some(regions) = &self.panel.regions {
+            drawn.insert(Class::Region.code(), regions.iter().filter(meets).count());
+        }
+        json!({
+            "frame": self.frame,
+            "time": self.time,
+            "pixels": self.pixels.code(),
+            "stretch": self.panel.stretch.code(),
+            "verdict": self.verdict,
+            "cause": self.cause,
+            "panel": place.frame,
+            "close_up": place.close_up,
+            "drawn": drawn,
+        })
+    }
+}
+
+/// A word of a file as people read it: `cut by roi`.
+pub(super) fn spoken(word: &str) -> String {
+    word.replace('_', " ")
+}
