@@ -63,18 +63,30 @@ impl CsvReader {
         Ok(Self { path: path.to_owned(), columns, reader, record: csv::StringRecord::new() })
     }
 
-    /// All rows, each with its line in the file; `parse` is given the row before too. A table without rows is an error.
-    pub(super) fn read_all<T>(
+    /// All rows; `parse` is given the row before too.
+    pub(super) fn read_rows<T>(
         mut self,
         parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
-    ) -> Result<Vec<(u64, T)>, FileError> {
-        let mut rows: Vec<(u64, T)> = Vec::new();
+    ) -> Result<Vec<T>, FileError> {
+        let mut rows = Vec::new();
         while let Some(row) = self.next_row()? {
-            let parsed = parse(&row, rows.last().map(|(_, row)| row))?;
-            rows.push((row.line, parsed));
+            rows.push(parse(&row, rows.last())?);
         }
+        Ok(rows)
+    }
+
+    /// All rows, each with its line in the file; `parse` is given the row before too. A table without rows is an error.
+    pub(super) fn read_all<T>(
+        self,
+        parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
+    ) -> Result<Vec<(u64, T)>, FileError> {
+        let path = self.path.clone();
+        let with_line = |row: &CsvRow<'_>, previous: Option<&(u64, T)>| {
+            parse(row, previous.map(|(_, previous)| previous)).map(|parsed| (row.line, parsed))
+        };
+        let rows = self.read_rows(with_line)?;
         if rows.is_empty() {
-            return Err(FileError::value(&self.path, Place::Header, "number of rows", 0, "at least 1"));
+            return Err(FileError::value(&path, Place::Header, "number of rows", 0, "at least 1"));
         }
         Ok(rows)
     }
@@ -133,6 +145,17 @@ impl CsvRow<'_> {
             )),
             _ => Ok(()),
         }
+    }
+
+    /// Refuses a value where the row's status has none: it is an answer under a misspelt word, and counted as a miss, it would be lost in
+    /// silence.
+    pub(super) fn check_empty(
+        &self,
+        columns: impl IntoIterator<Item = &'static str>,
+    ) -> Result<(), FileError> {
+        let full = columns.into_iter().find(|column| !self.text(column).trim().is_empty());
+        let nothing = || format!("nothing, as the status is `{}`", self.text("status"));
+        full.map_or(Ok(()), |column| Err(self.error(column, nothing())))
     }
 
     /// Refuses standard deviations below 0.

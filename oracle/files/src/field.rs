@@ -9,7 +9,7 @@ use super::table_column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanosec
 use super::{FileError, unit};
 
 /// What a cell holds, as long as `'a` lives.
-pub(crate) trait Atom<'a>: Default {
+pub(crate) trait Atom<'a>: Copy + Default {
     /// Type of its column.
     const TYPE: ColumnType;
     /// What the cell of a CSV must be.
@@ -23,7 +23,7 @@ pub(crate) trait Atom<'a>: Default {
     /// The cell of a row; `None` if it is null.
     fn get(cells: &'a Self::Cells, row: usize) -> Option<Self>;
     /// As it stands in a CSV and in messages: of a number the shortest text that reads back to the same bits.
-    fn text(&self) -> String;
+    fn text(self) -> String;
     /// Reads the cell of a CSV; `None` when it is not as [`Atom::EXPECTED`].
     fn parse(text: &'a str) -> Option<Self>;
 }
@@ -45,7 +45,7 @@ impl<'a, T: Cell + 'a> Atom<'a> for T {
         cells.get(row)
     }
 
-    fn text(&self) -> String {
+    fn text(self) -> String {
         format!("{self:?}")
     }
 
@@ -71,8 +71,8 @@ impl<'a> Atom<'a> for &'a str {
         cells.get(row)
     }
 
-    fn text(&self) -> String {
-        (*self).to_owned()
+    fn text(self) -> String {
+        self.to_owned()
     }
 
     fn parse(text: &'a str) -> Option<Self> {

@@ -70,30 +70,20 @@ impl MeasurementWriter {
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be.
 pub fn read_measurements(path: &Path) -> Result<Vec<(u64, Outcome)>, FileError> {
-    let mut table = CsvReader::open::<MeasurementLine>(path)?;
-    let mut outcomes: Vec<(u64, Outcome)> = Vec::new();
-    while let Some(row) = table.next_row()? {
-        check_status(&row)?;
-        let line = MeasurementLine::read(&row)?;
-        row.check_ascends("frame", line.frame, outcomes.last().map(|(frame, _)| *frame))?;
-        outcomes.push((line.frame, outcome(&row, line)?));
-    }
-    Ok(outcomes)
+    CsvReader::open::<MeasurementLine>(path)?.read_rows(|row, previous: Option<&(u64, Outcome)>| {
+        check_status(row)?;
+        let line = MeasurementLine::read(row)?;
+        row.check_ascends("frame", line.frame, previous.map(|(frame, _)| *frame))?;
+        Ok((line.frame, outcome(row, line)?))
+    })
 }
 
-/// Refuses a position under a status that has none: it is a detection under a misspelt word, and counted as a miss, it
-/// would be lost in silence.
 fn check_status(row: &CsvRow<'_>) -> Result<(), FileError> {
-    let status = row.text("status");
-    if status.trim().is_empty() {
-        return Err(row.error("status", "`detected`, or the reason why there is no target"));
+    match row.text("status").trim() {
+        "" => Err(row.error("status", "`detected`, or the reason why there is no target")),
+        DETECTED => Ok(()),
+        _ => row.check_empty(POSITION.into_iter().chain(LINE_OF_SIGHT)),
     }
-    if status.trim() == DETECTED {
-        return Ok(());
-    }
-    let mut columns = POSITION.into_iter().chain(LINE_OF_SIGHT);
-    let full = columns.find(|column| !row.text(column).trim().is_empty());
-    full.map_or(Ok(()), |column| Err(row.error(column, format!("nothing, as the status is `{status}`"))))
 }
 
 fn outcome(row: &CsvRow<'_>, line: MeasurementLine) -> Result<Outcome, FileError> {

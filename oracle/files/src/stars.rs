@@ -48,11 +48,9 @@ pub fn write_stars(path: &Path, stars: &[StarRow]) -> Result<(), FileError> {
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be.
 pub fn read_stars(path: &Path) -> Result<Vec<StarRow>, FileError> {
-    let mut table = CsvReader::open::<StarRow>(path)?;
-    let mut stars: Vec<StarRow> = Vec::new();
-    while let Some(row) = table.next_row()? {
-        let star = StarRow::read(&row)?;
-        if stars.last().is_some_and(|last| star.id <= last.id) {
+    CsvReader::open::<StarRow>(path)?.read_rows(|row, previous: Option<&StarRow>| {
+        let star = StarRow::read(row)?;
+        if previous.is_some_and(|previous| star.id <= previous.id) {
             return Err(row.error("id", "more than that of the row before (each star once, ascending)"));
         }
         if !(0.0..=360.0).contains(&star.ra_deg) {
@@ -61,9 +59,8 @@ pub fn read_stars(path: &Path) -> Result<Vec<StarRow>, FileError> {
         if !(-90.0..=90.0).contains(&star.dec_deg) {
             return Err(row.error("dec_deg", "-90 to 90"));
         }
-        stars.push(star);
-    }
-    Ok(stars)
+        Ok(star)
+    })
 }
 
 #[cfg(test)]

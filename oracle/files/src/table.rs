@@ -78,12 +78,7 @@ impl<const N: usize> Names<N> {
             });
             let value = match null {
                 None => Some(F::Value::of_cells(cells).map_err(|expected| {
-                    let cells = parts
-                        .iter()
-                        .filter_map(|cells| CellOf::<'_, F, N>::get(*cells, row))
-                        .map(|cell| cell.text())
-                        .collect::<Vec<_>>()
-                        .join(", ");
+                    let cells = cells.map(|cell| cell.text()).join(", ");
                     let shown = if N == 1 { cells } else { format!("[{cells}]") };
                     columns.error(row, self.name(0), shown, expected)
                 })?),

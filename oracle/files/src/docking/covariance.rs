@@ -8,6 +8,23 @@ use super::super::csv_table::CsvRow;
 /// Cells of the upper triangle.
 pub(super) const CELLS: usize = 21;
 
+/// The names of the cells, from those of the six.
+macro_rules! upper_triangle {
+    ($($name:literal)+) => {
+        $crate::docking::covariance::upper_triangle!(@ [] $($name)+)
+    };
+    (@ [$($cell:expr,)*] $first:literal $($rest:literal)*) => {
+        $crate::docking::covariance::upper_triangle!(
+            @ [$($cell,)* concat!("cov_", $first, "_", $first), $(concat!("cov_", $first, "_", $rest),)*] $($rest)*
+        )
+    };
+    (@ [$($cell:expr,)*]) => {
+        [$($cell),*]
+    };
+}
+
+pub(super) use upper_triangle;
+
 /// The places of the upper triangle, row by row.
 fn places() -> impl Iterator<Item = (usize, usize)> {
     (0..6).flat_map(|i| (i..6).map(move |j| (i, j)))

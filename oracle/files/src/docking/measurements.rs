@@ -132,32 +132,22 @@ pub fn outcome_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be.
 pub fn read_field_measurements(path: &Path) -> Result<Vec<(u64, DockingOutcome)>, FileError> {
-    let mut table = CsvReader::open::<FieldMeasurementLine>(path)?;
-    let mut outcomes: Vec<(u64, DockingOutcome)> = Vec::new();
-    while let Some(row) = table.next_row()? {
+    let table = CsvReader::open::<FieldMeasurementLine>(path)?;
+    table.read_rows(|row, previous: Option<&(u64, DockingOutcome)>| {
         let field = row.cell("field")?;
-        row.check_ascends("field", field, outcomes.last().map(|(field, _)| *field))?;
-        let solution = solution(&row)?;
-        let outcome =
-            DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None };
-        outcomes.push((field, outcome));
-    }
-    Ok(outcomes)
+        row.check_ascends("field", field, previous.map(|(field, _)| *field))?;
+        let solution = solution(row)?;
+        Ok((field, DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None }))
+    })
 }
 
 fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
     // Not trimmed for the reason of none: it is kept to the letter.
     let status = row.text("status");
-    // Numbers under a status that has none are an answer under a misspelt word: counted as a miss, it would be lost in
-    // silence.
-    let empty = |columns: &[&'static str]| {
-        let full = columns.iter().find(|column| !row.text(column).trim().is_empty());
-        full.map_or(Ok(()), |column| Err(row.error(column, format!("nothing, as the status is `{status}`"))))
-    };
     match status.trim() {
         "" => Err(row.error("status", "`measured`, `range_only`, or the reason why there is nothing")),
         MEASURED => {
-            empty(&RANGE)?;
+            row.check_empty(RANGE)?;
             let line = FieldMeasurementLine::read(row)?;
             let pose = line.pose.ok_or_else(|| row.error(POSE[0], f64::EXPECTED))?;
             if pose.position_m == Vector3::zeros() {
@@ -167,7 +157,7 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
             Ok(DockingSolution::Measured(Box::new(FieldMeasurement { best, paper: line.paper })))
         }
         RANGE_ONLY => {
-            empty(&POSE)?;
+            row.check_empty(POSE)?;
             let range_m = row.cell(RANGE[0])?;
             let told = !row.text(RANGE[1]).trim().is_empty();
             let sigma_m = if told { row.cell(RANGE[1])? } else { 0.0 };
@@ -177,8 +167,8 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
             Ok(DockingSolution::RangeOnly { range_m, sigma_m })
         }
         _ => {
-            empty(&POSE)?;
-            empty(&RANGE)?;
+            row.check_empty(POSE)?;
+            row.check_empty(RANGE)?;
             Ok(DockingSolution::NoSolution(NoPose::parse(status)))
         }
     }

@@ -10,7 +10,7 @@ use score::docking::Shown;
 use super::super::FileError;
 use super::super::csv_table::{CsvLine, CsvReader, CsvRow, CsvWriter};
 use super::super::table::{optional, table};
-use super::covariance::{self, CELLS};
+use super::covariance::{self, CELLS, upper_triangle};
 use super::pose::{self, angle_as_filed};
 
 const SIGMA: [&str; 7] = [
@@ -22,52 +22,8 @@ const SIGMA: [&str; 7] = [
     "sigma_phi2_deg",
     "sigma_phi3_deg",
 ];
-const POSITION: [&str; CELLS] = [
-    "cov_d1_d1",
-    "cov_d1_d2",
-    "cov_d1_d3",
-    "cov_d1_d1_rate",
-    "cov_d1_d2_rate",
-    "cov_d1_d3_rate",
-    "cov_d2_d2",
-    "cov_d2_d3",
-    "cov_d2_d1_rate",
-    "cov_d2_d2_rate",
-    "cov_d2_d3_rate",
-    "cov_d3_d3",
-    "cov_d3_d1_rate",
-    "cov_d3_d2_rate",
-    "cov_d3_d3_rate",
-    "cov_d1_rate_d1_rate",
-    "cov_d1_rate_d2_rate",
-    "cov_d1_rate_d3_rate",
-    "cov_d2_rate_d2_rate",
-    "cov_d2_rate_d3_rate",
-    "cov_d3_rate_d3_rate",
-];
-const ATTITUDE: [&str; CELLS] = [
-    "cov_phi1_phi1",
-    "cov_phi1_phi2",
-    "cov_phi1_phi3",
-    "cov_phi1_phi1_rate",
-    "cov_phi1_phi2_rate",
-    "cov_phi1_phi3_rate",
-    "cov_phi2_phi2",
-    "cov_phi2_phi3",
-    "cov_phi2_phi1_rate",
-    "cov_phi2_phi2_rate",
-    "cov_phi2_phi3_rate",
-    "cov_phi3_phi3",
-    "cov_phi3_phi1_rate",
-    "cov_phi3_phi2_rate",
-    "cov_phi3_phi3_rate",
-    "cov_phi1_rate_phi1_rate",
-    "cov_phi1_rate_phi2_rate",
-    "cov_phi1_rate_phi3_rate",
-    "cov_phi2_rate_phi2_rate",
-    "cov_phi2_rate_phi3_rate",
-    "cov_phi3_rate_phi3_rate",
-];
+const POSITION: [&str; CELLS] = upper_triangle!("d1" "d2" "d3" "d1_rate" "d2_rate" "d3_rate");
+const ATTITUDE: [&str; CELLS] = upper_triangle!("phi1" "phi2" "phi3" "phi1_rate" "phi2_rate" "phi3_rate");
 
 table! {
     /// A row of the file.

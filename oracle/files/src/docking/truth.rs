@@ -10,12 +10,12 @@ use sim::television::VideoTruth;
 use super::super::field::{Value, words};
 use super::super::table::table;
 use super::super::{Column, Columns, FileError, Row};
-use super::pose::POSE;
+use super::pose::{self, POSE};
 
 /// The truth as it comes back from the file: angles have changed their unit twice, which may move their last bit. A score
 /// of the run is made of these, so that one of the files is the same to the bit.
 pub fn truth_as_filed(truth: FieldTruth) -> FieldTruth {
-    FieldTruthRow::from(&truth).into()
+    FieldTruth { pose: pose::as_filed(&truth.pose), ..FieldTruthRow::from(&truth).into() }
 }
 
 words!(Lines);
