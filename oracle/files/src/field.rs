@@ -128,81 +128,69 @@ impl<V: Value<N>, const N: usize> Field<N> for Option<V> {
     }
 }
 
-/// Types that are what a cell holds.
-macro_rules! plain {
-    ($($type:ty),+) => {$(
-        impl Value<1> for $type {
-            type Cell<'a> = Self;
+/// Says how a type is made of cells: `$to` gives them, `$of` makes the value of them, or says what was expected.
+macro_rules! value {
+    (
+        $type:ty: [$cell:ty; $n:literal] $(for<$($parameter:ident),+>)?,
+        |$value:ident| $to:expr, |$cells:pat_param| $of:expr
+    ) => {
+        impl$(<$($parameter),+>)? $crate::field::Value<$n> for $type {
+            type Cell<'a> = $cell;
 
-            fn to_cells(&self) -> [Self; 1] {
-                [*self]
+            fn to_cells(&self) -> [Self::Cell<'_>; $n] {
+                let $value = self;
+                $to
             }
 
-            fn of_cells([cell]: [Self; 1]) -> Result<Self, String> {
-                Ok(cell)
+            fn of_cells($cells: [Self::Cell<'_>; $n]) -> Result<Self, String> {
+                $of
             }
         }
-    )+};
+    };
 }
-
-plain!(bool, u32, u64, f64);
 
 /// Types with a word for each of their values: `code`, and `parse`, which reads it.
 macro_rules! words {
-    ($($type:ty),+) => {$(
-        impl $crate::field::Value<1> for $type {
-            type Cell<'a> = &'a str;
-
-            fn to_cells(&self) -> [&str; 1] {
-                [self.code()]
-            }
-
-            fn of_cells([word]: [&str; 1]) -> Result<Self, String> {
-                <$type>::parse(word).ok_or_else(|| "one of the words of this column".to_owned())
-            }
-        }
-    )+};
+    ($($type:ty),+) => {
+        $($crate::field::value!($type: [&'a str; 1], |value| [value.code()], |[word]| {
+            <$type>::parse(word).ok_or_else(|| "one of the words of this column".to_owned())
+        });)+
+    };
 }
 
-pub(super) use words;
+pub(super) use {value, words};
 
-impl Value<1> for String {
-    type Cell<'a> = &'a str;
-
-    fn to_cells(&self) -> [&str; 1] {
-        [self]
-    }
-
-    fn of_cells([text]: [&str; 1]) -> Result<Self, String> {
-        Ok(text.to_owned())
-    }
-}
-
-/// A place in a list, of at most 32 bits.
-impl Value<1> for usize {
-    type Cell<'a> = u32;
-
-    fn to_cells(&self) -> [u32; 1] {
-        [*self as u32]
-    }
-
-    fn of_cells([index]: [u32; 1]) -> Result<Self, String> {
-        Ok(index as usize)
-    }
-}
-
-/// UTC; leap seconds are not counted.
-impl Value<1> for Epoch {
-    type Cell<'a> = Nanoseconds;
-
-    fn to_cells(&self) -> [Nanoseconds; 1] {
-        [Nanoseconds(self.to_unix_duration().total_nanoseconds() as i64)]
-    }
-
-    fn of_cells([Nanoseconds(since_1970)]: [Nanoseconds; 1]) -> Result<Self, String> {
+value!(bool: [bool; 1], |flag| [*flag], |[flag]| Ok(flag));
+value!(u32: [u32; 1], |count| [*count], |[count]| Ok(count));
+value!(u64: [u64; 1], |count| [*count], |[count]| Ok(count));
+value!(f64: [f64; 1], |number| [*number], |[number]| Ok(number));
+value!(String: [&'a str; 1], |text| [text], |[text]| Ok(text.to_owned()));
+// A place in a list, of at most 32 bits.
+value!(usize: [u32; 1], |index| [*index as u32], |[index]| Ok(index as usize));
+// UTC; leap seconds are not counted.
+value!(
+    Epoch: [Nanoseconds; 1],
+    |time| [Nanoseconds(time.to_unix_duration().total_nanoseconds() as i64)],
+    |[Nanoseconds(since_1970)]| {
         Ok(Self::from_unix_duration(Duration::from_total_nanoseconds(i128::from(since_1970))))
     }
-}
+);
+value!(Vector3<f64>: [f64; 3], |vector| (*vector).into(), |xyz| Ok(xyz.into()));
+value!(PixelPoint: [f64; 2], |point| [point.x, point.y], |[x, y]| Ok(Self::new(x, y)));
+// Its quaternion, scalar first.
+value!(Rotation<To, From>: [f64; 4] for<To, From>, |rotation| rotation.wxyz(), |wxyz| {
+    Self::from_wxyz(wxyz).map_err(|error| format!("a unit quaternion: {error}"))
+});
+// Components of its unit vector.
+value!(Direction<F>: [f64; 3] for<F>, |direction| (*direction.vector()).into(), |xyz| {
+    unit::direction(xyz).ok_or_else(|| unit::EXPECTED.to_owned())
+});
+// Right ascension and declination, degrees.
+value!(
+    Direction<Icrs>: [f64; 2],
+    |direction| [direction.ra().degrees(), direction.dec().degrees()],
+    |[ra, dec]| Ok(Self::from_ra_dec(Angle::from_degrees(ra), Angle::from_degrees(dec)))
+);
 
 impl<const N: usize> Value<N> for [f64; N] {
     type Cell<'a> = f64;
@@ -213,69 +201,5 @@ impl<const N: usize> Value<N> for [f64; N] {
 
     fn of_cells(cells: Self) -> Result<Self, String> {
         Ok(cells)
-    }
-}
-
-impl Value<3> for Vector3<f64> {
-    type Cell<'a> = f64;
-
-    fn to_cells(&self) -> [f64; 3] {
-        (*self).into()
-    }
-
-    fn of_cells(cells: [f64; 3]) -> Result<Self, String> {
-        Ok(cells.into())
-    }
-}
-
-impl Value<2> for PixelPoint {
-    type Cell<'a> = f64;
-
-    fn to_cells(&self) -> [f64; 2] {
-        [self.x, self.y]
-    }
-
-    fn of_cells([x, y]: [f64; 2]) -> Result<Self, String> {
-        Ok(Self::new(x, y))
-    }
-}
-
-/// Its quaternion, scalar first.
-impl<To, From> Value<4> for Rotation<To, From> {
-    type Cell<'a> = f64;
-
-    fn to_cells(&self) -> [f64; 4] {
-        self.wxyz()
-    }
-
-    fn of_cells(wxyz: [f64; 4]) -> Result<Self, String> {
-        Self::from_wxyz(wxyz).map_err(|error| format!("a unit quaternion: {error}"))
-    }
-}
-
-/// Components of its unit vector.
-impl<F> Value<3> for Direction<F> {
-    type Cell<'a> = f64;
-
-    fn to_cells(&self) -> [f64; 3] {
-        (*self.vector()).into()
-    }
-
-    fn of_cells(xyz: [f64; 3]) -> Result<Self, String> {
-        unit::direction(xyz).ok_or_else(|| unit::EXPECTED.to_owned())
-    }
-}
-
-/// Right ascension and declination, degrees.
-impl Value<2> for Direction<Icrs> {
-    type Cell<'a> = f64;
-
-    fn to_cells(&self) -> [f64; 2] {
-        [self.ra().degrees(), self.dec().degrees()]
-    }
-
-    fn of_cells(cells: [f64; 2]) -> Result<Self, String> {
-        let [ra, dec] = cells.map(Angle::from_degrees);
-        Ok(Self::from_ra_dec(ra, dec))
     }
 }

@@ -3,24 +3,22 @@
 use contract::docking::Pose;
 use nalgebra::Vector3;
 
-use super::super::field::Value;
+use super::super::field::value;
 
 /// Its columns.
 pub(super) const POSE: [&str; 6] = ["d1_m", "d2_m", "d3_m", "phi1_deg", "phi2_deg", "phi3_deg"];
 
-impl Value<6> for Pose {
-    type Cell<'a> = f64;
-
-    fn to_cells(&self) -> [f64; 6] {
-        let (d, phi) = (&self.position_m, self.phi_rad.map(f64::to_degrees));
+value!(
+    Pose: [f64; 6],
+    |pose| {
+        let (d, phi) = (&pose.position_m, pose.phi_rad.map(f64::to_degrees));
         [d.x, d.y, d.z, phi.x, phi.y, phi.z]
-    }
-
-    fn of_cells([d1, d2, d3, phi1, phi2, phi3]: [f64; 6]) -> Result<Self, String> {
+    },
+    |[d1, d2, d3, phi1, phi2, phi3]| {
         let phi_rad = Vector3::new(phi1, phi2, phi3).map(f64::to_radians);
         Ok(Self { position_m: Vector3::new(d1, d2, d3), phi_rad })
     }
-}
+);
 
 /// An angle as it comes back from a file, in radians: it has changed its unit twice, which may move its last bit.
 pub(super) fn angle_as_filed(angle: f64) -> f64 {

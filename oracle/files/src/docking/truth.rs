@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 use sim::docking::{FieldTruth, GlintImage};
 use sim::television::VideoTruth;
 
-use super::super::field::{Value, words};
+use super::super::field::{value, words};
 use super::super::table::table;
 use super::super::{Column, Columns, FileError, Row};
 use super::pose::{self, POSE};
@@ -20,17 +20,11 @@ pub fn truth_as_filed(truth: FieldTruth) -> FieldTruth {
 
 words!(Lines);
 
-impl Value<4> for GlintImage {
-    type Cell<'a> = f64;
-
-    fn to_cells(&self) -> [f64; 4] {
-        [self.index as f64, self.centre.x, self.centre.y, self.light]
-    }
-
-    fn of_cells([index, x, y, light]: [f64; 4]) -> Result<Self, String> {
-        Ok(Self { index: index as usize, centre: PixelPoint::new(x, y), light })
-    }
-}
+value!(
+    GlintImage: [f64; 4],
+    |glint| [glint.index as f64, glint.centre.x, glint.centre.y, glint.light],
+    |[index, x, y, light]| Ok(Self { index: index as usize, centre: PixelPoint::new(x, y), light })
+);
 
 table! {
     /// A row of the file.
