@@ -63,7 +63,7 @@ impl<const N: usize> Names<N> {
     }
 
     /// The field of each row of a Parquet file: absent where one of its cells is null.
-    pub(super) fn from_columns<F: Field<N>>(&self, columns: &Columns<'_>) -> Result<Vec<F>, FileError> {
+    pub(super) fn read_columns<F: Field<N>>(&self, columns: &Columns<'_>) -> Result<Vec<F>, FileError> {
         let mut parts = Vec::with_capacity(N);
         for name in self.names {
             parts.push(CellOf::<'_, F, N>::cells(columns, name)?);
@@ -100,7 +100,7 @@ impl<const N: usize> Names<N> {
     }
 
     /// Reads the field from a row of a CSV: all cells of it, or none where it may be absent.
-    pub(super) fn from_texts<F: Field<N>>(&self, row: &CsvRow<'_>) -> Result<F, FileError> {
+    pub(super) fn read_texts<F: Field<N>>(&self, row: &CsvRow<'_>) -> Result<F, FileError> {
         let is_absent = F::IS_NULLABLE && self.names.iter().all(|name| row.text(name).trim().is_empty());
         let mut cells: [CellOf<'_, F, N>; N] = std::array::from_fn(|_| Default::default());
         for (cell, name) in cells.iter_mut().zip(self.names).filter(|_| !is_absent) {
@@ -173,7 +173,7 @@ macro_rules! table {
             }
 
             fn read(row: &$crate::csv_table::CsvRow<'_>) -> Result<Self, $crate::FileError> {
-                Ok(Self { $($field: $names.from_texts(row)?),+ })
+                Ok(Self { $($field: $names.read_texts(row)?),+ })
             }
         }
     };
@@ -188,7 +188,7 @@ macro_rules! table {
             }
 
             fn rows(columns: &$crate::Columns<'_>) -> Result<Vec<Self>, $crate::FileError> {
-                $(let mut $field = $names.from_columns(columns)?.into_iter();)+
+                $(let mut $field = $names.read_columns(columns)?.into_iter();)+
                 let mut rows = Vec::with_capacity(columns.len());
                 rows.extend(std::iter::from_fn(|| Some(Self { $($field: $field.next()?),+ })));
                 Ok(rows)

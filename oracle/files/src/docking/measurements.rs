@@ -55,9 +55,9 @@ table! {
         /// standard deviations; all six or none
         sigma: Option<[f64; 6]> = optional(SIGMA),
         /// d3 of `range_only`
-        range_m: Option<f64> = optional(["range_m"]),
+        range_m: Option<f64> = optional([RANGE[0]]),
         /// its standard deviation
-        sigma_range_m: Option<f64> = optional(["sigma_range_m"]),
+        sigma_range_m: Option<f64> = optional([RANGE[1]]),
         /// upper triangle of the covariance; all or none; without it the standard deviations are taken for uncorrelated
         covariance: Option<[f64; CELLS]> = optional(COVARIANCE),
         /// pose by the paper's formulas; all six or none
