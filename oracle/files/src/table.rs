@@ -212,3 +212,102 @@ macro_rules! names {
 }
 
 pub(super) use {names, table};
+
+#[cfg(test)]
+mod tests {
+    use std::fs::File;
+
+    use contract::docking::Lines;
+    use contract::{Body, Icrs, Rotation};
+
+    use super::super::{Row, TableOptions, TableReader, write_table};
+    use super::*;
+
+    table! {
+        /// A row with a field of every kind.
+        #[derive(Debug, Clone, PartialEq)]
+        struct Turn: parquet(frame) {
+            /// number of the frame
+            frame: u64,
+            /// a turn,
+            /// of four columns
+            turn: Rotation<Body, Icrs> = ["w", "x", "y", "z"],
+            /// rows of a field
+            lines: Lines,
+            /// a place, or none
+            place: Option<[f64; 2]> = seldom_repeating(["x_px", "y_px"]),
+            /// a number
+            number: f64 = nullable(["number"]),
+        }
+    }
+
+    fn rows() -> Vec<Turn> {
+        let turn = Rotation::from_wxyz([0.6, 0.0, 0.8, 0.0]).unwrap();
+        let row = |frame| {
+            let place = (frame == 2).then_some([0.1, 0.2]);
+            Turn { frame, turn, lines: Lines::Odd, place, number: 1.5 }
+        };
+        (1..4).map(row).collect()
+    }
+
+    /// Reads the rows back, one column of them exchanged for others.
+    fn read(other: Option<Column>) -> Result<Vec<Turn>, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.parquet");
+        let mut columns = Turn::columns(&rows());
+        if let Some(other) = other {
+            let place = columns.iter().position(|column| column.name() == other.name()).unwrap();
+            columns[place] = other;
+        }
+        write_table(File::create_new(&path).unwrap(), &path, &columns, TableOptions::default()).unwrap();
+        let frames = TableReader::<Turn>::open(&path).map_err(|error| error.to_string())?;
+        let frames: Result<Vec<_>, _> = frames.collect();
+        Ok(frames.map_err(|error| error.to_string())?.into_iter().flat_map(|(_, rows)| rows).collect())
+    }
+
+    #[test]
+    fn rows_come_back_in_columns_of_their_names_and_types() {
+        assert_eq!(read(None).unwrap(), rows());
+        let columns = Turn::columns(&[]);
+        let found: Vec<_> = columns.iter().map(|column| (column.name(), column.is_nullable())).collect();
+        let required = ["frame", "w", "x", "y", "z", "lines"].map(|name| (name, false));
+        assert_eq!(found[..6], required);
+        assert_eq!(found[6..], ["x_px", "y_px", "number"].map(|name| (name, true)));
+    }
+
+    #[test]
+    fn a_wrong_cell_is_named_by_row_and_column() {
+        let one = |name, values: [f64; 3]| Some(Column::new(name, values));
+        for (other, message) in [
+            (one("w", [0.6, 0.7, 0.6]), "row 1: `w` is `[0.7, 0.0, 0.8, 0.0]`, expected a unit quaternion"),
+            (one("y", [0.8, f64::INFINITY, 0.8]), "row 1: `y` is `inf`, expected a finite number"),
+            (
+                Some(Column::nullable("z", [Some(0.0), Some(0.0), None])),
+                "row 2: `z` is `null`, expected a value in every row",
+            ),
+            (
+                Some(Column::texts("lines", ["odd", "upper", "odd"])),
+                "row 1: `lines` is `upper`, expected one of the words of this column",
+            ),
+        ] {
+            let error = read(other).unwrap_err();
+            assert!(error.contains(message), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_place_of_which_a_part_is_null_is_none() {
+        let rows = read(Some(Column::nullable("y_px", [None, None, Some(0.2)]))).unwrap();
+        assert!(rows.iter().all(|row| row.place.is_none()), "{rows:?}");
+    }
+
+    #[test]
+    fn a_declaration_says_what_the_columns_are() {
+        let [_, turn, _, place, _] = <[Declared; 5]>::try_from(Turn::declared()).unwrap();
+        assert_eq!(
+            (turn.names, turn.meaning),
+            (vec!["w", "x", "y", "z"], "a turn, of four columns".to_owned())
+        );
+        assert_eq!((place.column_type, place.is_nullable), (ColumnType::Float64, true));
+    }
+}
