@@ -4,6 +4,7 @@ use contract::{Cluster, Label, PixelPoint};
 
 use super::FileError;
 use super::parquet_table::{Columns, Row};
+use super::table::{seldom_repeating, table};
 use super::table_column::Column;
 
 /// A cluster and the frame it was found in.
@@ -15,46 +16,48 @@ pub struct FrameCluster {
     pub cluster: Cluster,
 }
 
-impl FrameCluster {
-    fn star(&self) -> Option<u32> {
-        match self.cluster.label {
+table! {
+    /// A row of the file.
+    pub(crate) struct ClusterRow: parquet(frame) {
+        /// number of the frame; ascending
+        frame: u64,
+        /// centre of the cluster
+        position: PixelPoint = seldom_repeating(["x_px", "y_px"]),
+        /// sum of intensities, each 0 to 1
+        size: f64 = seldom_repeating(["size"]),
+        /// number of pixels
+        pixels: u32,
+        /// what it was taken for: `star`, `hotspot`, `unlinked`, `candidate`, `target`
+        label: String,
+        /// number of the star in the catalogue; null unless a star
+        star_id: Option<u32>,
+    }
+}
+
+impl From<&FrameCluster> for ClusterRow {
+    fn from(FrameCluster { frame, cluster }: &FrameCluster) -> Self {
+        let Cluster { position, size, pixels, label } = *cluster;
+        let star_id = match label {
             Label::Star(id) => Some(id),
             _ => None,
-        }
+        };
+        Self { frame: *frame, position, size, pixels, label: label.code().to_owned(), star_id }
     }
 }
 
 impl Row for FrameCluster {
     fn columns(rows: &[Self]) -> Vec<Column> {
-        let numbers =
-            |name, value: fn(&Cluster) -> f64| Column::new(name, rows.iter().map(|row| value(&row.cluster)));
-        vec![
-            Column::new("frame", rows.iter().map(|row| row.frame)),
-            numbers("x_px", |cluster| cluster.position.x).seldom_repeating(),
-            numbers("y_px", |cluster| cluster.position.y).seldom_repeating(),
-            numbers("size", |cluster| cluster.size).seldom_repeating(),
-            Column::new("pixels", rows.iter().map(|row| row.cluster.pixels)),
-            Column::texts("label", rows.iter().map(|row| row.cluster.label.code())),
-            Column::nullable("star_id", rows.iter().map(Self::star)),
-        ]
+        ClusterRow::columns(&rows.iter().map(ClusterRow::from).collect::<Vec<_>>())
     }
 
-    #[expect(
-        clippy::indexing_slicing,
-        reason = "`row` is below the number of rows of the batch, which all its columns have"
-    )]
     fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError> {
-        let (frame, pixels) = (columns.u64("frame")?, columns.u32("pixels")?);
-        let (x, y, size) = (columns.f64("x_px")?, columns.f64("y_px")?, columns.f64("size")?);
-        let star = columns.optional_u32("star_id")?;
-        (0..columns.len())
-            .map(|row| {
-                let label = columns.word("label", row, |word| label(word, star.get(row)))?;
-                let position = PixelPoint::new(x[row], y[row]);
-                let cluster = Cluster { position, size: size[row], pixels: pixels[row], label };
-                Ok(Self { frame: frame[row], cluster })
-            })
-            .collect()
+        let cluster = |(i, row): (usize, ClusterRow)| {
+            let ClusterRow { frame, position, size, pixels, .. } = row;
+            let label = label(&row.label, row.star_id)
+                .ok_or_else(|| columns.error(i, "label", &row.label, "one of the words of this column"))?;
+            Ok(Self { frame, cluster: Cluster { position, size, pixels, label } })
+        };
+        ClusterRow::rows(columns)?.into_iter().enumerate().map(cluster).collect()
     }
 
     fn frame(&self) -> u64 {

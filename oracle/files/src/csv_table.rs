@@ -2,72 +2,91 @@
 
 use std::fs::File;
 use std::io::Write;
+use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 use super::error::{Place, open_regular};
+use super::field::Atom;
 use super::lines::Lines;
+use super::table::Table;
 use super::{FileError, WholeFile};
 
-/// Whether a file may lack a column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Presence {
-    Required,
-    Optional,
+/// A row of a CSV, as [`super::table::table`] declares it.
+pub trait CsvLine: Table {
+    /// Its cells, in the order of the columns.
+    fn cells(&self) -> Vec<String>;
+
+    /// Reads it.
+    fn read(row: &CsvRow<'_>) -> Result<Self, FileError>;
 }
 
-/// The columns of a kind of table, in the order in which they are written.
-pub(super) type Layout = &'static [(&'static str, Presence)];
+/// A column that a kind of table has.
+struct CsvColumn {
+    name: &'static str,
+    is_optional: bool,
+    /// Where the file has it.
+    position: Option<usize>,
+}
 
 /// A table being read, row by row.
 pub(super) struct CsvReader {
     path: PathBuf,
-    layout: Layout,
-    /// For each column of the layout, where the file has it.
-    positions: Vec<Option<usize>>,
+    columns: Vec<CsvColumn>,
     reader: csv::Reader<Lines<File>>,
     record: csv::StringRecord,
 }
 
 impl CsvReader {
     /// Opens a table and checks its header: every required column, no unknown one, none twice.
-    pub(super) fn open(path: &Path, layout: Layout) -> Result<Self, FileError> {
+    pub(super) fn open<T: Table>(path: &Path) -> Result<Self, FileError> {
         let file = Lines::new(open_regular(path)?);
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(file);
         let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
-        let mut positions = vec![None; layout.len()];
+        let column = |(name, is_optional)| CsvColumn { name, is_optional, position: None };
+        let mut columns: Vec<CsvColumn> = layout::<T>().map(column).collect();
         for (position, name) in header.iter().enumerate() {
-            let mut columns = layout.iter().zip(&mut positions);
-            let Some((_, place)) = columns.find(|((known, _), _)| *known == name) else {
-                return Err(unknown_column(path, name, layout));
+            let Some(column) = columns.iter_mut().find(|column| column.name == name) else {
+                return Err(unknown_column(path, name, &columns));
             };
-            if place.replace(position).is_some() {
+            if column.position.replace(position).is_some() {
                 return Err(FileError::value(path, Place::Line(1), "header", name, "each column once"));
             }
         }
-        for ((name, presence), position) in layout.iter().zip(&positions) {
-            if *presence == Presence::Required && position.is_none() {
-                return Err(FileError::MissingColumn {
-                    path: path.to_owned(),
-                    column: (*name).to_owned(),
-                    found: header.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
-                });
-            }
+        if let Some(missing) = columns.iter().find(|column| !column.is_optional && column.position.is_none())
+        {
+            return Err(FileError::MissingColumn {
+                path: path.to_owned(),
+                column: missing.name.to_owned(),
+                found: header.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
+            });
         }
-        Ok(Self { path: path.to_owned(), layout, positions, reader, record: csv::StringRecord::new() })
+        Ok(Self { path: path.to_owned(), columns, reader, record: csv::StringRecord::new() })
+    }
+
+    /// All rows; `parse` is given the row before too.
+    pub(super) fn read_rows<T>(
+        mut self,
+        parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
+    ) -> Result<Vec<T>, FileError> {
+        let mut rows = Vec::new();
+        while let Some(row) = self.next_row()? {
+            rows.push(parse(&row, rows.last())?);
+        }
+        Ok(rows)
     }
 
     /// All rows, each with its line in the file; `parse` is given the row before too. A table without rows is an error.
     pub(super) fn read_all<T>(
-        mut self,
+        self,
         parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
     ) -> Result<Vec<(u64, T)>, FileError> {
-        let mut rows: Vec<(u64, T)> = Vec::new();
-        while let Some(row) = self.next_row()? {
-            let parsed = parse(&row, rows.last().map(|(_, row)| row))?;
-            rows.push((row.line, parsed));
-        }
+        let path = self.path.clone();
+        let with_line = |row: &CsvRow<'_>, previous: Option<&(u64, T)>| {
+            parse(row, previous.map(|(_, previous)| previous)).map(|parsed| (row.line, parsed))
+        };
+        let rows = self.read_rows(with_line)?;
         if rows.is_empty() {
-            return Err(FileError::value(&self.path, Place::Header, "number of rows", 0, "at least 1"));
+            return Err(FileError::value(&path, Place::Header, "number of rows", 0, "at least 1"));
         }
         Ok(rows)
     }
@@ -81,19 +100,30 @@ impl CsvReader {
     }
 }
 
+/// The columns of a kind of table, in the order in which they are written, and whether a file may lack them.
+fn layout<T: Table>() -> impl Iterator<Item = (&'static str, bool)> {
+    let fields = T::declared().into_iter();
+    fields.flat_map(|field| field.names.into_iter().map(move |name| (name, field.is_optional)))
+}
+
 /// One row of a table.
-pub(super) struct CsvRow<'a> {
+pub struct CsvRow<'a> {
     table: &'a CsvReader,
     pub(super) line: u64,
 }
 
 impl CsvRow<'_> {
     /// The cell of a column as it stands; empty when the file has no such column.
-    pub(super) fn text(&self, column: &'static str) -> &str {
-        let index = self.table.layout.iter().position(|(name, _)| *name == column);
-        debug_assert!(index.is_some(), "`{column}` is not in the layout");
-        let position = index.and_then(|i| self.table.positions.get(i).copied().flatten());
+    pub(super) fn text(&self, column: &str) -> &str {
+        let declared = self.table.columns.iter().find(|declared| declared.name == column);
+        debug_assert!(declared.is_some(), "`{column}` is not declared");
+        let position = declared.and_then(|declared| declared.position);
         position.and_then(|i| self.table.record.get(i)).unwrap_or("")
+    }
+
+    /// What the cell of a column holds.
+    pub(super) fn cell<'r, T: Atom<'r>>(&'r self, column: &'static str) -> Result<T, FileError> {
+        T::parse(self.text(column)).ok_or_else(|| self.error(column, T::EXPECTED))
     }
 
     /// The error of a cell that is not what was `expected`.
@@ -101,92 +131,85 @@ impl CsvRow<'_> {
         FileError::value(&self.table.path, Place::Line(self.line), column, self.text(column), expected)
     }
 
-    /// A number, neither NaN nor infinite.
-    pub(super) fn number(&self, column: &'static str) -> Result<f64, FileError> {
-        match self.text(column).trim().parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(self.error(column, "a finite number")),
-        }
-    }
-
-    /// A whole number from 0.
-    pub(super) fn count<T: std::str::FromStr>(&self, column: &'static str) -> Result<T, FileError> {
-        self.text(column).trim().parse().map_err(|_| self.error(column, "a whole number, 0 or greater"))
-    }
-
-    /// Numbers that stand together: all of them, or `None` when every cell is empty.
-    pub(super) fn optional_numbers<const N: usize>(
+    /// Refuses the number of the row's frame, field or star unless it is larger than that of the row before.
+    pub(super) fn check_ascends(
         &self,
-        columns: [&'static str; N],
-    ) -> Result<Option<[f64; N]>, FileError> {
-        if columns.iter().all(|column| self.text(column).trim().is_empty()) {
-            Ok(None)
-        } else {
-            self.numbers(columns).map(Some)
-        }
-    }
-
-    /// Numbers that stand together.
-    pub(super) fn numbers<const N: usize>(&self, columns: [&'static str; N]) -> Result<[f64; N], FileError> {
-        let mut numbers = [0.0; N];
-        for (number, column) in numbers.iter_mut().zip(columns) {
-            *number = self.number(column)?;
-        }
-        Ok(numbers)
-    }
-
-    /// The number of the row's frame, which must be larger than that of the row before.
-    pub(super) fn frame_after(&self, previous: Option<u64>) -> Result<u64, FileError> {
-        self.number_after("frame", previous)
-    }
-
-    /// The number of the row's frame or field, in this column, which must be larger than that of the row before.
-    pub(super) fn number_after(&self, column: &'static str, previous: Option<u64>) -> Result<u64, FileError> {
-        let number = self.count(column)?;
+        column: &'static str,
+        number: u64,
+        previous: Option<u64>,
+    ) -> Result<(), FileError> {
         match previous {
             Some(previous) if number <= previous => Err(self.error(
                 column,
                 format!("more than {previous}, that of the row before (each {column} once, ascending)"),
             )),
-            _ => Ok(number),
+            _ => Ok(()),
         }
+    }
+
+    /// Refuses a value where the row's status has none: it is an answer under a misspelt word, and counted as a miss, it would be lost in
+    /// silence.
+    pub(super) fn check_empty(
+        &self,
+        columns: impl IntoIterator<Item = &'static str>,
+    ) -> Result<(), FileError> {
+        let full = columns.into_iter().find(|column| !self.text(column).trim().is_empty());
+        let nothing = || format!("nothing, as the status is `{}`", self.text("status"));
+        full.map_or(Ok(()), |column| Err(self.error(column, nothing())))
+    }
+
+    /// Refuses standard deviations below 0.
+    pub(super) fn check_sigmas<const N: usize>(
+        &self,
+        columns: [&'static str; N],
+        sigmas: Option<[f64; N]>,
+    ) -> Result<(), FileError> {
+        let negative = sigmas.iter().flatten().zip(columns).find(|(sigma, _)| **sigma < 0.0);
+        negative.map_or(Ok(()), |(_, column)| Err(self.error(column, "0 or greater")))
     }
 }
 
 /// A table being written: a file that has its name when it is complete, or a stream.
-pub(super) struct CsvWriter {
+pub struct CsvWriter<T> {
     path: PathBuf,
     writer: csv::Writer<Box<dyn Write>>,
     /// None of a stream.
     file: Option<WholeFile>,
+    row: PhantomData<T>,
 }
 
-impl CsvWriter {
+impl<T: CsvLine> CsvWriter<T> {
     /// Creates the table and writes its header.
-    pub(super) fn create(path: &Path, layout: Layout) -> Result<Self, FileError> {
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when the file exists or cannot be created.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
         let file = WholeFile::create_new(path)?;
         let out = file.file().try_clone().map_err(|source| FileError::io(path, "create", source))?;
-        Self::headed(path, Box::new(out), Some(file), layout)
+        Self::headed(path, Box::new(out), Some(file))
     }
 
     /// Writes the table to a stream that goes by `name` in messages, header first, each row as soon as it is there.
-    pub(super) fn stream(name: &str, out: impl Write + 'static, layout: Layout) -> Result<Self, FileError> {
-        Self::headed(Path::new(name), Box::new(out), None, layout)
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn stream(name: &str, out: impl Write + 'static) -> Result<Self, FileError> {
+        Self::headed(Path::new(name), Box::new(out), None)
     }
 
-    fn headed(
-        path: &Path,
-        out: Box<dyn Write>,
-        file: Option<WholeFile>,
-        layout: Layout,
-    ) -> Result<Self, FileError> {
-        let mut writer = Self { path: path.to_owned(), writer: csv::Writer::from_writer(out), file };
-        writer.write(layout.iter().map(|(name, _)| (*name).to_owned()))?;
+    fn headed(path: &Path, out: Box<dyn Write>, file: Option<WholeFile>) -> Result<Self, FileError> {
+        let writer = csv::Writer::from_writer(out);
+        let mut writer = Self { path: path.to_owned(), writer, file, row: PhantomData };
+        writer.record(layout::<T>().map(|(name, _)| name))?;
         Ok(writer)
     }
 
-    /// Writes a row of cells.
-    pub(super) fn write(&mut self, cells: impl IntoIterator<Item = String>) -> Result<(), FileError> {
+    /// Writes a row. Numbers are written so that they read back to the same bits.
+    pub(super) fn line(&mut self, row: &T) -> Result<(), FileError> {
+        self.record(row.cells())
+    }
+
+    fn record(&mut self, cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Result<(), FileError> {
         self.writer.write_record(cells).map_err(|error| csv_error(&self.path, &error))?;
         // A row of a stream goes out at once.
         if self.file.is_none() { self.flush() } else { Ok(()) }
@@ -197,25 +220,18 @@ impl CsvWriter {
     }
 
     /// Writes what is buffered, and gives the file its name.
-    pub(super) fn finish(mut self) -> Result<(), FileError> {
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn finish(mut self) -> Result<(), FileError> {
         self.flush()?;
         self.file.take().map_or(Ok(()), WholeFile::commit_new)
     }
 }
 
-/// The shortest text that reads back to the same bits.
-pub(super) fn cell(value: f64) -> String {
-    format!("{value:?}")
-}
-
-/// Cells of numbers that may be absent together.
-pub(super) fn cells<const N: usize>(values: Option<[f64; N]>) -> [String; N] {
-    values.map_or_else(|| std::array::from_fn(|_| String::new()), |values| values.map(cell))
-}
-
-fn unknown_column(path: &Path, column: &str, layout: Layout) -> FileError {
-    let distance = |known: &str| strsim::damerau_levenshtein(known, column);
-    let nearest = layout.iter().map(|(known, _)| *known).min_by_key(|known| distance(known)).unwrap_or("");
+fn unknown_column(path: &Path, column: &str, known: &[CsvColumn]) -> FileError {
+    let distance = |known: &&CsvColumn| strsim::damerau_levenshtein(known.name, column);
+    let nearest = known.iter().min_by_key(distance).map_or("", |known| known.name);
     FileError::UnknownColumn { path: path.to_owned(), column: column.to_owned(), nearest: nearest.to_owned() }
 }
 

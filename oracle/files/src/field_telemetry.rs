@@ -5,18 +5,28 @@ use std::path::Path;
 use contract::docking::{Digitiser, FieldTelemetry, Lines};
 
 use super::FileError;
-use super::csv_table::Presence::{Optional, Required};
-use super::csv_table::{CsvReader, CsvRow, CsvWriter, Layout, cell};
+use super::csv_table::{CsvLine, CsvReader, CsvRow, CsvWriter};
+use super::table::{optional, table};
 
-const LAYOUT: Layout = &[
-    ("field", Required),
-    ("file", Optional),
-    ("time_s", Required),
-    ("lines", Required),
-    ("camera", Optional),
-    ("contrast", Optional),
-    ("brightness", Optional),
-];
+table! {
+    /// A row of the file.
+    pub struct FieldTelemetryLine: csv {
+        /// number of the field; ascending, gaps allowed
+        field: u64,
+        /// its image, a path below the directory; empty when none was saved
+        file: String = optional(["file"]),
+        /// its moment, s since the beginning; ascending
+        time_s: f64,
+        /// its rows of the camera: `even` (0, 2, 4 …), `odd`, `all` (a progressive frame)
+        lines: String,
+        /// which camera took it, from 0; 0 when empty
+        camera: Option<usize> = optional(["camera"]),
+        /// contrast of the digitiser; 1 when empty
+        contrast: Option<f64> = optional(["contrast"]),
+        /// brightness of the digitiser; 0 when empty
+        brightness: Option<f64> = optional(["brightness"]),
+    }
+}
 
 /// One row: the telemetry of one field, and where its image is.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,40 +42,24 @@ pub struct FieldRow {
 }
 
 /// Writes the table row by row.
-pub struct FieldTelemetryWriter(CsvWriter);
+pub type FieldTelemetryWriter = CsvWriter<FieldTelemetryLine>;
 
 impl FieldTelemetryWriter {
-    /// Creates the table.
-    ///
-    /// # Errors
-    /// [`FileError::Io`] when the file exists or cannot be created.
-    pub fn create(path: &Path) -> Result<Self, FileError> {
-        CsvWriter::create(path, LAYOUT).map(Self)
-    }
-
-    /// Writes one row. Numbers are written so that they read back to the same bits.
+    /// Writes one row.
     ///
     /// # Errors
     /// [`FileError::Io`].
     pub fn write(&mut self, row: &FieldRow) -> Result<(), FileError> {
         let FieldTelemetry { time_s, camera, digitiser } = row.telemetry;
-        self.0.write([
-            row.field.to_string(),
-            row.file.clone().unwrap_or_default(),
-            cell(time_s),
-            row.lines.code().to_owned(),
-            camera.to_string(),
-            cell(digitiser.contrast),
-            cell(digitiser.brightness),
-        ])
-    }
-
-    /// Completes the file.
-    ///
-    /// # Errors
-    /// [`FileError::Io`].
-    pub fn finish(self) -> Result<(), FileError> {
-        self.0.finish()
+        self.line(&FieldTelemetryLine {
+            field: row.field,
+            file: row.file.clone().unwrap_or_default(),
+            time_s,
+            lines: row.lines.code().to_owned(),
+            camera: Some(camera),
+            contrast: Some(digitiser.contrast),
+            brightness: Some(digitiser.brightness),
+        })
     }
 }
 
@@ -75,7 +69,7 @@ impl FieldTelemetryWriter {
 /// A [`FileError`] that names line and column of the first cell that is not as it should be; an empty table is one
 /// too.
 pub(super) fn read_with_lines(path: &Path) -> Result<Vec<(u64, FieldRow)>, FileError> {
-    CsvReader::open(path, LAYOUT)?.read_all(parse)
+    CsvReader::open::<FieldTelemetryLine>(path)?.read_all(parse)
 }
 
 /// Reads the table: see [`FieldRow`].
@@ -88,20 +82,19 @@ pub fn read_field_telemetry(path: &Path) -> Result<Vec<FieldRow>, FileError> {
 }
 
 fn parse(row: &CsvRow<'_>, previous: Option<&FieldRow>) -> Result<FieldRow, FileError> {
-    let field = row.number_after("field", previous.map(|previous| previous.field))?;
-    let time_s = row.number("time_s")?;
+    let line = FieldTelemetryLine::read(row)?;
+    let (field, time_s) = (line.field, line.time_s);
+    row.check_ascends("field", field, previous.map(|previous| previous.field))?;
     if let Some(previous) = previous.filter(|previous| time_s <= previous.telemetry.time_s) {
         return Err(
             row.error("time_s", format!("later than {}, that of the row before", previous.telemetry.time_s))
         );
     }
-    let lines =
-        Lines::parse(row.text("lines").trim()).ok_or_else(|| row.error("lines", "all, even or odd"))?;
-    let given = |column: &'static str| !row.text(column).trim().is_empty();
+    let lines = Lines::parse(line.lines.trim()).ok_or_else(|| row.error("lines", "all, even or odd"))?;
     let nominal = Digitiser::default();
     let digitiser = Digitiser {
-        contrast: if given("contrast") { row.number("contrast")? } else { nominal.contrast },
-        brightness: if given("brightness") { row.number("brightness")? } else { nominal.brightness },
+        contrast: line.contrast.unwrap_or(nominal.contrast),
+        brightness: line.brightness.unwrap_or(nominal.brightness),
     };
     for (column, part) in [
         ("contrast", Digitiser { contrast: digitiser.contrast, ..nominal }),
@@ -109,8 +102,8 @@ fn parse(row: &CsvRow<'_>, previous: Option<&FieldRow>) -> Result<FieldRow, File
     ] {
         part.check().map_err(|error| row.error(column, error.to_string()))?;
     }
-    let camera = if given("camera") { row.count("camera")? } else { 0 };
-    let file = Some(row.text("file").trim()).filter(|file| !file.is_empty()).map(str::to_owned);
+    let camera = line.camera.unwrap_or(0);
+    let file = Some(line.file.trim()).filter(|file| !file.is_empty()).map(str::to_owned);
     Ok(FieldRow { field, file, lines, telemetry: FieldTelemetry { time_s, camera, digitiser } })
 }
 

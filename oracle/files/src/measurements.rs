@@ -3,74 +3,65 @@
 use std::path::Path;
 
 use contract::{
-    AttitudeSource, CameraFrame, Icrs, Measurement, NoSolution, Outcome, PixelPoint, Rotation, Solution,
+    AttitudeSource, CameraFrame, Direction, Icrs, Measurement, NoSolution, Outcome, PixelPoint, Rotation,
+    Solution,
 };
 
-use super::csv_table::Presence::{Optional, Required};
-use super::csv_table::{CsvReader, CsvRow, CsvWriter, Layout, cells};
-use super::{FileError, unit};
+use super::FileError;
+use super::csv_table::{CsvLine, CsvReader, CsvRow, CsvWriter};
+use super::field::Atom;
+use super::table::{optional, table};
 
 const POSITION: [&str; 2] = ["x_px", "y_px"];
 const LINE_OF_SIGHT: [&str; 3] = ["los_j2000_x", "los_j2000_y", "los_j2000_z"];
-const QUATERNION: [&str; 4] = ["q_cam_j2000_w", "q_cam_j2000_x", "q_cam_j2000_y", "q_cam_j2000_z"];
 
-const LAYOUT: Layout = &[
-    ("frame", Required),
-    ("status", Required),
-    (POSITION[0], Required),
-    (POSITION[1], Required),
-    (LINE_OF_SIGHT[0], Optional),
-    (LINE_OF_SIGHT[1], Optional),
-    (LINE_OF_SIGHT[2], Optional),
-    (QUATERNION[0], Optional),
-    (QUATERNION[1], Optional),
-    (QUATERNION[2], Optional),
-    (QUATERNION[3], Optional),
-    ("attitude", Optional),
-    ("n_stars", Optional),
-];
+table! {
+    /// A row of the file.
+    pub struct MeasurementLine: csv {
+        /// number of the frame; ascending, each once
+        frame: u64,
+        /// `detected`; or why not, in which case the position must be empty: `no_target`, `no_previous_frame`, `empty_frame`,
+        /// `saturated_frame`, `failed: ` and a reason. Any other text is read as a failure with that reason
+        status: String,
+        /// centre of the target's image; off the detector (−0.5 to columns − 0.5, rows − 0.5) it is no detection
+        position: Option<PixelPoint> = POSITION,
+        /// line of sight, unit vector within 1e-5; all three or none. Without it the score takes the position through the true camera
+        line_of_sight: Option<Direction<Icrs>> = optional(LINE_OF_SIGHT),
+        /// attitude of the camera, norm 1 within 1e-5; not scored
+        camera_from_icrs: Option<Rotation<CameraFrame, Icrs>> =
+            optional(["q_cam_j2000_w", "q_cam_j2000_x", "q_cam_j2000_y", "q_cam_j2000_z"]),
+        /// where it comes from: `stars`, `too_few_stars`, `no_stars`
+        attitude: String = optional(["attitude"]),
+        /// stars identified; empty when the pipeline does not tell
+        n_stars: Option<u32> = optional(["n_stars"]),
+    }
+}
 
 /// The status of a row that has a target; any other text is the reason why there is none.
 const DETECTED: &str = "detected";
 
 /// Writes the table row by row.
-pub struct MeasurementWriter(CsvWriter);
+pub type MeasurementWriter = CsvWriter<MeasurementLine>;
 
 impl MeasurementWriter {
-    /// Creates the table.
-    ///
-    /// # Errors
-    /// [`FileError::Io`] when the file exists or cannot be created.
-    pub fn create(path: &Path) -> Result<Self, FileError> {
-        CsvWriter::create(path, LAYOUT).map(Self)
-    }
-
     /// Writes the answer to one frame. Its clusters have a table of their own ([`super::FrameCluster`]).
     ///
     /// # Errors
     /// [`FileError::Io`].
     pub fn write(&mut self, frame: u64, outcome: &Outcome) -> Result<(), FileError> {
-        let status = match &outcome.solution {
-            Solution::Detected(_) => DETECTED.to_owned(),
-            Solution::NoSolution(reason) => reason.to_string(),
-        };
         let measurement = outcome.measurement();
-        let position = cells(measurement.map(|m| [m.position.x, m.position.y]));
-        let line_of_sight =
-            cells(measurement.and_then(|m| m.line_of_sight).map(|direction| (*direction.vector()).into()));
-        let quaternion = cells(outcome.camera_from_icrs.map(|rotation| rotation.wxyz()));
-        let attitude = outcome.attitude_source.map_or("", AttitudeSource::code).to_owned();
-        let start = [frame.to_string(), status];
-        let end = [attitude, outcome.n_stars.map_or_else(String::new, |n| n.to_string())];
-        self.0.write(start.into_iter().chain(position).chain(line_of_sight).chain(quaternion).chain(end))
-    }
-
-    /// Completes the file.
-    ///
-    /// # Errors
-    /// [`FileError::Io`].
-    pub fn finish(self) -> Result<(), FileError> {
-        self.0.finish()
+        self.line(&MeasurementLine {
+            frame,
+            status: match &outcome.solution {
+                Solution::Detected(_) => DETECTED.to_owned(),
+                Solution::NoSolution(reason) => reason.to_string(),
+            },
+            position: measurement.map(|measurement| measurement.position),
+            line_of_sight: measurement.and_then(|measurement| measurement.line_of_sight),
+            camera_from_icrs: outcome.camera_from_icrs,
+            attitude: outcome.attitude_source.map_or("", AttitudeSource::code).to_owned(),
+            n_stars: outcome.n_stars,
+        })
     }
 }
 
@@ -79,63 +70,44 @@ impl MeasurementWriter {
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be.
 pub fn read_measurements(path: &Path) -> Result<Vec<(u64, Outcome)>, FileError> {
-    let mut table = CsvReader::open(path, LAYOUT)?;
-    let mut outcomes: Vec<(u64, Outcome)> = Vec::new();
-    while let Some(row) = table.next_row()? {
-        let frame = row.frame_after(outcomes.last().map(|(frame, _)| *frame))?;
-        outcomes.push((frame, parse(&row)?));
-    }
-    Ok(outcomes)
+    CsvReader::open::<MeasurementLine>(path)?.read_rows(|row, previous: Option<&(u64, Outcome)>| {
+        check_status(row)?;
+        let line = MeasurementLine::read(row)?;
+        row.check_ascends("frame", line.frame, previous.map(|(frame, _)| *frame))?;
+        Ok((line.frame, outcome(row, line)?))
+    })
 }
 
-fn parse(row: &CsvRow<'_>) -> Result<Outcome, FileError> {
-    let attitude_source = match row.text("attitude").trim() {
+fn check_status(row: &CsvRow<'_>) -> Result<(), FileError> {
+    match row.text("status").trim() {
+        "" => Err(row.error("status", "`detected`, or the reason why there is no target")),
+        DETECTED => Ok(()),
+        _ => row.check_empty(POSITION.into_iter().chain(LINE_OF_SIGHT)),
+    }
+}
+
+fn outcome(row: &CsvRow<'_>, line: MeasurementLine) -> Result<Outcome, FileError> {
+    let attitude_source = match line.attitude.trim() {
         "" => None,
         code => Some(
             AttitudeSource::parse(code)
                 .ok_or_else(|| row.error("attitude", "`stars`, `too_few_stars`, `no_stars` or nothing"))?,
         ),
     };
-    let n_stars = if row.text("n_stars").trim().is_empty() { None } else { Some(row.count("n_stars")?) };
+    let solution = if line.status.trim() == DETECTED {
+        let position = line.position.ok_or_else(|| row.error(POSITION[0], f64::EXPECTED))?;
+        Solution::Detected(Measurement { position, line_of_sight: line.line_of_sight })
+    } else {
+        // Not trimmed: the reason is kept to the letter.
+        Solution::NoSolution(NoSolution::parse(&line.status))
+    };
     Ok(Outcome {
-        solution: solution(row)?,
-        camera_from_icrs: attitude(row)?,
+        solution,
+        camera_from_icrs: line.camera_from_icrs,
         attitude_source,
-        n_stars,
+        n_stars: line.n_stars,
         clusters: Vec::new(),
     })
-}
-
-fn solution(row: &CsvRow<'_>) -> Result<Solution, FileError> {
-    // Not trimmed for the reason of none: it is kept to the letter.
-    let status = row.text("status");
-    if status.trim().is_empty() {
-        return Err(row.error("status", "`detected`, or the reason why there is no target"));
-    }
-    if status.trim() != DETECTED {
-        // A position here is a detection under a misspelt word: counted as a miss, it would be lost in silence.
-        for column in POSITION.into_iter().chain(LINE_OF_SIGHT) {
-            if !row.text(column).trim().is_empty() {
-                return Err(row.error(column, format!("nothing, as the status is `{status}`")));
-            }
-        }
-        return Ok(Solution::NoSolution(NoSolution::parse(status)));
-    }
-    let [x, y] = row.numbers(POSITION)?;
-    let line_of_sight = row
-        .optional_numbers(LINE_OF_SIGHT)?
-        .map(|xyz| unit::direction(xyz).ok_or_else(|| row.error(LINE_OF_SIGHT[0], unit::EXPECTED)))
-        .transpose()?;
-    Ok(Solution::Detected(Measurement { position: PixelPoint::new(x, y), line_of_sight }))
-}
-
-fn attitude(row: &CsvRow<'_>) -> Result<Option<Rotation<CameraFrame, Icrs>>, FileError> {
-    row.optional_numbers(QUATERNION)?
-        .map(|wxyz| {
-            Rotation::from_wxyz(wxyz)
-                .map_err(|error| row.error(QUATERNION[0], format!("a unit quaternion: {error}")))
-        })
-        .transpose()
 }
 
 #[cfg(test)]

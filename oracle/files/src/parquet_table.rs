@@ -5,9 +5,10 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::error::Place;
+use super::field::Atom;
 use super::parquet_file::{Batches, ParquetFile};
 use super::parquet_writer::{ParquetWriter, TableOptions};
-use super::table_column::{Cell, Cells, Column, ColumnValues, Nanoseconds, TextCells};
+use super::table_column::{Cell, Cells, Column, ColumnValues, TextCells};
 use super::{FileError, WholeFile};
 
 /// Rows held before they are encoded, and read at a time.
@@ -229,97 +230,22 @@ impl Columns<'_> {
         FileError::value(self.path, Place::Row(self.first_row + row as u64), column, value, expected)
     }
 
-    /// A column of finite numbers.
-    ///
-    /// # Errors
-    /// [`FileError::Value`] for the first null, NaN or infinity.
-    pub fn f64(&self, name: &str) -> Result<&[f64], FileError> {
-        let cells: &Cells<f64> = self.every(name)?;
-        self.check_finite(name, cells)?;
-        Ok(cells.values())
-    }
-
-    /// A column of finite numbers or nothing.
-    ///
-    /// # Errors
-    /// [`FileError::Value`] for the first NaN or infinity.
-    pub fn optional_f64(&self, name: &str) -> Result<&Cells<f64>, FileError> {
-        let cells = self.cells(name)?;
-        self.check_finite(name, cells)?;
-        Ok(cells)
-    }
-
-    /// A column of 64-bit counts.
-    ///
-    /// # Errors
-    /// [`FileError::Value`] for the first null.
-    pub fn u64(&self, name: &str) -> Result<&[u64], FileError> {
-        self.every(name).map(Cells::values)
-    }
-
-    /// A column of 32-bit counts.
-    ///
-    /// # Errors
-    /// [`FileError::Value`] for the first null.
-    pub fn u32(&self, name: &str) -> Result<&[u32], FileError> {
-        self.every(name).map(Cells::values)
-    }
-
-    /// A column of 32-bit counts or nothing.
-    ///
-    /// # Errors
-    /// [`FileError::Format`] for a column that is damaged.
-    pub fn optional_u32(&self, name: &str) -> Result<&Cells<u32>, FileError> {
-        self.cells(name)
-    }
-
-    /// A column of truth values.
-    ///
-    /// # Errors
-    /// [`FileError::Value`] for the first null.
-    pub fn flags(&self, name: &str) -> Result<&[bool], FileError> {
-        self.every(name).map(Cells::values)
-    }
-
-    /// A column of times.
-    ///
-    /// # Errors
-    /// [`FileError::Value`] for the first null.
-    pub fn times(&self, name: &str) -> Result<&[Nanoseconds], FileError> {
-        self.every(name).map(Cells::values)
-    }
-
-    /// A column of texts.
-    ///
-    /// # Errors
-    /// [`FileError::Value`] for the first null.
-    pub fn text(&self, name: &str) -> Result<&TextCells, FileError> {
-        let values = self.values(name)?;
-        match values {
-            ColumnValues::Utf8(texts) => self.check_present(name, values).map(|()| texts),
-            _ => Err(self.damaged(name)),
+    /// A column of a type.
+    pub(super) fn cells<T: Cell>(&self, name: &str) -> Result<&Cells<T>, FileError> {
+        let cells = T::cells(self.values(name)?).ok_or_else(|| self.damaged(name))?;
+        // At a null stands 0.
+        match cells.values().iter().position(|value| !value.is_sound()) {
+            Some(row) => Err(self.error(row, name, cells.get(row).unwrap_or_default().text(), T::EXPECTED)),
+            None => Ok(cells),
         }
     }
 
-    /// The word of a column at a row, read by `parse`.
-    ///
-    /// # Errors
-    /// [`FileError::Value`] for a null or a word that `parse` does not know.
-    pub fn word<T>(&self, name: &str, row: usize, parse: impl Fn(&str) -> Option<T>) -> Result<T, FileError> {
-        let word = self.text(name)?.value(row);
-        parse(word).ok_or_else(|| self.error(row, name, word, "one of the words of this column"))
-    }
-
-    /// A column without nulls.
-    fn every<T: Cell>(&self, name: &str) -> Result<&Cells<T>, FileError> {
-        let cells = self.cells(name)?;
-        self.check_present(name, self.values(name)?)?;
-        Ok(cells)
-    }
-
-    /// A column of a type.
-    fn cells<T: Cell>(&self, name: &str) -> Result<&Cells<T>, FileError> {
-        T::cells(self.values(name)?).ok_or_else(|| self.damaged(name))
+    /// A column of texts.
+    pub(super) fn texts(&self, name: &str) -> Result<&TextCells, FileError> {
+        match self.values(name)? {
+            ColumnValues::Utf8(texts) => Ok(texts),
+            _ => Err(self.damaged(name)),
+        }
     }
 
     fn values(&self, name: &str) -> Result<&ColumnValues, FileError> {
@@ -330,23 +256,5 @@ impl Columns<'_> {
     /// The names and types were checked when the file was opened; a batch with others is a damaged file.
     fn damaged(&self, name: &str) -> FileError {
         FileError::format(self.path, "Parquet", format!("column `{name}` is damaged"))
-    }
-
-    fn check_present(&self, name: &str, values: &ColumnValues) -> Result<(), FileError> {
-        match values.first_null() {
-            Some(row) => Err(self.error(row, name, "null", "a value in every row")),
-            None => Ok(()),
-        }
-    }
-
-    fn check_finite(&self, name: &str, cells: &Cells<f64>) -> Result<(), FileError> {
-        // At a null stands 0.
-        match cells.values().iter().position(|value| !value.is_finite()) {
-            Some(row) => {
-                let value = cells.get(row).unwrap_or_default();
-                Err(self.error(row, name, value, "a finite number"))
-            }
-            None => Ok(()),
-        }
     }
 }

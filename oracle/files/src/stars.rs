@@ -5,23 +5,22 @@ use std::path::Path;
 use contract::{Angle, Direction, ListedStar};
 
 use super::FileError;
-use super::csv_table::Presence::Required;
-use super::csv_table::{CsvReader, CsvWriter, Layout, cell};
+use super::csv_table::{CsvLine, CsvReader, CsvWriter};
+use super::table::table;
 
-const LAYOUT: Layout =
-    &[("id", Required), ("ra_deg", Required), ("dec_deg", Required), ("magnitude", Required)];
-
-/// One row of the list: catalogued place, ICRS, proper motion applied, without aberration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StarRow {
-    /// Number in the catalogue.
-    pub id: u32,
-    /// Right ascension, degrees, 0 to 360.
-    pub ra_deg: f64,
-    /// Declination, degrees, −90 to 90.
-    pub dec_deg: f64,
-    /// Visual magnitude.
-    pub magnitude: f64,
+table! {
+    /// One row of the list: catalogued place, ICRS, proper motion applied, without aberration.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct StarRow: csv {
+        /// number in the catalogue (HIP); ascending, each once
+        id: u32,
+        /// right ascension, ICRS, 0 to 360; proper motion applied, without parallax and aberration
+        ra_deg: f64,
+        /// declination, likewise, −90 to 90
+        dec_deg: f64,
+        /// Johnson V
+        magnitude: f64,
+    }
 }
 
 impl StarRow {
@@ -39,10 +38,8 @@ impl StarRow {
 /// # Errors
 /// [`FileError::Io`] when the file exists or cannot be written.
 pub fn write_stars(path: &Path, stars: &[StarRow]) -> Result<(), FileError> {
-    let mut table = CsvWriter::create(path, LAYOUT)?;
-    for star in stars {
-        table.write([star.id.to_string(), cell(star.ra_deg), cell(star.dec_deg), cell(star.magnitude)])?;
-    }
+    let mut table = CsvWriter::create(path)?;
+    stars.iter().try_for_each(|star| table.line(star))?;
     table.finish()
 }
 
@@ -51,23 +48,19 @@ pub fn write_stars(path: &Path, stars: &[StarRow]) -> Result<(), FileError> {
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be.
 pub fn read_stars(path: &Path) -> Result<Vec<StarRow>, FileError> {
-    let mut table = CsvReader::open(path, LAYOUT)?;
-    let mut stars: Vec<StarRow> = Vec::new();
-    while let Some(row) = table.next_row()? {
-        let [ra_deg, dec_deg, magnitude] = row.numbers(["ra_deg", "dec_deg", "magnitude"])?;
-        let id = row.count("id")?;
-        if stars.last().is_some_and(|last| id <= last.id) {
+    CsvReader::open::<StarRow>(path)?.read_rows(|row, previous: Option<&StarRow>| {
+        let star = StarRow::read(row)?;
+        if previous.is_some_and(|previous| star.id <= previous.id) {
             return Err(row.error("id", "more than that of the row before (each star once, ascending)"));
         }
-        if !(0.0..=360.0).contains(&ra_deg) {
+        if !(0.0..=360.0).contains(&star.ra_deg) {
             return Err(row.error("ra_deg", "0 to 360"));
         }
-        if !(-90.0..=90.0).contains(&dec_deg) {
+        if !(-90.0..=90.0).contains(&star.dec_deg) {
             return Err(row.error("dec_deg", "-90 to 90"));
         }
-        stars.push(StarRow { id, ra_deg, dec_deg, magnitude });
-    }
-    Ok(stars)
+        Ok(star)
+    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! Columns of a flat table in memory: a name, a type, and a vector of values.
 
 use std::fmt;
+use std::num::ParseIntError;
+use std::str::FromStr;
 
 /// Type of a column. Displayed by its name in Arrow, which error messages and documentation use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +41,14 @@ impl fmt::Display for ColumnType {
 /// timestamp.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Nanoseconds(pub i64);
+
+impl FromStr for Nanoseconds {
+    type Err = ParseIntError;
+
+    fn from_str(text: &str) -> Result<Self, ParseIntError> {
+        text.parse().map(Self)
+    }
+}
 
 /// Values of a column, one per row.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,7 +130,15 @@ impl ColumnValues {
 }
 
 /// Value of a fixed size that a column may hold.
-pub trait Cell: Copy + Default {
+pub trait Cell: Copy + Default + fmt::Debug + FromStr {
+    /// The type of the column.
+    const TYPE: ColumnType;
+    /// What the cell of a CSV must be.
+    const EXPECTED: &'static str;
+    /// Whether a table may hold the value: no table has NaN or infinity.
+    fn is_sound(&self) -> bool {
+        true
+    }
     /// The column's values from its cells.
     fn values(cells: Cells<Self>) -> ColumnValues;
     /// The cells, if the column is of this type.
@@ -128,8 +146,15 @@ pub trait Cell: Copy + Default {
 }
 
 macro_rules! cell {
-    ($value:ty, $variant:ident) => {
+    ($value:ty, $variant:ident, $expected:literal $(, $is_sound:expr)?) => {
         impl Cell for $value {
+            const TYPE: ColumnType = ColumnType::$variant;
+            const EXPECTED: &'static str = $expected;
+
+            $(fn is_sound(&self) -> bool {
+                $is_sound(*self)
+            })?
+
             fn values(cells: Cells<Self>) -> ColumnValues {
                 ColumnValues::$variant(cells)
             }
@@ -144,12 +169,12 @@ macro_rules! cell {
     };
 }
 
-cell!(bool, Boolean);
-cell!(u32, UInt32);
-cell!(u64, UInt64);
-cell!(f32, Float32);
-cell!(f64, Float64);
-cell!(Nanoseconds, Timestamp);
+cell!(bool, Boolean, "true or false");
+cell!(u32, UInt32, "a whole number, 0 or greater");
+cell!(u64, UInt64, "a whole number, 0 or greater");
+cell!(f32, Float32, "a finite number", f32::is_finite);
+cell!(f64, Float64, "a finite number", f64::is_finite);
+cell!(Nanoseconds, Timestamp, "nanoseconds since 1970");
 
 /// Values of a fixed size, any of which may be null.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -223,13 +248,13 @@ impl<T: Copy + Default> Cells<T> {
 impl<T: Copy + Default> FromIterator<Option<T>> for Cells<T> {
     fn from_iter<I: IntoIterator<Item = Option<T>>>(cells: I) -> Self {
         let cells = cells.into_iter();
-        let (rows, _) = cells.size_hint();
-        let (mut values, mut is_valid) = (Vec::with_capacity(rows), Vec::with_capacity(rows));
+        let (mut values, mut is_valid) = (Vec::with_capacity(cells.size_hint().0), None);
         for cell in cells {
+            if cell.is_none() || is_valid.is_some() {
+                is_valid.get_or_insert_with(|| vec![true; values.len()]).push(cell.is_some());
+            }
             values.push(cell.unwrap_or_default());
-            is_valid.push(cell.is_some());
         }
-        let is_valid = is_valid.contains(&false).then_some(is_valid);
         Self { values, is_valid }
     }
 }

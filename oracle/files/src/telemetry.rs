@@ -2,31 +2,38 @@
 
 use std::path::Path;
 
-use contract::{Rotation, Telemetry, Window};
+use contract::{Body, Icrs, Rotation, Telemetry, Window};
 use nalgebra::Vector3;
 
-use super::csv_table::Presence::{Optional, Required};
-use super::csv_table::{CsvReader, CsvRow, CsvWriter, Layout, cell, cells};
+use super::csv_table::{CsvLine, CsvReader, CsvRow, CsvWriter};
+use super::table::{optional, table};
 use super::time::{format_utc, parse_utc};
 use super::{FileError, windows};
 
-const QUATERNION: [&str; 4] = ["q_sc_j2000_w", "q_sc_j2000_x", "q_sc_j2000_y", "q_sc_j2000_z"];
+/// Components of the velocity.
 const VELOCITY: [&str; 3] = ["v_orbital_j2000_x_km_s", "v_orbital_j2000_y_km_s", "v_orbital_j2000_z_km_s"];
 
-const LAYOUT: Layout = &[
-    ("frame", Required),
-    ("file", Optional),
-    ("time_utc", Required),
-    ("exposure_s", Required),
-    (QUATERNION[0], Required),
-    (QUATERNION[1], Required),
-    (QUATERNION[2], Required),
-    (QUATERNION[3], Required),
-    (VELOCITY[0], Optional),
-    (VELOCITY[1], Optional),
-    (VELOCITY[2], Optional),
-    ("windows", Optional),
-];
+table! {
+    /// A row of the file.
+    pub struct TelemetryLine: csv {
+        /// number of the frame; ascending, gaps allowed
+        frame: u64,
+        /// its image, a path below the directory; empty when none was saved. `process` needs it
+        file: String = optional(["file"]),
+        /// middle of the exposure: 2012-04-25T13:02:07.250000000Z; up to nine decimals, `Z` is a must; ascending. Second 60 is read only
+        /// where a leap second was inserted
+        time_utc: String,
+        /// exposure time, s, 0 or more
+        exposure_s: f64,
+        /// measured attitude of the spacecraft, norm 1 within 1e-5
+        body_from_icrs: Rotation<Body, Icrs> = ["q_sc_j2000_w", "q_sc_j2000_x", "q_sc_j2000_y", "q_sc_j2000_z"],
+        /// measured velocity about the Earth, km/s, ICRS axes, at most 100 km/s; all three or none
+        velocity_km_s: Option<Vector3<f64>> = optional(VELOCITY),
+        /// transmitted regions `x y columns rows`, separated by `;`; `none` when nothing was; empty when the whole image was, or when
+        /// the image's own header tells
+        windows: String = optional(["windows"]),
+    }
+}
 
 /// Faster than any orbit about the Earth, km/s: beyond it the unit is wrong.
 const FASTEST_KM_S: f64 = 100.0;
@@ -44,39 +51,31 @@ pub struct TelemetryRow {
     pub windows: Option<Vec<Window>>,
 }
 
+impl From<&TelemetryRow> for TelemetryLine {
+    fn from(row: &TelemetryRow) -> Self {
+        let Telemetry { time, exposure_s, body_from_icrs, velocity_km_s } = row.telemetry;
+        Self {
+            frame: row.frame,
+            file: row.file.clone().unwrap_or_default(),
+            time_utc: format_utc(time),
+            exposure_s,
+            body_from_icrs,
+            velocity_km_s,
+            windows: windows::format(row.windows.as_deref()),
+        }
+    }
+}
+
 /// Writes the table row by row.
-pub struct TelemetryWriter(CsvWriter);
+pub type TelemetryWriter = CsvWriter<TelemetryLine>;
 
 impl TelemetryWriter {
-    /// Creates the table.
-    ///
-    /// # Errors
-    /// [`FileError::Io`] when the file exists or cannot be created.
-    pub fn create(path: &Path) -> Result<Self, FileError> {
-        CsvWriter::create(path, LAYOUT).map(Self)
-    }
-
-    /// Writes one row. Numbers are written so that they read back to the same bits, the time to the nanosecond.
+    /// Writes one row, the time to the nanosecond.
     ///
     /// # Errors
     /// [`FileError::Io`].
     pub fn write(&mut self, row: &TelemetryRow) -> Result<(), FileError> {
-        let telemetry = &row.telemetry;
-        let time = format_utc(telemetry.time);
-        let start =
-            [row.frame.to_string(), row.file.clone().unwrap_or_default(), time, cell(telemetry.exposure_s)];
-        let quaternion = telemetry.body_from_icrs.wxyz().map(cell);
-        let velocity = cells(telemetry.velocity_km_s.map(Into::into));
-        let end = [windows::format(row.windows.as_deref())];
-        self.0.write(start.into_iter().chain(quaternion).chain(velocity).chain(end))
-    }
-
-    /// Completes the file.
-    ///
-    /// # Errors
-    /// [`FileError::Io`].
-    pub fn finish(self) -> Result<(), FileError> {
-        self.0.finish()
+        self.line(&row.into())
     }
 }
 
@@ -91,27 +90,25 @@ pub fn read_telemetry(path: &Path) -> Result<Vec<TelemetryRow>, FileError> {
 
 /// As [`read_telemetry`], each row with its line in the file.
 pub(super) fn read_with_lines(path: &Path) -> Result<Vec<(u64, TelemetryRow)>, FileError> {
-    CsvReader::open(path, LAYOUT)?.read_all(parse)
+    CsvReader::open::<TelemetryLine>(path)?.read_all(parse)
 }
 
 fn parse(row: &CsvRow<'_>, previous: Option<&TelemetryRow>) -> Result<TelemetryRow, FileError> {
-    let frame = row.frame_after(previous.map(|row| row.frame))?;
-    let time = parse_utc(row.text("time_utc").trim()).map_err(|expected| row.error("time_utc", expected))?;
+    let TelemetryLine { frame, file, time_utc, exposure_s, body_from_icrs, velocity_km_s, windows } =
+        TelemetryLine::read(row)?;
+    row.check_ascends("frame", frame, previous.map(|row| row.frame))?;
+    let time = parse_utc(time_utc.trim()).map_err(|expected| row.error("time_utc", expected))?;
     if previous.is_some_and(|previous| time <= previous.telemetry.time) {
         return Err(row.error("time_utc", "later than the time of the row above"));
     }
-    let exposure_s = row.number("exposure_s")?;
     if exposure_s < 0.0 {
         return Err(row.error("exposure_s", "0 or greater"));
     }
-    let body_from_icrs = Rotation::from_wxyz(row.numbers(QUATERNION)?)
-        .map_err(|error| row.error(QUATERNION[0], format!("a unit quaternion: {error}")))?;
-    let velocity_km_s = row.optional_numbers(VELOCITY)?.map(Vector3::from);
     if velocity_km_s.is_some_and(|velocity| velocity.norm() > FASTEST_KM_S) {
         return Err(row.error(VELOCITY[0], "a velocity about the Earth of at most 100 km/s"));
     }
-    let windows = windows::parse(row.text("windows")).map_err(|expected| row.error("windows", expected))?;
-    let file = Some(row.text("file")).filter(|file| !file.is_empty()).map(str::to_owned);
+    let windows = windows::parse(&windows).map_err(|expected| row.error("windows", expected))?;
+    let file = Some(file).filter(|file| !file.is_empty());
     let telemetry = Telemetry { time, exposure_s, body_from_icrs, velocity_km_s };
     Ok(TelemetryRow { frame, file, telemetry, windows })
 }

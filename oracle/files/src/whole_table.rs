@@ -8,15 +8,12 @@ use super::csv_table::csv_error;
 use super::error::{Place, open_regular};
 use super::lines::Lines;
 use super::parquet_file::ParquetFile;
-use super::table_column::Column;
+use super::table::Declared;
+use super::table_column::{Column, ColumnType};
+use super::tables::csv_tables;
 
 /// Rows of a part of a table that is handed on.
 const PART_ROWS: usize = 8192;
-
-/// Columns of our CSV tables that hold whole numbers from 0.
-const WHOLE: [&str; 6] = ["frame", "field", "n_stars", "camera", "id", "fields"];
-/// Those that hold words. All others hold floating-point numbers.
-const WORDS: [&str; 7] = ["status", "attitude", "file", "time_utc", "windows", "lines", "estimator"];
 
 /// A table in memory.
 #[derive(Debug, Clone)]
@@ -39,7 +36,8 @@ pub fn read_parquet_table(path: &Path) -> Result<WholeTable, FileError> {
     Ok(WholeTable { header, parts: batches.collect::<Result<_, _>>()? })
 }
 
-/// Reads one of our CSV tables, each column of the type that its name has. An empty cell is null.
+/// Reads one of our CSV tables, each column of the type that its name has in them: 64-bit counts, texts, or floating-point numbers, as
+/// which others are read too. An empty cell is null.
 ///
 /// # Errors
 /// [`FileError`] for a file that cannot be read, or a cell that is no number where its column holds numbers.
@@ -49,14 +47,16 @@ pub fn read_csv_table(path: &Path) -> Result<Vec<Column>, FileError> {
     let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
     let rows: Result<Vec<csv::StringRecord>, _> = reader.records().collect();
     let rows = rows.map_err(|error| csv_error(path, &error))?;
+    let fields: Vec<Declared> = csv_tables().into_iter().flat_map(|(_, fields)| fields).collect();
     let column = |(index, name): (usize, &str)| {
         let cells = rows.iter().map(|row| row.get(index).filter(|cell| !cell.is_empty()));
-        Ok(if WHOLE.contains(&name) {
-            Column::nullable(name, numbers::<u64>(path, name, cells)?)
-        } else if WORDS.contains(&name) {
-            Column::nullable_texts(name, cells)
-        } else {
-            Column::nullable(name, numbers::<f64>(path, name, cells)?)
+        let is_of_name = |field: &&Declared| field.names.contains(&name);
+        Ok(match fields.iter().find(is_of_name).map(|field| field.column_type) {
+            Some(ColumnType::UInt32 | ColumnType::UInt64) => {
+                Column::nullable(name, numbers::<u64>(path, name, cells)?)
+            }
+            Some(ColumnType::Utf8) => Column::nullable_texts(name, cells),
+            _ => Column::nullable(name, numbers::<f64>(path, name, cells)?),
         })
     };
     header.iter().enumerate().map(column).collect()

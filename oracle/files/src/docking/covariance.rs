@@ -3,10 +3,27 @@
 use nalgebra::{Matrix6, Vector6};
 
 use super::super::FileError;
-use super::super::csv_table::{CsvRow, cell};
+use super::super::csv_table::CsvRow;
 
 /// Cells of the upper triangle.
 pub(super) const CELLS: usize = 21;
+
+/// The names of the cells, from those of the six.
+macro_rules! upper_triangle {
+    ($($name:literal)+) => {
+        $crate::docking::covariance::upper_triangle!(@ [] $($name)+)
+    };
+    (@ [$($cell:expr,)*] $first:literal $($rest:literal)*) => {
+        $crate::docking::covariance::upper_triangle!(
+            @ [$($cell,)* concat!("cov_", $first, "_", $first), $(concat!("cov_", $first, "_", $rest),)*] $($rest)*
+        )
+    };
+    (@ [$($cell:expr,)*]) => {
+        [$($cell),*]
+    };
+}
+
+pub(super) use upper_triangle;
 
 /// The places of the upper triangle, row by row.
 fn places() -> impl Iterator<Item = (usize, usize)> {
@@ -14,10 +31,10 @@ fn places() -> impl Iterator<Item = (usize, usize)> {
 }
 
 /// The cells of a covariance; `scale` takes each of the six to the unit of the file.
-pub(super) fn to_cells(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> [String; CELLS] {
-    let mut cells = [const { String::new() }; CELLS];
-    for (text, (i, j)) in cells.iter_mut().zip(places()) {
-        *text = cell(covariance[(i, j)] * scale[i] * scale[j]);
+pub(super) fn to_cells(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> [f64; CELLS] {
+    let mut cells = [0.0; CELLS];
+    for (cell, (i, j)) in cells.iter_mut().zip(places()) {
+        *cell = covariance[(i, j)] * scale[i] * scale[j];
     }
     cells
 }
@@ -34,17 +51,18 @@ pub(super) fn as_filed(covariance: &Matrix6<f64>, scale: &Vector6<f64>) -> Matri
     filed
 }
 
-/// The covariance that the cells say; `None` when all of them are empty.
+/// The covariance that the cells of these columns say, if they say one.
 #[expect(clippy::indexing_slicing, reason = "the places are those of a matrix of six")]
-pub(super) fn read(
+pub(super) fn of_cells(
     row: &CsvRow<'_>,
     columns: [&'static str; CELLS],
+    cells: Option<[f64; CELLS]>,
     scale: &Vector6<f64>,
 ) -> Result<Option<Matrix6<f64>>, FileError> {
-    let Some(values) = row.optional_numbers(columns)? else { return Ok(None) };
+    let Some(cells) = cells else { return Ok(None) };
     let mut covariance = Matrix6::zeros();
-    for ((value, column), (i, j)) in values.iter().zip(columns).zip(places()) {
-        if i == j && *value < 0.0 {
+    for ((value, column), (i, j)) in cells.into_iter().zip(columns).zip(places()) {
+        if i == j && value < 0.0 {
             return Err(row.error(column, "a variance, 0 or greater"));
         }
         let entry = value / (scale[i] * scale[j]);

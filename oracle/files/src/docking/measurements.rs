@@ -1,6 +1,5 @@
 //! `measurements.csv` of a docking run: a pipeline's answer to each field, ours or anybody's.
 
-use std::io::Write;
 use std::path::Path;
 
 use contract::docking::{
@@ -9,13 +8,15 @@ use contract::docking::{
 use nalgebra::{Matrix6, Vector3, Vector6};
 
 use super::super::FileError;
-use super::super::csv_table::Presence::{Optional, Required};
-use super::super::csv_table::{CsvReader, CsvRow, CsvWriter, Layout, Presence, cells};
+use super::super::csv_table::{CsvLine, CsvReader, CsvRow, CsvWriter};
+use super::super::field::Atom;
+use super::super::table::{optional, table};
 use super::covariance::{self, CELLS};
+use super::pose::{self, POSE};
 
-const POSE: [&str; 6] = ["d1_m", "d2_m", "d3_m", "phi1_deg", "phi2_deg", "phi3_deg"];
 const SIGMA: [&str; 6] =
     ["sigma_d1_m", "sigma_d2_m", "sigma_d3_m", "sigma_phi1_deg", "sigma_phi2_deg", "sigma_phi3_deg"];
+/// A range alone, and its standard deviation.
 const RANGE: [&str; 2] = ["range_m", "sigma_range_m"];
 const COVARIANCE: [&str; CELLS] = [
     "cov_d1_d1_m2",
@@ -40,30 +41,30 @@ const COVARIANCE: [&str; CELLS] = [
     "cov_phi2_phi3_deg2",
     "cov_phi3_phi3_deg2",
 ];
-const PAPER: [&str; 6] =
-    ["paper_d1_m", "paper_d2_m", "paper_d3_m", "paper_phi1_deg", "paper_phi2_deg", "paper_phi3_deg"];
 
-#[expect(clippy::indexing_slicing, reason = "a constant: out of bounds it would not compile")]
-const LAYOUT: [(&str, Presence); 43] = {
-    let mut layout = [("field", Required); 43];
-    layout[1] = ("status", Required);
-    let mut i = 0;
-    while i < 6 {
-        layout[2 + i] = (POSE[i], Required);
-        layout[8 + i] = (SIGMA[i], Optional);
-        layout[37 + i] = (PAPER[i], Optional);
-        i += 1;
+table! {
+    /// A row of the file.
+    pub struct FieldMeasurementLine: csv {
+        /// number of the field; ascending, each once
+        field: u64,
+        /// `measured`; `range_only`; or why not: `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`,
+        /// `too_few_features`, `inconsistent`, `failed: ` and a reason. Any other text is a failure with that reason
+        status: String,
+        /// the pose; empty unless `measured`
+        pose: Option<Pose> = POSE,
+        /// standard deviations; all six or none
+        sigma: Option<[f64; 6]> = optional(SIGMA),
+        /// d3 of `range_only`
+        range_m: Option<f64> = optional([RANGE[0]]),
+        /// its standard deviation
+        sigma_range_m: Option<f64> = optional([RANGE[1]]),
+        /// upper triangle of the covariance; all or none; without it the standard deviations are taken for uncorrelated
+        covariance: Option<[f64; CELLS]> = optional(COVARIANCE),
+        /// pose by the paper's formulas; all six or none
+        paper: Option<Pose> =
+            optional(["paper_d1_m", "paper_d2_m", "paper_d3_m", "paper_phi1_deg", "paper_phi2_deg", "paper_phi3_deg"]),
     }
-    layout[14] = (RANGE[0], Optional);
-    layout[15] = (RANGE[1], Optional);
-    i = 0;
-    while i < CELLS {
-        layout[16 + i] = (COVARIANCE[i], Optional);
-        i += 1;
-    }
-    layout
-};
-const COLUMNS: Layout = &LAYOUT;
+}
 
 /// The status of a row that has a pose.
 const MEASURED: &str = "measured";
@@ -77,92 +78,49 @@ fn scale() -> Vector6<f64> {
 }
 
 /// Writes the table row by row.
-pub struct FieldMeasurementWriter(CsvWriter);
+pub type FieldMeasurementWriter = CsvWriter<FieldMeasurementLine>;
 
 impl FieldMeasurementWriter {
-    /// Creates the table.
-    ///
-    /// # Errors
-    /// [`FileError::Io`] when the file exists or cannot be created.
-    pub fn create(path: &Path) -> Result<Self, FileError> {
-        CsvWriter::create(path, COLUMNS).map(Self)
-    }
-
-    /// Writes the table to a stream that goes by `name` in messages, each row as soon as it is there.
-    ///
-    /// # Errors
-    /// [`FileError::Io`].
-    pub fn stream(name: &str, out: impl Write + 'static) -> Result<Self, FileError> {
-        CsvWriter::stream(name, out, COLUMNS).map(Self)
-    }
-
     /// Writes the answer to one field. Features and motion have tables of their own.
     ///
     /// # Errors
     /// [`FileError::Io`].
     pub fn write(&mut self, field: u64, outcome: &DockingOutcome) -> Result<(), FileError> {
-        let status = match &outcome.solution {
-            DockingSolution::Measured(_) => MEASURED.to_owned(),
-            DockingSolution::RangeOnly { .. } => RANGE_ONLY.to_owned(),
-            DockingSolution::NoSolution(reason) => reason.to_string(),
+        let (status, range) = match &outcome.solution {
+            DockingSolution::Measured(_) => (MEASURED.to_owned(), None),
+            DockingSolution::RangeOnly { range_m, sigma_m } => {
+                (RANGE_ONLY.to_owned(), Some((*range_m, *sigma_m)))
+            }
+            DockingSolution::NoSolution(reason) => (reason.to_string(), None),
         };
         let measurement = outcome.measurement();
         let best = measurement.map(|measurement| &measurement.best);
-        let range = match outcome.solution {
-            DockingSolution::RangeOnly { range_m, sigma_m } => Some([range_m, sigma_m]),
-            _ => None,
+        let sigma = |covariance: &Matrix6<f64>| {
+            covariance.diagonal().map(|variance| variance.max(0.0).sqrt()).component_mul(&scale()).into()
         };
-        let sigmas: Option<[f64; 6]> = best.map(|best| {
-            best.covariance.diagonal().map(|variance| variance.max(0.0).sqrt()).component_mul(&scale()).into()
-        });
-        let covariance = best.map_or([const { String::new() }; CELLS], |best| {
-            covariance::to_cells(&best.covariance, &scale())
-        });
-        let paper = measurement.and_then(|measurement| measurement.paper);
-        self.0.write(
-            [field.to_string(), status]
-                .into_iter()
-                .chain(cells(best.map(|best| in_files(&best.pose))))
-                .chain(cells(sigmas))
-                .chain(cells(range))
-                .chain(covariance)
-                .chain(cells(paper.map(|pose| in_files(&pose)))),
-        )
-    }
-
-    /// Completes the file.
-    ///
-    /// # Errors
-    /// [`FileError::Io`].
-    pub fn finish(self) -> Result<(), FileError> {
-        self.0.finish()
-    }
-}
-
-/// Position in metres, angles in degrees.
-fn in_files(pose: &Pose) -> [f64; 6] {
-    let (d, phi) = (&pose.position_m, &pose.phi_rad);
-    [d.x, d.y, d.z, phi.x.to_degrees(), phi.y.to_degrees(), phi.z.to_degrees()]
-}
-
-fn from_files([d1, d2, d3, phi1, phi2, phi3]: [f64; 6]) -> Pose {
-    Pose {
-        position_m: Vector3::new(d1, d2, d3),
-        phi_rad: Vector3::new(phi1.to_radians(), phi2.to_radians(), phi3.to_radians()),
+        self.line(&FieldMeasurementLine {
+            field,
+            status,
+            pose: best.map(|best| best.pose),
+            sigma: best.map(|best| sigma(&best.covariance)),
+            range_m: range.map(|(range_m, _)| range_m),
+            sigma_range_m: range.map(|(_, sigma_m)| sigma_m),
+            covariance: best.map(|best| covariance::to_cells(&best.covariance, &scale())),
+            paper: measurement.and_then(|measurement| measurement.paper),
+        })
     }
 }
 
 /// The answer as it comes back from the file, without features and motion: angles have changed their unit twice, which may
 /// move their last bit. A score of the run is made of these, so that one of the files is the same to the bit.
 pub fn outcome_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
-    let as_filed = |pose: &Pose| from_files(in_files(pose));
     let solution = match &outcome.solution {
         DockingSolution::Measured(measurement) => DockingSolution::Measured(Box::new(FieldMeasurement {
             best: PoseEstimate {
-                pose: as_filed(&measurement.best.pose),
+                pose: pose::as_filed(&measurement.best.pose),
                 covariance: covariance::as_filed(&measurement.best.covariance, &scale()),
             },
-            paper: measurement.paper.as_ref().map(as_filed),
+            paper: measurement.paper.as_ref().map(pose::as_filed),
         })),
         other => other.clone(),
     };
@@ -174,52 +132,43 @@ pub fn outcome_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be.
 pub fn read_field_measurements(path: &Path) -> Result<Vec<(u64, DockingOutcome)>, FileError> {
-    let mut table = CsvReader::open(path, COLUMNS)?;
-    let mut outcomes: Vec<(u64, DockingOutcome)> = Vec::new();
-    while let Some(row) = table.next_row()? {
-        let field = row.number_after("field", outcomes.last().map(|(field, _)| *field))?;
-        let solution = solution(&row)?;
-        let outcome =
-            DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None };
-        outcomes.push((field, outcome));
-    }
-    Ok(outcomes)
+    let table = CsvReader::open::<FieldMeasurementLine>(path)?;
+    table.read_rows(|row, previous: Option<&(u64, DockingOutcome)>| {
+        let field = row.cell("field")?;
+        row.check_ascends("field", field, previous.map(|(field, _)| *field))?;
+        let solution = solution(row)?;
+        Ok((field, DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None }))
+    })
 }
 
 fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
     // Not trimmed for the reason of none: it is kept to the letter.
     let status = row.text("status");
-    // Numbers under a status that has none are an answer under a misspelt word: counted as a miss, it would be lost in
-    // silence.
-    let empty = |columns: &[&'static str]| {
-        let full = columns.iter().find(|column| !row.text(column).trim().is_empty());
-        full.map_or(Ok(()), |column| Err(row.error(column, format!("nothing, as the status is `{status}`"))))
-    };
     match status.trim() {
         "" => Err(row.error("status", "`measured`, `range_only`, or the reason why there is nothing")),
         MEASURED => {
-            empty(&RANGE)?;
-            let pose = from_files(row.numbers(POSE)?);
+            row.check_empty(RANGE)?;
+            let line = FieldMeasurementLine::read(row)?;
+            let pose = line.pose.ok_or_else(|| row.error(POSE[0], f64::EXPECTED))?;
             if pose.position_m == Vector3::zeros() {
                 return Err(row.error(POSE[2], "a camera that is not inside the target"));
             }
-            let paper = row.optional_numbers(PAPER)?.map(from_files);
-            let best = PoseEstimate { pose, covariance: covariance(row)? };
-            Ok(DockingSolution::Measured(Box::new(FieldMeasurement { best, paper })))
+            let best = PoseEstimate { pose, covariance: covariance(row, &line)? };
+            Ok(DockingSolution::Measured(Box::new(FieldMeasurement { best, paper: line.paper })))
         }
         RANGE_ONLY => {
-            empty(&POSE)?;
-            let range_m = row.number(RANGE[0])?;
+            row.check_empty(POSE)?;
+            let range_m = row.cell(RANGE[0])?;
             let told = !row.text(RANGE[1]).trim().is_empty();
-            let sigma_m = if told { row.number(RANGE[1])? } else { 0.0 };
+            let sigma_m = if told { row.cell(RANGE[1])? } else { 0.0 };
             if sigma_m < 0.0 {
                 return Err(row.error(RANGE[1], "0 or greater"));
             }
             Ok(DockingSolution::RangeOnly { range_m, sigma_m })
         }
         _ => {
-            empty(&POSE)?;
-            empty(&RANGE)?;
+            row.check_empty(POSE)?;
+            row.check_empty(RANGE)?;
             Ok(DockingSolution::NoSolution(NoPose::parse(status)))
         }
     }
@@ -227,17 +176,12 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
 
 /// The covariance; without its cells that of the standard deviations, uncorrelated; without these zero, which says
 /// nothing.
-fn covariance(row: &CsvRow<'_>) -> Result<Matrix6<f64>, FileError> {
-    let sigmas = row.optional_numbers(SIGMA)?;
-    for (sigma, column) in sigmas.iter().flatten().zip(SIGMA) {
-        if *sigma < 0.0 {
-            return Err(row.error(column, "0 or greater"));
-        }
-    }
-    if let Some(covariance) = covariance::read(row, COVARIANCE, &scale())? {
+fn covariance(row: &CsvRow<'_>, line: &FieldMeasurementLine) -> Result<Matrix6<f64>, FileError> {
+    row.check_sigmas(SIGMA, line.sigma)?;
+    if let Some(covariance) = covariance::of_cells(row, COVARIANCE, line.covariance, &scale())? {
         return Ok(covariance);
     }
-    let sigmas = Vector6::from(sigmas.unwrap_or_default()).component_div(&scale());
+    let sigmas = Vector6::from(line.sigma.unwrap_or_default()).component_div(&scale());
     Ok(Matrix6::from_diagonal(&sigmas.component_mul(&sigmas)))
 }
 

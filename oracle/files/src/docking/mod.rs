@@ -4,11 +4,15 @@ mod covariance;
 mod features;
 mod measurements;
 mod motion;
+mod pose;
 mod setup;
 mod truth;
 
 pub use features::FeatureRow;
+pub(super) use measurements::FieldMeasurementLine;
 pub use measurements::{FieldMeasurementWriter, outcome_as_filed, read_field_measurements};
+pub(super) use motion::MotionLine;
 pub use motion::{MotionWriter, read_motion, report_as_filed};
 pub use setup::SetupFile;
+pub(super) use truth::FieldTruthRow;
 pub use truth::truth_as_filed;

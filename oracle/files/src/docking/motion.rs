@@ -8,11 +8,11 @@ use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use score::docking::Shown;
 
 use super::super::FileError;
-use super::super::csv_table::Presence::{Optional, Required};
-use super::super::csv_table::{CsvReader, CsvRow, CsvWriter, Layout, Presence, cell, cells};
-use super::covariance::{self, CELLS};
+use super::super::csv_table::{CsvLine, CsvReader, CsvRow, CsvWriter};
+use super::super::table::{optional, table};
+use super::covariance::{self, CELLS, upper_triangle};
+use super::pose::{self, angle_as_filed};
 
-const SHOWN: [&str; 7] = ["rho_m", "u_m_s", "alpha_deg", "beta_deg", "phi1_deg", "phi2_deg", "phi3_deg"];
 const SIGMA: [&str; 7] = [
     "sigma_rho_m",
     "sigma_u_m_s",
@@ -22,7 +22,26 @@ const SIGMA: [&str; 7] = [
     "sigma_phi2_deg",
     "sigma_phi3_deg",
 ];
-const STATE: [&str; 9] = [
+const POSITION: [&str; CELLS] = upper_triangle!("d1" "d2" "d3" "d1_rate" "d2_rate" "d3_rate");
+const ATTITUDE: [&str; CELLS] = upper_triangle!("phi1" "phi2" "phi3" "phi1_rate" "phi2_rate" "phi3_rate");
+
+table! {
+    /// A row of the file.
+    pub struct MotionLine: csv {
+        /// number of the field at which it is said; ascending
+        field: u64,
+        /// `best`, or `paper`: in the row after it, or alone where the best estimator gave no motion; `best` when empty
+        estimator: String = optional(["estimator"]),
+        /// the moment, s since the beginning of the sequence
+        time_s: f64,
+        /// fields of the portion that were measured
+        fields: Option<u32> = optional(["fields"]),
+        /// ρ, u, α, β and φ, the parameters of figures 5 and 6 of the docking paper
+        shown: [f64; 7] = ["rho_m", "u_m_s", "alpha_deg", "beta_deg", "phi1_deg", "phi2_deg", "phi3_deg"],
+        /// their standard deviations; all or none
+        sigma: Option<[f64; 7]> = optional(SIGMA),
+        /// position, velocity and rates of φ; all or none
+        state: Option<[f64; 9]> = optional([
     "d1_m",
     "d2_m",
     "d3_m",
@@ -32,54 +51,13 @@ const STATE: [&str; 9] = [
     "phi1_rate_deg_s",
     "phi2_rate_deg_s",
     "phi3_rate_deg_s",
-];
-const POSITION: [&str; CELLS] = [
-    "cov_d1_d1",
-    "cov_d1_d2",
-    "cov_d1_d3",
-    "cov_d1_d1_rate",
-    "cov_d1_d2_rate",
-    "cov_d1_d3_rate",
-    "cov_d2_d2",
-    "cov_d2_d3",
-    "cov_d2_d1_rate",
-    "cov_d2_d2_rate",
-    "cov_d2_d3_rate",
-    "cov_d3_d3",
-    "cov_d3_d1_rate",
-    "cov_d3_d2_rate",
-    "cov_d3_d3_rate",
-    "cov_d1_rate_d1_rate",
-    "cov_d1_rate_d2_rate",
-    "cov_d1_rate_d3_rate",
-    "cov_d2_rate_d2_rate",
-    "cov_d2_rate_d3_rate",
-    "cov_d3_rate_d3_rate",
-];
-const ATTITUDE: [&str; CELLS] = [
-    "cov_phi1_phi1",
-    "cov_phi1_phi2",
-    "cov_phi1_phi3",
-    "cov_phi1_phi1_rate",
-    "cov_phi1_phi2_rate",
-    "cov_phi1_phi3_rate",
-    "cov_phi2_phi2",
-    "cov_phi2_phi3",
-    "cov_phi2_phi1_rate",
-    "cov_phi2_phi2_rate",
-    "cov_phi2_phi3_rate",
-    "cov_phi3_phi3",
-    "cov_phi3_phi1_rate",
-    "cov_phi3_phi2_rate",
-    "cov_phi3_phi3_rate",
-    "cov_phi1_rate_phi1_rate",
-    "cov_phi1_rate_phi2_rate",
-    "cov_phi1_rate_phi3_rate",
-    "cov_phi2_rate_phi2_rate",
-    "cov_phi2_rate_phi3_rate",
-    "cov_phi3_rate_phi3_rate",
-];
-const CROSS: [&str; 9] = [
+]),
+        /// upper triangle of the covariance of (d, d'), in m and s; all or none
+        position_covariance: Option<[f64; CELLS]> = optional(POSITION),
+        /// upper triangle of the covariance of (φ, φ'), in degrees and s; all or none
+        attitude_covariance: Option<[f64; CELLS]> = optional(ATTITUDE),
+        /// covariance of (d, φ), in m and degrees; all or none
+        cross_covariance: Option<[f64; 9]> = optional([
     "cov_d1_phi1",
     "cov_d1_phi2",
     "cov_d1_phi3",
@@ -89,35 +67,9 @@ const CROSS: [&str; 9] = [
     "cov_d3_phi1",
     "cov_d3_phi2",
     "cov_d3_phi3",
-];
-
-#[expect(clippy::indexing_slicing, reason = "a constant: out of bounds it would not compile")]
-const LAYOUT: [(&str, Presence); 78] = {
-    let mut layout = [("field", Required); 78];
-    layout[1] = ("estimator", Optional);
-    layout[2] = ("time_s", Required);
-    layout[3] = ("fields", Optional);
-    let mut i = 0;
-    while i < 7 {
-        layout[4 + i] = (SHOWN[i], Required);
-        layout[11 + i] = (SIGMA[i], Optional);
-        i += 1;
+]),
     }
-    i = 0;
-    while i < 9 {
-        layout[18 + i] = (STATE[i], Optional);
-        layout[69 + i] = (CROSS[i], Optional);
-        i += 1;
-    }
-    i = 0;
-    while i < CELLS {
-        layout[27 + i] = (POSITION[i], Optional);
-        layout[48 + i] = (ATTITUDE[i], Optional);
-        i += 1;
-    }
-    layout
-};
-const COLUMNS: Layout = &LAYOUT;
+}
 
 /// The word of the pipeline's own best estimator; the one without a word.
 const BEST: &str = "best";
@@ -130,32 +82,37 @@ fn degrees() -> Vector6<f64> {
 }
 
 /// Writes the table row by row.
-pub struct MotionWriter(CsvWriter);
+pub type MotionWriter = CsvWriter<MotionLine>;
 
 impl MotionWriter {
-    /// Creates the table.
-    ///
-    /// # Errors
-    /// [`FileError::Io`] when the file exists or cannot be created.
-    pub fn create(path: &Path) -> Result<Self, FileError> {
-        CsvWriter::create(path, COLUMNS).map(Self)
-    }
-
     /// Writes the report at a field: a row for each estimator that gave a motion.
     ///
     /// # Errors
     /// [`FileError::Io`].
     pub fn write(&mut self, field: u64, report: &MotionReport) -> Result<(), FileError> {
         for (estimator, motion) in [(BEST, &report.best), (PAPER, &report.paper)] {
-            motion.as_ref().map_or(Ok(()), |motion| self.row(field, estimator, motion))?;
+            if let Some(motion) = motion {
+                self.line(&line(field, estimator, motion))?;
+            }
         }
         Ok(())
     }
+}
 
-    fn row(&mut self, field: u64, estimator: &str, motion: &Motion) -> Result<(), FileError> {
-        let shown = Shown::of(&motion.pose, &motion.velocity_m_s);
-        let phi_deg = shown.phi_rad.map(f64::to_degrees);
-        let shown = [
+fn line(field: u64, estimator: &str, motion: &Motion) -> MotionLine {
+    let shown = Shown::of(&motion.pose, &motion.velocity_m_s);
+    let phi_deg = shown.phi_rad.map(f64::to_degrees);
+    let (d, v) = (&motion.pose.position_m, &motion.velocity_m_s);
+    let phi_rate = motion.phi_rate_rad_s.map(f64::to_degrees);
+    // Row by row, where the matrix lies column by column.
+    let cross: [[f64; 3]; 3] = motion.cross_covariance.map(f64::to_degrees).transpose().into();
+    let [[c11, c12, c13], [c21, c22, c23], [c31, c32, c33]] = cross;
+    MotionLine {
+        field,
+        estimator: estimator.to_owned(),
+        time_s: motion.time_s,
+        fields: Some(motion.fields),
+        shown: [
             shown.rho_m,
             shown.u_m_s,
             shown.alpha_rad.to_degrees(),
@@ -163,46 +120,26 @@ impl MotionWriter {
             phi_deg.x,
             phi_deg.y,
             phi_deg.z,
-        ];
-        let sigmas: Option<[f64; 7]> = Shown::sigmas(motion).map(|mut sigmas| {
+        ],
+        sigma: Shown::sigmas(motion).map(|mut sigmas| {
             sigmas.iter_mut().skip(2).for_each(|sigma| *sigma = sigma.to_degrees());
             sigmas
-        });
-        let (d, v) = (&motion.pose.position_m, &motion.velocity_m_s);
-        let phi_rate = motion.phi_rate_rad_s.map(f64::to_degrees);
-        let state = [d.x, d.y, d.z, v.x, v.y, v.z, phi_rate.x, phi_rate.y, phi_rate.z];
-        // Row by row, where the matrix lies column by column.
-        let cross: [[f64; 3]; 3] = motion.cross_covariance.map(f64::to_degrees).transpose().into();
-        self.0.write(
-            [field.to_string(), estimator.to_owned(), cell(motion.time_s), motion.fields.to_string()]
-                .into_iter()
-                .chain(shown.map(cell))
-                .chain(cells(sigmas))
-                .chain(state.map(cell))
-                .chain(covariance::to_cells(&motion.position_covariance, &Vector6::repeat(1.0)))
-                .chain(covariance::to_cells(&motion.attitude_covariance, &degrees()))
-                .chain(cross.into_iter().flatten().map(cell)),
-        )
-    }
-
-    /// Completes the file.
-    ///
-    /// # Errors
-    /// [`FileError::Io`].
-    pub fn finish(self) -> Result<(), FileError> {
-        self.0.finish()
+        }),
+        state: Some([d.x, d.y, d.z, v.x, v.y, v.z, phi_rate.x, phi_rate.y, phi_rate.z]),
+        position_covariance: Some(covariance::to_cells(&motion.position_covariance, &Vector6::repeat(1.0))),
+        attitude_covariance: Some(covariance::to_cells(&motion.attitude_covariance, &degrees())),
+        cross_covariance: Some([c11, c12, c13, c21, c22, c23, c31, c32, c33]),
     }
 }
 
 /// The report as it comes back from the file, as [`super::outcome_as_filed`].
 pub fn report_as_filed(report: &MotionReport) -> MotionReport {
-    let as_filed = |angle: f64| angle.to_degrees().to_radians();
     let motion = |motion: &Motion| Motion {
-        pose: Pose { phi_rad: motion.pose.phi_rad.map(as_filed), ..motion.pose },
-        phi_rate_rad_s: motion.phi_rate_rad_s.map(as_filed),
+        pose: pose::as_filed(&motion.pose),
+        phi_rate_rad_s: motion.phi_rate_rad_s.map(angle_as_filed),
         position_covariance: covariance::as_filed(&motion.position_covariance, &Vector6::repeat(1.0)),
         attitude_covariance: covariance::as_filed(&motion.attitude_covariance, &degrees()),
-        cross_covariance: motion.cross_covariance.map(as_filed),
+        cross_covariance: motion.cross_covariance.map(angle_as_filed),
         ..*motion
     };
     MotionReport { best: report.best.as_ref().map(motion), paper: report.paper.as_ref().map(motion) }
@@ -217,15 +154,15 @@ pub fn report_as_filed(report: &MotionReport) -> MotionReport {
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be.
 pub fn read_motion(path: &Path) -> Result<Vec<(u64, MotionReport)>, FileError> {
-    let mut table = CsvReader::open(path, COLUMNS)?;
+    let mut table = CsvReader::open::<MotionLine>(path)?;
     let mut reports: Vec<(u64, MotionReport)> = Vec::new();
     while let Some(row) = table.next_row()? {
-        let motion = Some(parse(&row)?);
-        let report = match row.text("estimator").trim() {
+        let line = MotionLine::read(&row)?;
+        let motion = Some(motion(&row, &line)?);
+        let report = match line.estimator.trim() {
             "" | BEST => MotionReport { best: motion, paper: None },
             PAPER => {
-                let field: u64 = row.count("field")?;
-                if let Some((_, report)) = reports.last_mut().filter(|(last, _)| *last == field) {
+                if let Some((_, report)) = reports.last_mut().filter(|(last, _)| *last == line.field) {
                     if report.paper.is_some() {
                         return Err(row.error("estimator", "each estimator once a field"));
                     }
@@ -236,30 +173,25 @@ pub fn read_motion(path: &Path) -> Result<Vec<(u64, MotionReport)>, FileError> {
             }
             _ => return Err(row.error("estimator", "`best`, or `paper` after it")),
         };
-        reports.push((row.number_after("field", reports.last().map(|(field, _)| *field))?, report));
+        row.check_ascends("field", line.field, reports.last().map(|(field, _)| *field))?;
+        reports.push((line.field, report));
     }
     Ok(reports)
 }
 
-fn parse(row: &CsvRow<'_>) -> Result<Motion, FileError> {
-    let [rho, u, alpha, beta, phi1, phi2, phi3] = row.numbers(SHOWN)?;
+fn motion(row: &CsvRow<'_>, line: &MotionLine) -> Result<Motion, FileError> {
+    let [rho, u, alpha, beta, phi1, phi2, phi3] = line.shown;
     if rho <= 0.0 {
-        return Err(row.error(SHOWN[0], "greater than 0"));
+        return Err(row.error("rho_m", "greater than 0"));
     }
     let (alpha, beta) = (alpha.to_radians(), beta.to_radians());
-    let sigmas = row.optional_numbers(SIGMA)?;
-    for (sigma, column) in sigmas.iter().flatten().zip(SIGMA) {
-        if *sigma < 0.0 {
-            return Err(row.error(column, "0 or greater"));
-        }
-    }
+    row.check_sigmas(SIGMA, line.sigma)?;
     let towards = Vector3::new(
         libm::cos(alpha) * libm::sin(beta),
         libm::sin(alpha),
         libm::cos(alpha) * libm::cos(beta),
     );
-    let state = row.optional_numbers(STATE)?;
-    let (position_m, velocity_m_s, phi_rate_rad_s) = match state {
+    let (position_m, velocity_m_s, phi_rate_rad_s) = match line.state {
         None => (towards * rho, towards * u, Vector3::zeros()),
         Some([d1, d2, d3, v1, v2, v3, w1, w2, w3]) => (
             Vector3::new(d1, d2, d3),
@@ -268,15 +200,14 @@ fn parse(row: &CsvRow<'_>) -> Result<Motion, FileError> {
         ),
     };
     if position_m == Vector3::zeros() {
-        return Err(row.error(STATE[2], "a camera that is not inside the target"));
+        return Err(row.error("d3_m", "a camera that is not inside the target"));
     }
-    let position = covariance::read(row, POSITION, &Vector6::repeat(1.0))?;
-    let attitude = covariance::read(row, ATTITUDE, &degrees())?;
-    let cross = row.optional_numbers(CROSS)?.unwrap_or_default();
-    let fields = if row.text("fields").trim().is_empty() { 0 } else { row.count("fields")? };
-    let sigmas = sigmas.unwrap_or_default();
+    let sigmas = line.sigma.unwrap_or_default();
+    let position = covariance::of_cells(row, POSITION, line.position_covariance, &Vector6::repeat(1.0))?;
+    let attitude = covariance::of_cells(row, ATTITUDE, line.attitude_covariance, &degrees())?;
+    let cross = line.cross_covariance.unwrap_or_default();
     Ok(Motion {
-        time_s: row.number("time_s")?,
+        time_s: line.time_s,
         pose: Pose { position_m, phi_rad: Vector3::new(phi1, phi2, phi3).map(f64::to_radians) },
         velocity_m_s,
         phi_rate_rad_s,
@@ -287,7 +218,7 @@ fn parse(row: &CsvRow<'_>) -> Result<Motion, FileError> {
             Matrix6::from_diagonal(&Vector6::new(variance(s1), variance(s2), variance(s3), 0.0, 0.0, 0.0))
         }),
         cross_covariance: Matrix3::from_row_slice(&cross.map(f64::to_radians)),
-        fields,
+        fields: line.fields.unwrap_or(0),
     })
 }
 
