@@ -3,7 +3,8 @@
 use contract::{Cluster, Label, PixelPoint};
 
 use super::FileError;
-use super::parquet_table::{Columns, Row};
+use super::batch_columns::Columns;
+use super::parquet_table::Row;
 use super::table::{seldom_repeating, table};
 use super::table_column::Column;
 

@@ -5,10 +5,10 @@ use std::io::Write;
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
+use super::declared::Table;
 use super::error::{Place, open_regular};
 use super::field::Atom;
 use super::lines::Lines;
-use super::table::Table;
 use super::{FileError, WholeFile};
 
 /// A row of a CSV, as [`super::table::table`] declares it.

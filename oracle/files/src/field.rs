@@ -4,7 +4,7 @@ use contract::{Angle, Direction, Icrs, PixelPoint, Rotation};
 use hifitime::{Duration, Epoch};
 use nalgebra::Vector3;
 
-use super::parquet_table::Columns;
+use super::batch_columns::Columns;
 use super::table_column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};
 use super::{FileError, unit};
 

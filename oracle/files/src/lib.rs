@@ -15,11 +15,13 @@
     )
 )]
 
+mod batch_columns;
 mod checksums;
 mod clusters;
 mod column;
 mod csv_table;
 mod dataset;
+mod declared;
 mod directory;
 pub mod docking;
 mod error;
@@ -60,10 +62,12 @@ mod whole_table;
 mod windows;
 
 pub use self::exr::{Expected, read_expected, read_radiance, write_expected, write_radiance};
+pub use batch_columns::Columns;
 pub use checksums::Checksums;
 pub use clusters::FrameCluster;
 pub use column::read_column;
 pub use dataset::{CameraFile, Dataset, DatasetFrame};
+pub use declared::Declared;
 pub use directory::RunDirectory;
 pub use error::open_regular;
 pub use error::{FileError, Place};
@@ -73,11 +77,10 @@ pub use frame_file::{ImageFormat, read_frame, write_frame};
 pub use frame_header::FrameHeader;
 pub use measurements::{MeasurementWriter, read_measurements};
 pub use parquet_file::ParquetFile;
-pub use parquet_table::{Columns, Row, TableReader, TableWriter};
+pub use parquet_table::{Row, TableReader, TableWriter};
 pub use parquet_writer::{TableOptions, write_table};
 pub use partial::PartialFiles;
 pub use stars::{StarRow, read_stars, write_stars};
-pub use table::Declared;
 pub use table_column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};
 pub use tables::{csv_tables, parquet_tables};
 pub use telemetry::{TelemetryRow, TelemetryWriter, read_telemetry};

@@ -2,8 +2,9 @@
 //! header of a CSV, its reading and writing, the columns of a Parquet file and the tables of `docs/formats.md` come from it.
 
 use super::csv_table::CsvRow;
+use super::declared::Declared;
 use super::field::{Atom, Field, Value};
-use super::table_column::{Column, ColumnType};
+use super::table_column::Column;
 use super::{Columns, FileError};
 
 /// Columns of one field of a row.
@@ -120,27 +121,6 @@ impl<const N: usize> Names<N> {
 /// What the cells of a field hold.
 type CellOf<'a, F, const N: usize> = <<F as Field<N>>::Value as Value<N>>::Cell<'a>;
 
-/// What a table says of one field of its row.
-#[derive(Debug, Clone)]
-pub struct Declared {
-    /// Names of its columns.
-    pub names: Vec<&'static str>,
-    /// Their type.
-    pub column_type: ColumnType,
-    /// Whether a cell may be empty, or null.
-    pub is_nullable: bool,
-    /// Whether a CSV may lack the columns.
-    pub is_optional: bool,
-    /// What they are.
-    pub meaning: String,
-}
-
-/// A row of a table.
-pub trait Table: Sized {
-    /// What the table says of its fields, in the order of the columns.
-    fn declared() -> Vec<Declared>;
-}
-
 /// Declares a table: either a new struct, or one that there is (`for`). Each field has its meaning as a comment, its type, and the names
 /// of its columns, where these are not the field's own name. `csv` makes it a row of a CSV; `parquet(FIELD)` one of a Parquet
 /// file, ordered by a field that is the number of the frame or field.
@@ -157,8 +137,8 @@ macro_rules! table {
     (for $row:ident: $kind:ident $(($frame:ident))? {
         $($(#[doc = $meaning:literal])+ $field:ident: $type:ty $(= $names:expr)?,)+
     }) => {
-        impl $crate::table::Table for $row {
-            fn declared() -> Vec<$crate::table::Declared> {
+        impl $crate::declared::Table for $row {
+            fn declared() -> Vec<$crate::declared::Declared> {
                 vec![$($crate::table::names!($field $($names)?).declared::<$type>(concat!($($meaning),+))),+]
             }
         }
@@ -220,7 +200,8 @@ mod tests {
     use contract::docking::Lines;
     use contract::{Body, Icrs, Rotation};
 
-    use super::super::{Row, TableOptions, TableReader, write_table};
+    use super::super::declared::Table;
+    use super::super::{ColumnType, Row, TableOptions, TableReader, write_table};
     use super::*;
 
     table! {

@@ -3,11 +3,11 @@
 use sim::truth::{FrameTruth, ObjectTruth};
 
 use super::clusters::ClusterRow;
+use super::declared::{Declared, Table};
 use super::docking::{FeatureRow, FieldMeasurementLine, FieldTruthRow, MotionLine};
 use super::field_telemetry::FieldTelemetryLine;
 use super::measurements::MeasurementLine;
 use super::stars::StarRow;
-use super::table::{Declared, Table};
 use super::telemetry::TelemetryLine;
 
 /// The fields of each CSV table, by its name in `docs/formats.md`.

@@ -5,10 +5,10 @@ use std::str::FromStr;
 
 use super::FileError;
 use super::csv_table::csv_error;
+use super::declared::Declared;
 use super::error::{Place, open_regular};
 use super::lines::Lines;
 use super::parquet_file::ParquetFile;
-use super::table::Declared;
 use super::table_column::{Column, ColumnType};
 use super::tables::csv_tables;
 
