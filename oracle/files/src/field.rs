@@ -41,6 +41,7 @@ impl<'a, T: Cell + 'a> Atom<'a> for T {
         columns.cells(name)
     }
 
+    #[inline]
     fn get(cells: &'a Cells<T>, row: usize) -> Option<Self> {
         cells.get(row)
     }

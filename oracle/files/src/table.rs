@@ -50,14 +50,12 @@ impl<const N: usize> Names<N> {
     }
 
     /// The columns of a Parquet file.
-    pub(super) fn columns<'a, F: Field<N> + 'a>(
-        &self,
-        fields: impl Iterator<Item = &'a F> + Clone,
-    ) -> Vec<Column> {
-        let cell = |field: &'a F, i| Some(field.value()?.to_cells().into_iter().nth(i).unwrap_or_default());
+    pub(super) fn columns<'a, F: Field<N> + 'a>(&self, fields: impl Iterator<Item = &'a F>) -> Vec<Column> {
+        let cells: Vec<Option<[CellOf<'a, F, N>; N]>> =
+            fields.map(|field| field.value().map(Value::to_cells)).collect();
         let column = |(i, name)| {
-            let values = Atom::values(fields.clone().map(|field| cell(field, i)));
-            let column = Column::of(name, F::IS_NULLABLE || self.is_nullable, values);
+            let cells = cells.iter().map(|cells| cells.as_ref()?.get(i).copied());
+            let column = Column::of(name, F::IS_NULLABLE || self.is_nullable, Atom::values(cells));
             if self.is_seldom_repeating { column.seldom_repeating() } else { column }
         };
         self.names.into_iter().enumerate().map(column).collect()
@@ -103,7 +101,7 @@ impl<const N: usize> Names<N> {
     /// Reads the field from a row of a CSV: all cells of it, or none where it may be absent.
     pub(super) fn read_texts<F: Field<N>>(&self, row: &CsvRow<'_>) -> Result<F, FileError> {
         let is_absent = F::IS_NULLABLE && self.names.iter().all(|name| row.text(name).trim().is_empty());
-        let mut cells: [CellOf<'_, F, N>; N] = std::array::from_fn(|_| Default::default());
+        let mut cells = [Default::default(); N];
         for (cell, name) in cells.iter_mut().zip(self.names).filter(|_| !is_absent) {
             *cell = row.cell(name)?;
         }
