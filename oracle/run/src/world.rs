@@ -142,7 +142,7 @@ pub trait World: Sized + Sync {
         done: impl Fn(),
     ) -> Result<(), Failure> {
         let mut dataset = self.dataset(directory, flight)?;
-        fly(self, Some(directory), flight, |exposure| {
+        fly(self, directory, flight, |exposure| {
             let (image, telemetry, truth) = Self::receive(exposure, &Self::Feedback::default());
             dataset.add(&image, telemetry, truth)?;
             done();
@@ -170,7 +170,7 @@ pub trait World: Sized + Sync {
         let mut answers = Self::Answers::create(&Self::Answers::files(&directory.measurements()))?;
         let mut scorer = self.scorer();
         let mut first_failure = None;
-        fly(self, Some(directory), flight, |exposure| {
+        fly(self, directory, flight, |exposure| {
             let ProcessedFrame { image, telemetry, truth, outcome } = running.process(exposure)?;
             let number = Self::Interface::number(&image);
             first_failure =
@@ -407,10 +407,11 @@ impl<W: World> Running<W> {
     }
 }
 
-/// Makes frames and hands them to `take`, which gives back their images: later ones are made in their memory.
+/// Makes frames, saves what is kept of each apart, and hands them to `take`, which gives back their images: later ones are made in
+/// their memory.
 fn fly<W: World>(
     world: &W,
-    directory: Option<&RunDirectory>,
+    directory: &RunDirectory,
     flight: &Flight<W::Images>,
     mut take: impl FnMut(W::Exposure) -> Result<ImageOf<W>, Failure>,
 ) -> Result<(), Failure> {
@@ -420,9 +421,7 @@ fn fly<W: World>(
         let reused = spares().pop();
         reused.into_iter().for_each(|image| W::reuse(workspace, image));
         let exposure = world.expose(workspace, frame)?;
-        if let Some(directory) = directory {
-            world.save(workspace, &exposure, directory, flight)?;
-        }
+        world.save(workspace, &exposure, directory, flight)?;
         Ok(exposure)
     };
     let (frames, bytes) = (flight.frames.clone(), world.exposure_bytes() as u64);
