@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::chart::Chart;
 use super::data_table::DataTable;
 use super::picture::{Picture, Shape};
-use super::plotly_js::PLOTLY_JS;
+use super::plotly_js::plotly_js;
 use super::script_safe::script_safe;
 
 /// A report, before it is text.
@@ -108,7 +108,7 @@ struct PageTemplate<'a> {
     page: &'a Page,
     style: &'static str,
     script: &'static str,
-    plotly: &'static str,
+    plotly: String,
     data: String,
 }
 
@@ -118,16 +118,17 @@ impl Page {
     /// # Errors
     /// [`Failure::Usage`] when the page cannot be put together.
     pub fn html(&self) -> Result<String, Failure> {
+        let failure = |error: &dyn std::fmt::Display| {
+            Failure::Usage(format!("the report cannot be put together: {error}"))
+        };
         let template = PageTemplate {
             page: self,
             style: include_str!("page/report.css"),
             script: include_str!("page/report.js"),
-            plotly: PLOTLY_JS,
+            plotly: plotly_js().map_err(|error| failure(&error))?,
             data: script_safe(&self.data.to_string()),
         };
-        template
-            .render()
-            .map_err(|error| Failure::Usage(format!("the report cannot be put together: {error}")))
+        template.render().map_err(|error| failure(&error))
     }
 }
 

@@ -1,7 +1,21 @@
 //! plotly.js, the library that draws the charts: a third-party file in the tree, embedded in the executable and in every report.
 
+use std::io::{self, Read};
+
+use flate2::read::ZlibDecoder;
+
+/// The minified bundle, compressed by `build.rs`.
+static COMPRESSED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/plotly.js.zlib"));
+
 /// The minified bundle, as a script tag may contain it: it has no `</script`.
-pub(super) const PLOTLY_JS: &str = include_str!("../third_party/plotly/plotly-cartesian.min.js");
+///
+/// # Errors
+/// An [`io::Error`] when the executable is damaged.
+pub(super) fn plotly_js() -> io::Result<String> {
+    let mut script = String::new();
+    ZlibDecoder::new(COMPRESSED).read_to_string(&mut script)?;
+    Ok(script)
+}
 
 #[cfg(test)]
 mod tests {
@@ -16,6 +30,13 @@ mod tests {
         let prefix = format!("| {row} | ");
         let cell = README.lines().find_map(|line| line.strip_prefix(&prefix)?.strip_suffix(" |"));
         cell.unwrap_or_else(|| panic!("README.md has no row `{row}`"))
+    }
+
+    const PLOTLY_JS: &str = include_str!("../third_party/plotly/plotly-cartesian.min.js");
+
+    #[test]
+    fn the_embedded_bundle_is_that_of_the_tree() {
+        assert!(plotly_js().unwrap() == PLOTLY_JS);
     }
 
     #[test]
