@@ -1,7 +1,6 @@
 //! Renders one frame of ARGON and lists what is in it: `cargo run --release --example frame`.
 
-use boresight::run::Prepared;
-use boresight::scenario::ScenarioSource;
+use boresight::run::{Prepared, ScenarioSource};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let prepared = Prepared::new(&ScenarioSource::read("argon")?)?;

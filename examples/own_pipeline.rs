@@ -1,7 +1,6 @@
 //! The smallest pipeline there is, scored: it calls the brightest pixel the target.
 
-use boresight::run::{Prepared, World as _};
-use boresight::scenario::ScenarioSource;
+use boresight::run::{Prepared, ScenarioSource, World as _};
 use boresight::table::{TableStyle, far_range};
 use contract::{
     ContractError, FarRange, Frame, Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, PixelPoint,

@@ -8,9 +8,7 @@ use std::time::Duration;
 
 use boresight::monitor::{Feed, Measurements, serve};
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::run::PreparedDocking;
-use boresight::run::docking::renderer::DockingRenderer;
-use boresight::scenario::{Scenario, ScenarioSource};
+use boresight::run::{Options, ScenarioSource};
 
 use crate::Sandbox;
 
@@ -70,11 +68,8 @@ fn address() -> SocketAddr {
 fn docking() -> Feed {
     let source = ScenarioSource::read("docking").expect("a built-in scenario");
     let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 2048 };
-    let config = match &source.scenario {
-        Scenario::Docking(scenario) => scenario.docking.clone(),
-        Scenario::FarRange(_) => Default::default(),
-    };
-    let factory = choice.docking_factory(&config, Path::new("")).expect("the built-in pipeline");
-    let prepared = PreparedDocking::new(&source, DockingRenderer::Fast).expect("a built-in scenario");
-    Feed::Docking(Box::new(prepared), Measurements::Live { factory, frames: 24000..24002, jobs: 1 })
+    let prepared = source.prepare(Options::default()).expect("a built-in scenario");
+    let factory = prepared.factory(&choice, Path::new("")).expect("the built-in pipeline");
+    let measurements = Measurements::Live { factory, frames: 24000..24002, jobs: 1 };
+    Feed::new(prepared, measurements).expect("a world of the page")
 }

@@ -5,7 +5,8 @@ use std::path::Path;
 use boresight::files::CameraFile;
 use boresight::files::docking::SetupFile;
 use boresight::report::{StudyResult, read_visibility};
-use boresight::scenario::{Scenario, ScenarioSource};
+use boresight::run::{Options, ScenarioSource};
+use boresight::scenario::{DockingScenario, FarRangeScenario};
 use boresight::score::Score;
 use boresight::score::docking::DockingScore;
 use boresight::study::{Study, StudyRecord};
@@ -28,20 +29,17 @@ pub(crate) fn scenario(sandbox: &Sandbox, bytes: &[u8]) {
 
 pub(crate) fn simulator(sandbox: &Sandbox, bytes: &[u8]) {
     let Ok(source) = ScenarioSource::read(&word(&sandbox.file("scenario.toml", bytes))) else { return };
-    match &source.scenario {
-        Scenario::FarRange(scenario) => {
-            let frames: u64 = scenario.schedule.iter().fold(0, |sum, group| sum.saturating_add(group.count));
-            let pixels = scenario.camera.columns.saturating_mul(scenario.camera.rows);
-            if pixels <= MOST_PIXELS && frames <= MOST_FRAMES {
-                let _ = source.simulator(scenario);
-            }
-        }
-        Scenario::Docking(scenario) => {
-            let pixels = |camera: &contract::Camera| camera.columns.saturating_mul(camera.rows);
-            if scenario.cameras.iter().all(|lens| pixels(&lens.camera) <= MOST_PIXELS) {
-                let _ = source.docking_simulator(scenario);
-            }
-        }
+    let pixels = |camera: &contract::Camera| camera.columns.saturating_mul(camera.rows);
+    let is_small = if let Ok(scenario) = source.typed::<FarRangeScenario>("fuzz") {
+        let frames: u64 = scenario.schedule.iter().fold(0, |sum, group| sum.saturating_add(group.count));
+        pixels(&scenario.camera) <= MOST_PIXELS && frames <= MOST_FRAMES
+    } else if let Ok(scenario) = source.typed::<DockingScenario>("fuzz") {
+        scenario.cameras.iter().all(|lens| pixels(&lens.camera) <= MOST_PIXELS)
+    } else {
+        false
+    };
+    if is_small {
+        let _ = source.prepare(Options::default());
     }
 }
 

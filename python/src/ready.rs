@@ -1,9 +1,7 @@
 //! A scenario that can be run.
 
 use boresight::failure::Failure;
-use boresight::run::docking::renderer::DockingRenderer;
-use boresight::run::{Prepared, PreparedDocking, World as _};
-use boresight::scenario::{Scenario as Values, ScenarioSource};
+use boresight::run::{AnyPrepared, Options, Prepared, PreparedDocking, ScenarioSource};
 
 /// A scenario with what makes its frames.
 pub(crate) struct Ready {
@@ -19,19 +17,23 @@ pub(crate) enum World {
 
 impl Ready {
     pub(crate) fn new(source: ScenarioSource) -> Result<Self, Failure> {
-        let world = match &source.scenario {
-            Values::FarRange(_) => World::FarRange(Box::new(Prepared::new(&source)?)),
-            Values::Docking(_) => {
-                World::Docking(Box::new(PreparedDocking::new(&source, DockingRenderer::Fast)?))
-            }
+        let world = match source.prepare(Options::default())?.into_any().downcast::<Prepared>() {
+            Ok(prepared) => World::FarRange(prepared),
+            Err(other) => World::Docking(other.downcast().map_err(|_| {
+                Failure::Usage(format!("frames of the world {} have no class", source.world().code()))
+            })?),
         };
         Ok(Self { source, world })
     }
 
-    pub(crate) fn frame_count(&self) -> u64 {
+    pub(crate) fn prepared(&self) -> &dyn AnyPrepared {
         match &self.world {
-            World::FarRange(prepared) => prepared.frame_count(),
-            World::Docking(prepared) => prepared.frame_count(),
+            World::FarRange(prepared) => prepared.as_ref(),
+            World::Docking(prepared) => prepared.as_ref(),
         }
+    }
+
+    pub(crate) fn frame_count(&self) -> u64 {
+        self.prepared().frame_count()
     }
 }

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use boresight::failure::Failure;
 use boresight::files::{Checksums, RunDirectory, read_csv_table, read_parquet_table};
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::run::{Expectation, FirstFailure, Flight, World as _};
-use boresight::scenario::{Scenario as Values, ScenarioSource};
+use boresight::run::{AnyFactory, Expectation, FirstFailure, Flight, ScenarioSource};
+use boresight::scenario::DockingScenario;
+use contract::FarRange;
 use contract::docking::Docking;
-use contract::{FarRange, PipelineFactory};
 use pipeline::external::DEFAULT_MEMORY_MB;
 use pyo3::prelude::*;
 use tempfile::TempDir;
@@ -81,7 +81,7 @@ impl Run {
         }
         let source = ScenarioSource::read(&file.to_string_lossy()).map_err(raised)?;
         Checksums::check(&directory, |_| true).map_err(file_error)?;
-        let is_docking = matches!(source.scenario, Values::Docking(_));
+        let is_docking = source.world().is_of::<DockingScenario>();
         Ok(Self { path: directory, is_docking, first_failure: None, _temporary: None })
     }
 
@@ -190,30 +190,18 @@ pub(crate) fn run(
     };
     let run = || {
         // The pipeline first: while nothing has been written.
-        match &ready.world {
-            World::FarRange(prepared) => {
-                let factory: Box<dyn PipelineFactory<FarRange>> = match asked {
-                    Asked::Word(choice) => choice.factory(&prepared.scenario().far_range, scratch.path())?,
-                    Asked::Python(pipeline) => Box::new(pipeline),
-                };
-                let (directory, temporary) = place(out.as_deref())?;
-                let flight = Flight { frames, jobs, images: None, expectation: Expectation::Dropped };
-                let ran = prepared.run(&directory, &flight, factory.as_ref(), || ended.go_on())?;
-                Ok((directory, temporary, ran.first_failure))
-            }
-            World::Docking(prepared) => {
-                let factory: Box<dyn PipelineFactory<Docking>> = match asked {
-                    Asked::Word(choice) => {
-                        choice.docking_factory(&prepared.scenario().docking, scratch.path())?
-                    }
-                    Asked::Python(pipeline) => Box::new(pipeline),
-                };
-                let (directory, temporary) = place(out.as_deref())?;
-                let flight = Flight { frames, jobs, images: None, expectation: Expectation::Dropped };
-                let ran = prepared.run(&directory, &flight, factory.as_ref(), || ended.go_on())?;
-                Ok((directory, temporary, ran.first_failure))
-            }
-        }
+        let prepared = ready.prepared();
+        let factory = match asked {
+            Asked::Word(choice) => prepared.factory(&choice, scratch.path())?,
+            Asked::Python(pipeline) => match &ready.world {
+                World::FarRange(_) => AnyFactory::new::<FarRange>(Box::new(pipeline)),
+                World::Docking(_) => AnyFactory::new::<Docking>(Box::new(pipeline)),
+            },
+        };
+        let (directory, temporary) = place(out.as_deref())?;
+        let flight = Flight { frames, jobs, images: None, expectation: Expectation::Dropped };
+        let ran = prepared.run(&directory, &flight, &factory, &|| ended.go_on())?;
+        Ok((directory, temporary, ran.first_failure))
     };
     let ran: Result<_, Failure> = py.detach(run);
     if let Some(interrupt) = ended.take() {

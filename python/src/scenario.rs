@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use boresight::run::World as _;
-use boresight::run_file::ScenarioFile;
-use boresight::scenario::{BUILT_IN, Scenario as Values, ScenarioSource};
+use boresight::run::{ScenarioSource, World as _};
+use boresight::scenario::BUILT_IN;
 use boresight::study::{Study, value_at, with_overlay};
 use contract::docking::Digitiser;
 use pipeline::external::Protocol;
@@ -87,19 +86,13 @@ impl Scenario {
     /// `far_range` or `docking`.
     #[getter]
     fn world(&self) -> &'static str {
-        match &self.ready.world {
-            World::FarRange(_) => "far_range",
-            World::Docking(_) => "docking",
-        }
+        self.ready.source.world().code()
     }
 
     /// Seed of every random draw.
     #[getter]
     fn seed(&self) -> u64 {
-        match &self.ready.source.scenario {
-            Values::FarRange(scenario) => scenario.seed,
-            Values::Docking(scenario) => scenario.seed,
-        }
+        self.ready.source.scenario.seed()
     }
 
     /// Number of its frames (docking: fields).
@@ -136,11 +129,7 @@ impl Scenario {
 
     /// All its values with all defaults, as a TOML file that can be run.
     fn to_toml(&self) -> PyResult<String> {
-        let text = match &self.ready.source.scenario {
-            Values::FarRange(scenario) => scenario.to_toml(),
-            Values::Docking(scenario) => scenario.to_toml(),
-        };
-        text.map_err(raised)
+        self.ready.source.scenario.to_toml().map_err(raised)
     }
 
     /// What a pipeline is told before the first frame, a dictionary: camera, mounting and star list (docking: cameras and target). Its keys
@@ -182,8 +171,8 @@ impl Scenario {
     }
 
     fn __repr__(&self) -> String {
-        let unit = if self.world() == "docking" { "fields" } else { "frames" };
-        format!("<boresight.Scenario {}: {} {unit}, seed {}>", self.name(), self.frame_count(), self.seed())
+        let image = self.ready.source.world().image();
+        format!("<boresight.Scenario {}: {} {image}s, seed {}>", self.name(), self.frame_count(), self.seed())
     }
 }
 

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use boresight::failure::Failure;
 use boresight::files::Checksums;
-use boresight::run::{Prepared, PreparedDocking, World as _};
-use boresight::scenario::{World, world};
+use boresight::run::world_of_run;
 use boresight::toml_file::read_text;
 use pyo3::prelude::*;
 
@@ -63,20 +62,13 @@ fn scored(directory: &Path, measurements: &Path) -> Result<String, Failure> {
             run_file.display()
         ))
     };
-    let text = read_text(&run_file).map_err(unreadable)?;
-    let beside = |name: &str| Some(measurements.with_file_name(name)).filter(|path| path.is_file());
-    let json = match world(&run_file, &text, "scenario.world")? {
-        World::FarRange => {
-            let clusters = beside("clusters.parquet");
-            serde_json::to_string(&Prepared::score_files(directory, measurements, clusters.as_deref())?.score)
-        }
-        World::Docking => {
-            let motion = beside("motion.csv");
-            serde_json::to_string(
-                &PreparedDocking::score_files(directory, measurements, motion.as_deref())?.score,
-            )
-        }
+    read_text(&run_file).map_err(unreadable)?;
+    let world = world_of_run(&run_file)?;
+    let beside = || {
+        let path = measurements.with_file_name(world.evidence_file()?);
+        path.is_file().then_some(path)
     };
+    let json = world.score_files(directory, measurements, beside().as_deref())?.json()?;
     Checksums::check(directory, |_| true)?;
-    json.map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))
+    Ok(json)
 }

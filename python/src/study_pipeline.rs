@@ -4,12 +4,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use boresight::failure::Failure;
-use boresight::scenario::{Scenario, World};
+use boresight::run::{AnyFactory, AnyScenario, AnyWorld};
+use boresight::scenario::{DockingScenario, FarRangeScenario};
 use boresight::study::{Study, StudyPipeline};
 use contract::docking::Docking;
 use contract::{ContractError, FarRange, Pipeline, PipelineFactory};
-use pipeline::docking::DockingConfig;
-use pipeline::far_range::FarRangeConfig;
 use pyo3::prelude::*;
 
 use crate::errors::BoresightError;
@@ -60,11 +59,11 @@ impl PythonStudyPipeline {
 }
 
 impl StudyPipeline for PythonStudyPipeline {
-    fn check(&self, _: &Scenario) -> Result<(), Failure> {
+    fn check(&self, _: &dyn AnyScenario) -> Result<(), Failure> {
         Ok(())
     }
 
-    fn hash(&self, _: World) -> Option<[u8; 32]> {
+    fn hash(&self, _: &dyn AnyWorld) -> Option<[u8; 32]> {
         Some(self.hash)
     }
 
@@ -79,16 +78,15 @@ impl StudyPipeline for PythonStudyPipeline {
         )
     }
 
-    fn factory(&self, _: &FarRangeConfig, _: &Path) -> Result<Box<dyn PipelineFactory<FarRange>>, Failure> {
-        Ok(Box::new(self.again()))
-    }
-
-    fn docking_factory(
-        &self,
-        _: &DockingConfig,
-        _: &Path,
-    ) -> Result<Box<dyn PipelineFactory<Docking>>, Failure> {
-        Ok(Box::new(self.again()))
+    fn factory(&self, scenario: &dyn AnyScenario, _: &Path) -> Result<AnyFactory, Failure> {
+        let world = scenario.world();
+        if world.is_of::<DockingScenario>() {
+            Ok(AnyFactory::new::<Docking>(Box::new(self.again())))
+        } else if world.is_of::<FarRangeScenario>() {
+            Ok(AnyFactory::new::<FarRange>(Box::new(self.again())))
+        } else {
+            Err(Failure::Usage(format!("a callable of the world {} cannot be called", world.code())))
+        }
     }
 }
 

@@ -1,26 +1,24 @@
 //! `boresight render` and `boresight process`: datasets for somebody else's pipeline, and from somebody else's camera.
 
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use contract::Setup;
 use contract::docking::Digitiser;
 use files::docking::SetupFile;
 use files::{
-    Checksums, Dataset, Failure, FieldOrder, FieldSource, FileError, FrameSize, ImageFormat, RunDirectory,
-    Scan, SequenceOptions, StarRow, read_stars,
+    Checksums, Failure, FieldOrder, FieldSource, FileError, FrameSize, RunDirectory, Scan, SequenceOptions,
 };
+use indicatif::ProgressBar;
+use run::any_world::ProcessingOrder;
 use run::docking::answers::FieldAnswers;
-use run::docking::dataset::FieldImages;
 use run::docking::renderer::DockingRenderer;
-use run::far_range::answers::FrameAnswers;
-use run::far_range::star_list::star_list;
-use run::{Expectation, Flight, Prepared, PreparedDocking, World as _};
-use scenario::{Scenario, ScenarioSource};
-use serde_json::json;
+use run::{AnyWorld, Expectation, Flight, Options, PreparedDocking, ScenarioSource, World as _, worlds};
+use scenario::DockingScenario;
+use serde_json::{Map, Value, json};
 
 use super::Answer;
-use super::options::{PipelineOptions, RendererOptions, Selection, format_of};
+use super::options::{PipelineOptions, RendererOptions, Selection};
 use super::output::Output;
 
 #[derive(Debug, Args)]
@@ -43,109 +41,42 @@ pub(super) struct RenderArguments {
 
 pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Answer, Failure> {
     let source = arguments.selection.scenario()?;
-    match source.scenario {
-        Scenario::FarRange(_) => render_far_range(arguments, &source, output),
-        Scenario::Docking(_) => render_docking(arguments, &source, output),
+    let world = source.world();
+    if let Some(word) = &arguments.format {
+        world.check_images(word).map_err(|error| Failure::Usage(format!("--format: {error}")))?;
     }
-}
-
-fn render_far_range(
-    arguments: &RenderArguments,
-    source: &ScenarioSource,
-    output: &Output,
-) -> Result<Answer, Failure> {
-    arguments.renderer.check_far_range()?;
-    let format = format_of("--format", arguments.format.as_deref())?.unwrap_or(ImageFormat::Fits);
-    let prepared = Prepared::new(source)?;
+    let prepared = source.prepare(Options { inject: None, renderer: arguments.renderer.renderer()? })?;
     let flight = Flight {
         frames: arguments.selection.frames(prepared.frame_count())?,
-        jobs: arguments.selection.jobs(),
-        images: Some(format),
+        jobs: arguments.renderer.jobs(&arguments.selection),
+        images: arguments.format.clone(),
         expectation: if arguments.expected { Expectation::Kept } else { Expectation::Dropped },
     };
+    if arguments.out == Path::new("-") {
+        // The video alone, for another program to read as it comes.
+        prepared.check_stream(&flight)?;
+        output.check_free("--out -")?;
+        prepared.stream(&flight)?;
+        return Ok(Answer::Yes);
+    }
+    prepared.check_flight(&flight)?;
     let directory = RunDirectory::create(&arguments.out)?;
     let frames = flight.frames.end - flight.frames.start;
     let progress = output.progress(frames, &source.name);
-    let rendered = prepared.render(&directory, &flight, || progress.inc(1));
+    let rendered = prepared.render(&directory, &flight, &|| progress.inc(1));
     progress.finish_and_clear();
-    rendered?;
+    let files = rendered?;
     let path = directory.path();
     output.answer(
         &json!({ "directory": path, "frames": frames }),
         format!(
-            "{frames} frames in {0}\nfor a pipeline: camera.toml, stars.csv, telemetry.csv, frames/; the truth is apart in truth/\n\
+            "{frames} {1}s in {0}\nfor a pipeline: {files}; the truth is apart in truth/\n\
              next: boresight process {0}, or a pipeline of your own and boresight score {0} MEASUREMENTS",
-            path.display()
+            path.display(),
+            world.image(),
         ),
     )?;
     Ok(Answer::Yes)
-}
-
-fn render_docking(
-    arguments: &RenderArguments,
-    source: &ScenarioSource,
-    output: &Output,
-) -> Result<Answer, Failure> {
-    if arguments.expected {
-        return Err(Failure::Usage(
-            "--expected is given, expected with a far-range scenario alone".to_owned(),
-        ));
-    }
-    let images = format_of("--format", arguments.format.as_deref())?.unwrap_or(FieldImages::Png);
-    let prepared = PreparedDocking::new(source, arguments.renderer.renderer()?)?;
-    let fields = arguments.selection.frames(prepared.frame_count())?;
-    let count = fields.end - fields.start;
-    let jobs = arguments.renderer.jobs(&arguments.selection);
-    let flight = Flight { frames: fields, jobs, images: Some(images), expectation: Expectation::Dropped };
-    if arguments.out == Path::new("-") {
-        return stream_docking(&prepared, &flight, images, output);
-    }
-    check_size(&prepared, &flight)?;
-    // While nothing has been written.
-    prepared.probe(flight.frames.start)?;
-    let directory = RunDirectory::create(&arguments.out)?;
-    let progress = output.progress(count, &source.name);
-    let rendered = prepared.render(&directory, &flight, || progress.inc(1));
-    progress.finish_and_clear();
-    rendered?;
-    let path = directory.path().display();
-    let kept = images.place();
-    output.answer(
-        &json!({ "directory": directory.path(), "frames": count }),
-        format!(
-            "{count} fields in {path}\nfor a pipeline: setup.toml, telemetry.csv, {kept}; the truth is apart in truth/\n\
-             next: boresight process {path}, or a pipeline of your own and boresight score {path} MEASUREMENTS"
-        ),
-    )?;
-    Ok(Answer::Yes)
-}
-
-/// The video alone, for another program to read as it comes.
-fn stream_docking(
-    prepared: &PreparedDocking,
-    flight: &Flight<FieldImages>,
-    images: FieldImages,
-    output: &Output,
-) -> Result<Answer, Failure> {
-    if images != FieldImages::Y4m {
-        let message = "--out is -, expected with --format y4m alone: no other format is a stream";
-        return Err(Failure::Usage(message.to_owned()));
-    }
-    output.check_free("--out -")?;
-    prepared.stream(flight.frames.clone(), flight.jobs)?;
-    Ok(Answer::Yes)
-}
-
-/// Refuses more fields than one file of video holds, before hours of work.
-pub(super) fn check_size(prepared: &PreparedDocking, flight: &Flight<FieldImages>) -> Result<(), Failure> {
-    let count = flight.frames.end - flight.frames.start;
-    match flight.images.and_then(|images| images.most_fields(prepared.setup())) {
-        Some(most) if count > most => Err(Failure::Usage(format!(
-            "{count} fields are more than the {most} of an uncompressed AVI of 4 GB; expected fewer (--frames), or mjpeg, \
-             png or y4m"
-        ))),
-        _ => Ok(()),
-    }
 }
 
 #[derive(Debug, Args)]
@@ -171,35 +102,61 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     if !is_stream && let Err(source) = path.metadata() {
         return Err(FileError::Io { path: path.clone(), doing: "open", source }.into());
     }
-    let is_told = arguments.sequence.scenario.is_some() || arguments.sequence.setup.is_some();
-    if is_told || is_stream || !path.is_dir() || path.join("setup.toml").is_file() {
-        return process_sequence(arguments, output);
-    }
-    if !path.join("camera.toml").exists() {
-        return Err(Failure::Usage(format!(
+    let sequence = &arguments.sequence;
+    let dataset = worlds().into_iter().find(|world| !is_stream && path.join(world.setup_file()).exists());
+    let is_docking = dataset.is_none_or(|world| world.is_of::<DockingScenario>());
+    let is_plain = sequence.given().is_none() && arguments.out.as_deref() != Some(Path::new("-"));
+    match dataset {
+        Some(world) if is_plain => process_dataset(world, arguments, output),
+        Some(_) if !is_docking && !sequence.names_cameras() => Err(Failure::Usage(format!(
+            "{} is given, expected with docking alone",
+            sequence.given().unwrap_or("--out -")
+        ))),
+        None if !is_stream && path.is_dir() && !sequence.names_cameras() => Err(Failure::Usage(format!(
             "{}: expected camera.toml (far range) or setup.toml (docking) in it, or --scenario SCENARIO for a folder of docking \
              images",
             path.display()
-        )));
+        ))),
+        _ => process_sequence(arguments, output),
     }
-    let dataset = Dataset::open(&arguments.directory)?;
-    let setup = setup(arguments, &dataset)?;
+}
+
+/// A dataset of any world.
+fn process_dataset(
+    world: &dyn AnyWorld,
+    arguments: &ProcessArguments,
+    output: &Output,
+) -> Result<Answer, Failure> {
+    let path = &arguments.directory;
     check_sums(path)?;
     let scratch = super::scratch_directory()?;
-    let factory = arguments.pipeline.choice().factory(&dataset.camera().far_range, scratch.path())?;
-    let measurements = arguments.out.clone().unwrap_or_else(|| arguments.directory.join("measurements.csv"));
-    let clusters = measurements.with_file_name("clusters.parquet");
-    let images = dataset.frames().iter().map(|frame| Ok((dataset.read(frame)?, *frame.telemetry())));
-    let progress = output.progress(dataset.frames().len() as u64, &factory.name());
-    let processed =
-        run::process::<_, FrameAnswers>(images, &setup, factory.as_ref(), &measurements, || progress.inc(1));
-    progress.finish_and_clear();
+    let measurements = arguments.out.clone().unwrap_or_else(|| path.join("measurements.csv"));
+    let progress = OnceCell::new();
+    let processed = world.process(&ProcessingOrder {
+        directory: path,
+        measurements: &measurements,
+        choice: &arguments.pipeline.choice(),
+        scratch: scratch.path(),
+        begin: &|name, count| {
+            progress.get_or_init(|| {
+                count.map_or_else(|| output.counter(name), |count| output.progress(count, name))
+            });
+        },
+        done: &|| progress.get().into_iter().for_each(|progress| progress.inc(1)),
+    });
+    progress.get().into_iter().for_each(ProgressBar::finish_and_clear);
     let processed = processed?;
     output.first_failure(processed.first_failure.as_ref());
     let frames = processed.frames;
+    let files = processed.files.iter().map(|file| {
+        (file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default(), json!(file))
+    });
+    // The measurements may have any name.
+    let files = [("measurements".to_owned(), json!(measurements))].into_iter().chain(files.skip(1));
+    let document: Map<String, Value> = files.chain([("frames".to_owned(), json!(frames))]).collect();
     output.answer(
-        &json!({ "measurements": measurements, "clusters": clusters, "frames": frames }),
-        format!("{frames} frames processed, answers in {}", measurements.display()),
+        &document,
+        format!("{frames} {}s processed, answers in {}", world.image(), measurements.display()),
     )?;
     Ok(Answer::Yes)
 }
@@ -234,6 +191,30 @@ struct SequenceArguments {
 }
 
 impl SequenceArguments {
+    /// The first option that is given: the input is a docking sequence then.
+    fn given(&self) -> Option<&'static str> {
+        let told = [("--scenario", self.scenario.is_some()), ("--setup", self.setup.is_some())];
+        self.given_of_fields()
+            .or_else(|| told.into_iter().find_map(|(option, is_given)| is_given.then_some(option)))
+    }
+
+    /// The first option that is given and tells of fields what `telemetry.csv` tells.
+    fn given_of_fields(&self) -> Option<&'static str> {
+        let all = [
+            ("--camera", self.camera.is_some()),
+            ("--field-order", self.field_order.is_some()),
+            ("--progressive", self.progressive),
+            ("--frame-rate-hz", self.frame_rate_hz.is_some()),
+            ("--raw", self.raw.is_some()),
+        ];
+        all.into_iter().find_map(|(option, is_given)| is_given.then_some(option))
+    }
+
+    /// Whether cameras and target are told.
+    fn names_cameras(&self) -> bool {
+        self.scenario.is_some() || self.setup.is_some()
+    }
+
     /// What a sequence does not say of itself: as the options have it, or as it is by default.
     fn options(&self) -> SequenceOptions {
         let order = self.field_order.unwrap_or(FieldOrder::Top);
@@ -248,15 +229,8 @@ impl SequenceArguments {
 
     /// Refuses an option that a folder with `telemetry.csv` would pass over.
     fn check_free(&self, table: &Path) -> Result<(), Failure> {
-        let given = [
-            ("--camera", self.camera.is_some()),
-            ("--field-order", self.field_order.is_some()),
-            ("--progressive", self.progressive),
-            ("--frame-rate-hz", self.frame_rate_hz.is_some()),
-            ("--raw", self.raw.is_some()),
-        ];
-        match given.into_iter().find(|(_, is_given)| *is_given) {
-            Some((option, _)) if table.is_file() => Err(Failure::Usage(format!(
+        match self.given_of_fields() {
+            Some(option) if table.is_file() => Err(Failure::Usage(format!(
                 "{option} is given, expected without {}, which tells camera, lines and time of every field",
                 table.display()
             ))),
@@ -287,7 +261,7 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
         }
     };
     let scratch = super::scratch_directory()?;
-    let factory = arguments.pipeline.choice().docking_factory(&config, scratch.path())?;
+    let factory = arguments.pipeline.choice().factory::<PreparedDocking>(&config, scratch.path())?;
     let fields = FieldSource::open(path, &setup, &sequence.options())?;
     let of_setup = setup_file.as_deref().filter(|_| sequence.scenario.is_none()).and_then(Path::parent);
     for folder in [of_setup, Some(path.as_path()).filter(|path| path.is_dir())].into_iter().flatten() {
@@ -332,26 +306,4 @@ fn check_sums(folder: &Path) -> Result<(), FileError> {
 fn setup_file(path: &Path, sequence: &SequenceArguments) -> Option<PathBuf> {
     let beside = || if path.is_dir() { path.join("setup.toml") } else { path.with_file_name("setup.toml") };
     sequence.setup.clone().or_else(|| Some(beside()).filter(|file| path != Path::new("-") && file.is_file()))
-}
-
-/// What the pipeline is told: the dataset's own star list, or the built-in catalogue to its magnitude limit.
-fn setup(arguments: &ProcessArguments, dataset: &Dataset) -> Result<Setup, Failure> {
-    let camera = dataset.camera();
-    let file = arguments.directory.join("stars.csv");
-    let stars = if file.exists() {
-        read_stars(&file)?
-    } else {
-        let epoch = dataset.star_epoch().ok_or_else(|| {
-            Failure::Usage(format!("{}: a dataset without frames", arguments.directory.display()))
-        })?;
-        star_list(&sim::catalog::Catalog::hipparcos2(), camera.magnitude_limit, epoch)
-    };
-    Ok(Setup {
-        camera: camera.camera.clone(),
-        camera_from_body: camera.mounting.camera_from_body(),
-        bit_depth: camera.bit_depth,
-        readout: camera.readout,
-        zero_suppression_dn: camera.zero_suppression_dn,
-        stars: stars.iter().map(StarRow::listed).collect(),
-    })
 }

@@ -6,9 +6,9 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use files::Failure;
 use pipeline::external::DEFAULT_MEMORY_MB;
+use run::ScenarioSource;
 use run::docking::renderer::DockingRenderer;
 use run::pipeline_choice::PipelineChoice;
-use scenario::ScenarioSource;
 
 use super::interrupt::end_programs_when_interrupted;
 
@@ -105,16 +105,6 @@ pub(super) struct RendererOptions {
 }
 
 impl RendererOptions {
-    /// Refuses whatever a far-range scenario has no use for.
-    pub(super) fn check_far_range(&self) -> Result<(), Failure> {
-        match self.renderer {
-            RendererWord::Mitsuba => Err(Failure::Usage(
-                "--renderer is mitsuba, expected with a docking scenario alone".to_owned(),
-            )),
-            RendererWord::Fast => self.check_fast(),
-        }
-    }
-
     fn check_fast(&self) -> Result<(), Failure> {
         let given = [
             ("--mitsuba", self.mitsuba.is_some()),
@@ -199,15 +189,6 @@ impl Selection {
 /// A thread a core.
 pub(super) fn default_jobs() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
-}
-
-/// The format that an option asks for, of those of a world.
-pub(super) fn format_of<F: FromStr<Err = String>>(
-    option: &str,
-    word: Option<&str>,
-) -> Result<Option<F>, Failure> {
-    let parsed = word.map(str::parse).transpose();
-    parsed.map_err(|error: String| Failure::Usage(format!("{option}: {error}")))
 }
 
 #[cfg(test)]

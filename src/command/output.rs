@@ -31,6 +31,11 @@ impl Output {
         }
     }
 
+    /// Prints a document that is JSON already, or `text` for a person.
+    pub(super) fn answer_json(&self, json: &str, text: impl Display) -> Result<(), Failure> {
+        if self.json { print_line(json) } else { print_line(text) }
+    }
+
     /// Prints `document` where `--json` asks for it: of a command that has nothing else for stdout.
     #[cfg_attr(
         not(feature = "monitor"),

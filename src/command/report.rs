@@ -17,7 +17,7 @@ use super::output::Output;
 use super::{Answer, missing_feature};
 
 pub(super) use pages::{
-    write_beside_far_range_run, write_beside_results, write_gate, write_visibility, write_visibility_beside,
+    write_beside_results, write_beside_run, write_gate, write_visibility, write_visibility_beside,
 };
 
 #[derive(Debug, Args)]

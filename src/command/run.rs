@@ -1,18 +1,15 @@
 //! `boresight run`: simulate, process, score.
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use clap::Args;
-use contract::PipelineFactory;
 use files::{Failure, RunDirectory};
-use run::{Expectation, Flight, Prepared, PreparedDocking, World as _};
-use scenario::{Scenario, ScenarioSource, Stage, World};
+use run::{Expectation, Flight, Options};
+use scenario::Stage;
 
 use super::Answer;
-use super::dataset::check_size;
 use super::fly::{Shown, fly};
-use super::options::{PipelineOptions, RendererOptions, Selection, format_of};
+use super::options::{PipelineOptions, RendererOptions, Selection};
 use super::output::Output;
 
 /// Where numbered run directories go when `--out` is not given.
@@ -57,80 +54,36 @@ impl RunArguments {
 
 pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     let source = arguments.selection.scenario()?;
-    match source.scenario {
-        Scenario::FarRange(_) => run_far_range(arguments, &source, output),
-        Scenario::Docking(_) => run_docking(arguments, &source, output),
+    let (world, choice) = (source.world(), arguments.pipeline.choice());
+    if let Some(word) = &arguments.save_frames {
+        world.check_images(word).map_err(|error| Failure::Usage(format!("--save-frames: {error}")))?;
     }
-}
-
-fn run_far_range(
-    arguments: &RunArguments,
-    source: &ScenarioSource,
-    output: &Output,
-) -> Result<Answer, Failure> {
-    arguments.renderer.check_far_range()?;
     if let Some(stage) = arguments.inject
-        && !arguments.pipeline.choice().is_built_in(World::FarRange)
+        && !choice.is_built_in(world.code())
     {
         return Err(Failure::Usage(format!(
-            "--inject is {stage}, expected with the built-in pipeline `far_range` alone: another one has no place to put the \
-             truth in"
+            "--inject is {stage}, expected with the built-in pipeline `{}` alone: another one has no place to put the truth in",
+            world.code()
         )));
     }
-    let prepared = Prepared::with_truth_for(source, arguments.inject)?;
-    let jobs = arguments.selection.jobs();
-    let flight = arguments.flight(prepared.frame_count(), jobs)?;
+    let options = Options { inject: arguments.inject, renderer: arguments.renderer.renderer()? };
+    let prepared = source.prepare(options)?;
+    let flight = Flight {
+        frames: arguments.selection.frames(prepared.frame_count())?,
+        jobs: arguments.renderer.jobs(&arguments.selection),
+        images: arguments.save_frames.clone(),
+        expectation: Expectation::Dropped,
+    };
     let scratch = super::scratch_directory()?;
-    let factory = arguments.pipeline.choice().factory(&prepared.scenario().far_range, scratch.path())?;
-    arguments.fly(&prepared, &flight, factory.as_ref(), source, output)
-}
-
-fn run_docking(
-    arguments: &RunArguments,
-    source: &ScenarioSource,
-    output: &Output,
-) -> Result<Answer, Failure> {
-    if let Some(stage) = arguments.inject {
-        return Err(Failure::Usage(format!("--inject is {stage}, expected with a far-range scenario alone")));
-    }
-    let prepared = PreparedDocking::new(source, arguments.renderer.renderer()?)?;
-    let jobs = arguments.renderer.jobs(&arguments.selection);
-    let flight = arguments.flight(prepared.frame_count(), jobs)?;
-    check_size(&prepared, &flight)?;
-    let scratch = super::scratch_directory()?;
-    let factory =
-        arguments.pipeline.choice().docking_factory(&prepared.scenario().docking, scratch.path())?;
-    // While nothing has been written.
-    prepared.probe(flight.frames.start)?;
-    arguments.fly(&prepared, &flight, factory.as_ref(), source, output)
-}
-
-impl RunArguments {
-    /// The frames asked for, of so many.
-    fn flight<F: FromStr<Err = String>>(&self, frame_count: u64, jobs: usize) -> Result<Flight<F>, Failure> {
-        Ok(Flight {
-            frames: self.selection.frames(frame_count)?,
-            jobs,
-            images: format_of("--save-frames", self.save_frames.as_deref())?,
-            expectation: Expectation::Dropped,
-        })
-    }
-
-    fn fly<W: Shown>(
-        &self,
-        world: &W,
-        flight: &Flight<W::Images>,
-        factory: &dyn PipelineFactory<W::Interface>,
-        source: &ScenarioSource,
-        output: &Output,
-    ) -> Result<Answer, Failure> {
-        let directory = match &self.out {
-            Some(path) => RunDirectory::create(path)?,
-            None => RunDirectory::create_numbered(Path::new(RUNS), &source.name)?,
-        };
-        let note = self
-            .inject
-            .map(|stage| format!("the truth was injected for {stage}: this is no result of the pipeline"));
-        fly(world, flight, factory, &directory, (&source.name, !self.no_report, note), output)
-    }
+    let factory = prepared.factory(&choice, scratch.path())?;
+    prepared.check_flight(&flight)?;
+    let directory = match &arguments.out {
+        Some(path) => RunDirectory::create(path)?,
+        None => RunDirectory::create_numbered(Path::new(RUNS), &source.name)?,
+    };
+    let note = arguments
+        .inject
+        .map(|stage| format!("the truth was injected for {stage}: this is no result of the pipeline"));
+    let shown = Shown { name: &source.name, has_report: !arguments.no_report, note };
+    fly(prepared.as_ref(), &flight, &factory, &directory, shown, output)
 }

@@ -7,12 +7,10 @@ use std::path::PathBuf;
 use clap::Subcommand;
 use files::Failure;
 use run::pipeline_choice::PipelineChoice;
-use scenario::{
-    BUILT_IN, CAMERAS, DOCKING, DockingScenario, FarRangeScenario, STARTING_POINT, Scenario, ScenarioSource,
-    World,
-};
+use run::worlds::FIRST;
+use run::{AnyWorld, Options, ScenarioSource, json_schema, world_called};
+use scenario::{BUILT_IN, CAMERAS};
 use serde_json::json;
-use sim::onboard::image_bytes;
 
 use super::Answer;
 use super::options::PipelineOptions;
@@ -37,16 +35,16 @@ pub(super) enum ScenarioCommand {
     /// Print the JSON Schema of scenario files
     Schema {
         /// Of this world alone: far_range or docking
-        #[arg(long, value_name = "WORLD")]
-        world: Option<World>,
+        #[arg(long, value_name = "WORLD", value_parser = world_called)]
+        world: Option<&'static dyn AnyWorld>,
     },
     /// Write a commented starting point to a file that does not exist yet
     New {
         /// The TOML file to write
         file: PathBuf,
         /// Of this world: far_range or docking
-        #[arg(long, value_name = "WORLD", default_value_t = World::FarRange)]
-        world: World,
+        #[arg(long, value_name = "WORLD", value_parser = world_called, default_value = FIRST.code())]
+        world: &'static dyn AnyWorld,
     },
 }
 
@@ -60,7 +58,7 @@ pub(super) fn scenario(command: &ScenarioCommand, output: &Output) -> Result<Ans
         }
         ScenarioCommand::Camera { name: Some(name) } => camera(name, output),
         ScenarioCommand::Schema { world } => {
-            let schema = Scenario::json_schema(*world);
+            let schema = json_schema(*world);
             let text = serde_json::to_string_pretty(&schema)
                 .map_err(|error| Failure::Usage(format!("the schema cannot be written: {error}")))?;
             output.answer(&schema, text)
@@ -74,12 +72,8 @@ fn list(output: &Output) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for built_in in BUILT_IN {
         let source = ScenarioSource::read(built_in.name)?;
-        let (frames, unit) = match &source.scenario {
-            Scenario::FarRange(scenario) => {
-                (scenario.schedule.iter().map(|group| group.count).sum(), "frames")
-            }
-            Scenario::Docking(scenario) => (source.docking_simulator(scenario)?.field_count(), "fields"),
-        };
+        let frames = source.prepare(Options::default())?.frame_count();
+        let unit = format!("{}s", source.world().image());
         rows.push((built_in.name, frames, unit, source.scenario.title().to_owned()));
     }
     let document: Vec<_> = rows
@@ -107,17 +101,12 @@ fn camera(name: &str, output: &Output) -> Result<(), Failure> {
 /// A mistake in a scenario is the answer no; a file that cannot be read is none.
 fn check(scenario: &str, choice: &PipelineChoice, output: &Output) -> Result<Answer, Failure> {
     let checked = ScenarioSource::read(scenario).and_then(|source| {
-        let checked = match &source.scenario {
-            Scenario::FarRange(scenario) => check_far_range(&source, scenario)?,
-            Scenario::Docking(scenario) => check_docking(&source, scenario)?,
-        };
-        choice.check(&source.scenario)?;
-        if choice.is_built_in(source.scenario.world())
-            && let Scenario::FarRange(scenario) = &source.scenario
-        {
-            source.check_built_in_pipeline(scenario)?;
+        let prepared = source.prepare(Options::default())?;
+        source.world().check_choice(source.scenario.as_ref(), choice)?;
+        if choice.is_built_in(source.world().code()) {
+            source.world().check_built_in(&source)?;
         }
-        Ok(checked)
+        Ok(prepared.summary())
     });
     let (document, text) = match checked {
         Err(mistake @ Failure::Toml(_)) => {
@@ -131,67 +120,11 @@ fn check(scenario: &str, choice: &PipelineChoice, output: &Output) -> Result<Ans
     Ok(Answer::Yes)
 }
 
-/// What a check tells, for a machine and for a person.
-type Checked = (serde_json::Value, String);
-
-fn check_far_range(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<Checked, Failure> {
-    let (simulator, name) = (source.simulator(scenario)?, &source.name);
-    let (frames, stars) = (simulator.schedule().frame_count(), simulator.catalog().stars().len());
-    let (columns, rows, bit_depth) =
-        (scenario.camera.columns, scenario.camera.rows, scenario.sensor.bit_depth);
-    let image = image_bytes(columns, rows, bit_depth);
-    let (budget, telemetry) = match &scenario.roi {
-        None => (image, format!("whole images: {image} bytes of telemetry a frame")),
-        Some(roi) => {
-            let budget = roi.budget_bytes(bit_depth);
-            let regions = format!("{} regions of {} × {} pixels", roi.count, roi.columns, roi.rows);
-            (budget, format!("{regions}: {budget} bytes of telemetry a frame at most, a whole image {image}"))
-        }
-    };
-    let document = json!({
-        "scenario": name,
-        "ok": true,
-        "frames": frames,
-        "stars": stars,
-        "frame_bytes_at_most": budget,
-        "whole_image_bytes": image,
-    });
-    let text = format!("{name}: {frames} frames, {stars} stars, no mistake found\n{telemetry}");
-    Ok((document, text))
-}
-
-fn check_docking(source: &ScenarioSource, scenario: &DockingScenario) -> Result<Checked, Failure> {
-    let simulator = source.docking_simulator(scenario)?;
-    let (name, fields, target) = (&source.name, simulator.field_count(), simulator.setup().target);
-    let seconds = fields as f64 / simulator.field_rate_hz();
-    let document = json!({
-        "scenario": name,
-        "ok": true,
-        "world": "docking",
-        "frames": fields,
-        "duration_s": seconds,
-        "target": target.name,
-        "marks": target.marks.len(),
-        "cameras": scenario.cameras.len(),
-    });
-    let text = format!(
-        "{name}: {fields} fields in {seconds:.0} s, target {} with {} marks, {} cameras, no mistake found",
-        target.name,
-        target.marks.len(),
-        scenario.cameras.len()
-    );
-    Ok((document, text))
-}
-
-fn new(file: &PathBuf, world: World, output: &Output) -> Result<(), Failure> {
+fn new(file: &PathBuf, world: &dyn AnyWorld, output: &Output) -> Result<(), Failure> {
     let refuse =
         |error: std::io::Error| Failure::Usage(format!("{}: cannot be created: {error}", file.display()));
     let mut created = OpenOptions::new().write(true).create_new(true).open(file).map_err(refuse)?;
-    let text = match world {
-        World::FarRange => STARTING_POINT,
-        World::Docking => DOCKING,
-    };
-    created.write_all(text.as_bytes()).map_err(refuse)?;
+    created.write_all(world.starting_point().as_bytes()).map_err(refuse)?;
     let document = json!({ "file": file });
     output.answer(&document, format!("wrote {0}; try: boresight run {0}", file.display()))
 }

@@ -3,16 +3,12 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use files::{Checksums, Failure, FileError, toml_file};
-use run::{Prepared, PreparedDocking, World as _};
-use scenario::run_file::RunFile;
-use scenario::{FarRangeScenario, World, is_argon, world};
-use score::ARGON_TABLE_2;
+use files::{Checksums, Failure};
+use run::{world_of_run, worlds};
 
 use super::Answer;
 use super::output::Output;
-use crate::table::docking;
-use crate::table::{TableStyle, far_range};
+use crate::table::score_table;
 
 #[derive(Debug, Args)]
 pub(super) struct ScoreArguments {
@@ -31,40 +27,31 @@ pub(super) struct ScoreArguments {
 }
 
 pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answer, Failure> {
-    let run_file = arguments.directory.join("run.toml");
-    let text = toml_file::read_text(&run_file).map_err(|source| FileError::Io {
-        path: run_file.clone(),
-        doing: "read",
-        source,
-    })?;
-    let beside = |name: &str| Some(arguments.measurements.with_file_name(name)).filter(|path| path.is_file());
-    let world = world(&run_file, &text, "scenario.world")?;
-    let (given, expected) = match world {
-        World::FarRange => (arguments.motion.as_ref().map(|_| "--motion"), "docking"),
-        World::Docking => (arguments.clusters.as_ref().map(|_| "--clusters"), "far range"),
+    let world = world_of_run(&arguments.directory.join("run.toml"))?;
+    let mut evidence = None;
+    for (option, name, given) in [
+        ("--clusters", "clusters.parquet", &arguments.clusters),
+        ("--motion", "motion.csv", &arguments.motion),
+    ] {
+        if let Some(given) = given {
+            if world.evidence_file() != Some(name) {
+                let other = worlds().into_iter().find(|world| world.evidence_file() == Some(name));
+                let code = other.map_or("another world", |world| world.code());
+                return Err(Failure::Usage(format!(
+                    "{option} is given, expected with a run of {} alone",
+                    code.replace('_', " ")
+                )));
+            }
+            evidence = Some(given.clone());
+        }
+    }
+    let beside = || {
+        let path = arguments.measurements.with_file_name(world.evidence_file()?);
+        path.is_file().then_some(path)
     };
-    if let Some(given) = given {
-        return Err(Failure::Usage(format!("{given} is given, expected with a run of {expected} alone")));
-    }
-    if world == World::Docking {
-        let motion = arguments.motion.clone().or_else(|| beside("motion.csv"));
-        let score =
-            PreparedDocking::score_files(&arguments.directory, &arguments.measurements, motion.as_deref())?
-                .score;
-        Checksums::check(&arguments.directory, |_| true)?;
-        output.answer(&score, docking(&score, output.is_terminal()))?;
-        return Ok(Answer::Yes);
-    }
-    let clusters = arguments.clusters.clone().or_else(|| beside("clusters.parquet"));
-    let score =
-        Prepared::score_files(&arguments.directory, &arguments.measurements, clusters.as_deref())?.score;
+    let evidence = evidence.or_else(beside);
+    let scored = world.score_files(&arguments.directory, &arguments.measurements, evidence.as_deref())?;
     Checksums::check(&arguments.directory, |_| true)?;
-    let is_argon = is_argon(&RunFile::<FarRangeScenario>::read(&run_file)?.scenario);
-    let style = TableStyle {
-        styled: output.is_terminal(),
-        reference: is_argon.then_some(&ARGON_TABLE_2),
-        ..TableStyle::default()
-    };
-    output.answer(&score, far_range(&score, style))?;
+    output.answer_json(&scored.json()?, score_table(scored.as_ref(), output.is_terminal()))?;
     Ok(Answer::Yes)
 }

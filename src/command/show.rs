@@ -9,7 +9,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use files::Failure;
-use scenario::World;
+use run::{Prepared, PreparedDocking, World as _};
+use scenario::DockingScenario;
 use serde_json::{Value, json};
 use show::{MOST_PANELS, Panel, ShowError, Stretch, encode, picture};
 
@@ -53,6 +54,13 @@ enum View {
     Target,
 }
 
+/// Reads frames of a directory and makes their panels.
+type Panels = fn(&Source, &[u64]) -> Result<Vec<Shown>, Failure>;
+
+/// The worlds whose frames can be drawn.
+const PANELS: [(&str, Panels); 2] =
+    [(Prepared::CODE, far_range::panels), (PreparedDocking::CODE, docking::panels)];
+
 pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer, Failure> {
     if arguments.frames.len() > MOST_PANELS {
         return Err(undrawn(ShowError::PanelCount(arguments.frames.len())));
@@ -60,10 +68,10 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
     let source = Source::open(&arguments.directory, arguments.measurements.as_deref())?;
     // Refused before the work.
     let file = PictureFile::new(arguments.out.as_deref(), &source.directory, &arguments.frames)?;
-    let mut shown = match source.world {
-        World::FarRange => far_range::panels(&source, &arguments.frames)?,
-        World::Docking => docking::panels(&source, &arguments.frames)?,
-    };
+    let (_, panels) = PANELS.iter().find(|(code, _)| *code == source.world.code()).ok_or_else(|| {
+        Failure::Usage(format!("{}: there is no picture of the world {}", source.name, source.world.code()))
+    })?;
+    let mut shown = panels(&source, &arguments.frames)?;
     for Shown { panel, frame, .. } in &mut shown {
         panel.stretch = arguments.stretch.unwrap_or(panel.stretch);
         if arguments.view == View::Target {
@@ -72,7 +80,7 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
                     "--view is target, and frame {frame} has neither a target nor an answer in it, expected --view frame"
                 ))
             })?;
-        } else if source.world == World::Docking {
+        } else if source.world.is_of::<DockingScenario>() {
             // The target fills the field soon enough.
             panel.close_up = None;
         }

@@ -1,24 +1,21 @@
 //! `boresight study`: Monte Carlo over what can vary.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Mutex;
 
 use clap::{Args, Subcommand};
 use files::{Failure, RunDirectory};
-use run::docking::renderer::DockingRenderer;
 use run::pipeline_choice::PipelineChoice;
-use run::{Expectation, FirstFailure, Flight, Prepared, PreparedDocking, World as _};
-use scenario::Scenario;
+use run::{Expectation, FirstFailure, Flight, Options};
 use serde::Serialize;
 use study::{
     Campaign, CaseTable, Evaluated, Known, Plan, ShardManifest, Study, StudyFile, Workers, command_line,
 };
 
 use super::Answer;
-use super::fly::fly;
-use super::options::{PipelineOptions, default_jobs, format_of};
+use super::fly::{Shown, fly};
+use super::options::{PipelineOptions, default_jobs};
 use super::output::Output;
 use super::report::write_beside_results;
 use crate::command::cluster::{Engine, check_dask, run_on_dask};
@@ -297,7 +294,7 @@ fn plan(arguments: &PlanArguments, output: &Output) -> Result<Answer, Failure> {
     let command = |verb: &str| {
         let mut words = ["boresight", "study", verb].map(str::to_owned).to_vec();
         words.push(arguments.study.display().to_string());
-        words.extend(choice.arguments(study.scenario().world()));
+        words.extend(choice.arguments(study.scenario().world().code()));
         command_line(&words)
     };
     let text = format!(
@@ -326,8 +323,9 @@ fn refuse_until(study: &Study) -> Result<(), Failure> {
 
 /// Refuses a pipeline that the study's scenario does not have, or that cannot be run on its cameras.
 fn check_pipeline(choice: &PipelineChoice, study: &Study) -> Result<(), Failure> {
-    choice.check(study.scenario())?;
-    if choice.is_built_in(study.scenario().world()) {
+    let (scenario, world) = (study.scenario(), study.scenario().world());
+    world.check_choice(scenario, choice)?;
+    if choice.is_built_in(world.code()) {
         study.check_built_in_pipeline()?;
     }
     Ok(())
@@ -344,7 +342,7 @@ fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> 
             "--shard".to_owned(),
             format!("{shard}/{}", plan.shards),
         ]);
-        arguments.extend(choice.arguments(study.scenario().world()));
+        arguments.extend(choice.arguments(study.scenario().world().code()));
         Piece { shard, first_case: cases.start, cases: cases.end - cases.start, arguments }
     };
     Ok(Planned { pieces: (1..=plan.shards).map(piece).collect(), plan: plan.clone() })
@@ -368,36 +366,27 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
         )));
     }
     let case = study.case(arguments.case)?;
-    let scratch = super::scratch_directory()?;
-    let choice = arguments.pipeline.choice();
-    let name = format!("{}-case-{}", study.name, case.number);
-    let shown = (name.as_str(), !arguments.no_report, None);
-    let directory = || match &arguments.out {
-        Some(path) => RunDirectory::create(path),
-        None => RunDirectory::create_numbered(Path::new(super::run::RUNS), &name),
-    };
-    match &case.source.scenario {
-        Scenario::FarRange(scenario) => {
-            let factory = choice.factory(&scenario.far_range, scratch.path())?;
-            let prepared = Prepared::new(&case.source)?;
-            let flight = replayed(arguments, study.frames(prepared.frame_count())?)?;
-            fly(&prepared, &flight, factory.as_ref(), &directory()?, shown, output)
-        }
-        Scenario::Docking(scenario) => {
-            let factory = choice.docking_factory(&scenario.docking, scratch.path())?;
-            let prepared = PreparedDocking::new(&case.source, DockingRenderer::Fast)?;
-            let flight = replayed(arguments, study.frames(prepared.frame_count())?)?;
-            fly(&prepared, &flight, factory.as_ref(), &directory()?, shown, output)
-        }
+    if let Some(word) = &arguments.save_frames {
+        let checked = case.source.world().check_images(word);
+        checked.map_err(|error| Failure::Usage(format!("--save-frames: {error}")))?;
     }
-}
-
-fn replayed<F: FromStr<Err = String>>(
-    arguments: &ReplayArguments,
-    frames: Range<u64>,
-) -> Result<Flight<F>, Failure> {
-    let images = format_of("--save-frames", arguments.save_frames.as_deref())?;
-    Ok(Flight { frames, jobs: default_jobs(), images, expectation: Expectation::Dropped })
+    let scratch = super::scratch_directory()?;
+    let name = format!("{}-case-{}", study.name, case.number);
+    let prepared = case.source.prepare(Options::default())?;
+    let factory = prepared.factory(&arguments.pipeline.choice(), scratch.path())?;
+    let flight = Flight {
+        frames: study.frames(prepared.frame_count())?,
+        jobs: default_jobs(),
+        images: arguments.save_frames.clone(),
+        expectation: Expectation::Dropped,
+    };
+    prepared.check_flight(&flight)?;
+    let directory = match &arguments.out {
+        Some(path) => RunDirectory::create(path)?,
+        None => RunDirectory::create_numbered(Path::new(super::run::RUNS), &name)?,
+    };
+    let shown = Shown { name: &name, has_report: !arguments.no_report, note: None };
+    fly(prepared.as_ref(), &flight, &factory, &directory, shown, output)
 }
 
 fn check(arguments: &CheckArguments, output: &Output) -> Result<Answer, Failure> {

@@ -9,10 +9,7 @@ use std::time::{Duration, Instant};
 use boresight::files::{TableReader, TableWriter};
 use boresight::monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::run::Prepared;
-use boresight::run::PreparedDocking;
-use boresight::run::docking::renderer::DockingRenderer;
-use boresight::scenario::{Scenario, ScenarioSource};
+use boresight::run::{Options, ScenarioSource};
 use serde_json::Value;
 use sim::truth::FrameTruth;
 
@@ -115,31 +112,14 @@ fn live(name: &str, frames: std::ops::Range<u64>) -> Feed {
     let source = ScenarioSource::read(name).unwrap();
     let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 4000 };
     let scratch = std::env::temp_dir();
-    match &source.scenario {
-        Scenario::FarRange(scenario) => {
-            let factory = choice.factory(&scenario.far_range, &scratch).unwrap();
-            let measurements = Measurements::Live { factory, frames, jobs: 1 };
-            Feed::FarRange(Box::new(Prepared::new(&source).unwrap()), measurements)
-        }
-        Scenario::Docking(scenario) => {
-            let factory = choice.docking_factory(&scenario.docking, &scratch).unwrap();
-            let prepared = PreparedDocking::new(&source, DockingRenderer::Fast).unwrap();
-            Feed::Docking(Box::new(prepared), Measurements::Live { factory, frames, jobs: 1 })
-        }
-    }
+    let prepared = source.prepare(Options::default()).unwrap();
+    let factory = prepared.factory(&choice, &scratch).unwrap();
+    Feed::new(prepared, Measurements::Live { factory, frames, jobs: 1 }).unwrap()
 }
 
 fn replay(directory: std::path::PathBuf) -> Feed {
     let source = ScenarioSource::read(&directory.join("run.toml").to_string_lossy()).unwrap();
-    match &source.scenario {
-        Scenario::FarRange(_) => {
-            Feed::FarRange(Box::new(Prepared::new(&source).unwrap()), Measurements::Replay(directory))
-        }
-        Scenario::Docking(_) => {
-            let prepared = PreparedDocking::new(&source, DockingRenderer::Fast).unwrap();
-            Feed::Docking(Box::new(prepared), Measurements::Replay(directory))
-        }
-    }
+    Feed::new(source.prepare(Options::default()).unwrap(), Measurements::Replay(directory)).unwrap()
 }
 
 /// Every number of a row of the run that the report has too is the same; angles of a replay have changed their unit twice.

@@ -6,7 +6,8 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use boresight::files::read_telemetry;
-use boresight::scenario::ScenarioSource;
+use boresight::run::ScenarioSource;
+use boresight::run::far_range::simulator;
 use boresight::score::{ARGON_TABLE_2, names};
 use serde_json::Value;
 use sim::truth::{ObjectKind, ObjectTruth};
@@ -291,7 +292,7 @@ fn the_bare_command_runs_argon_into_a_numbered_directory() {
 #[test]
 fn the_schedule_of_argon_is_that_of_table_2() {
     let source = ScenarioSource::read("argon").unwrap();
-    let simulator = source.simulator(source.far_range("argon").unwrap()).unwrap();
+    let simulator = simulator(&source, source.typed("argon").unwrap()).unwrap();
     let schedule = simulator.schedule();
     assert_eq!(schedule.frame_count(), 16_077);
     let mut counts: BTreeMap<String, u32> = BTreeMap::new();

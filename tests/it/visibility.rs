@@ -3,7 +3,8 @@
 
 use std::path::Path;
 
-use boresight::scenario::{FarRangeScenario, ScenarioSource};
+use boresight::run::ScenarioSource;
+use boresight::scenario::FarRangeScenario;
 use boresight::statistics::clopper_pearson;
 use boresight::visibility::{
     Bench as TestBench, CameraConfig, CameraModel, Curves, Demand, Design, DetectionRule, MotionGuidance,
@@ -41,7 +42,7 @@ fn requirements(lines: &str) -> Requirements {
 }
 
 fn argon() -> FarRangeScenario {
-    ScenarioSource::read("argon").unwrap().far_range("a test").unwrap().clone()
+    ScenarioSource::read("argon").unwrap().typed::<FarRangeScenario>("a test").unwrap().clone()
 }
 
 fn camera() -> CameraConfig {

@@ -23,11 +23,14 @@ pub struct Digitiser {
 impl Default for Digitiser {
     /// Black level to 0, white level to full scale.
     fn default() -> Self {
-        Self { contrast: 1.0, brightness: 0.0 }
+        Self::NEUTRAL
     }
 }
 
 impl Digitiser {
+    /// Black level to 0, white level to full scale.
+    pub const NEUTRAL: Self = Self { contrast: 1.0, brightness: 0.0 };
+
     /// Checks both numbers.
     ///
     /// # Errors

@@ -2,19 +2,12 @@
 
 use std::path::Path;
 
-use contract::docking::Digitiser;
 use files::sha256::{hex, sha256_hex};
-use files::{
-    Checksums, Failure, FieldRow, FileError, TableReader, TelemetryRow, read_field_telemetry, read_telemetry,
-    toml_file,
-};
-use run::{Prepared, PreparedDocking, Scored, World as _};
+use files::{Checksums, Failure, FileError, toml_file};
+use run::{world_of_run, worlds};
 use scenario::run_file::RunFile;
-use scenario::{DockingScenario, FarRangeScenario, World, world};
-use score::{FigureTerms, Kind, Reduction, Term, UnitTable, UnitVerdict, names, sense};
+use score::{FigureTerms, Kind, Reduction, Term, UnitTable, UnitVerdict, sense};
 use sha2::{Digest, Sha256};
-use sim::docking::FieldTruth;
-use sim::truth::FrameTruth;
 use study::{CaseFigure, CaseTable, StudyRecord};
 use toml::Table;
 
@@ -28,11 +21,7 @@ use super::sample::Sample;
 pub fn read_result(directory: &Path) -> Result<Sample, Failure> {
     let (run_file, cases) = (directory.join("run.toml"), directory.join("cases.parquet"));
     let sample = if run_file.is_file() {
-        let text = read_text(&run_file)?;
-        match world(&run_file, &text, "scenario.world")? {
-            World::FarRange => far_range(directory, &run_file, &text)?,
-            World::Docking => docking(directory, &run_file, &text)?,
-        }
+        run(directory, &run_file)?
     } else if cases.is_file() {
         study(directory, &cases)?
     } else {
@@ -45,14 +34,6 @@ pub fn read_result(directory: &Path) -> Result<Sample, Failure> {
     Ok(sample)
 }
 
-fn read_text(path: &Path) -> Result<String, Failure> {
-    Ok(toml_file::read_text(path).map_err(|source| FileError::Io {
-        path: path.to_owned(),
-        doing: "read",
-        source,
-    })?)
-}
-
 /// The resolved scenario of a run, as its file holds it.
 fn scenario_of(path: &Path, text: &str) -> Result<Table, Failure> {
     let mut file: Table = toml_file::parse(path, text)?;
@@ -62,61 +43,28 @@ fn scenario_of(path: &Path, text: &str) -> Result<Table, Failure> {
     }
 }
 
-fn far_range(directory: &Path, path: &Path, text: &str) -> Result<Sample, Failure> {
-    let run_file = RunFile::<FarRangeScenario>::read(path)?;
-    let clusters = Some(directory.join("clusters.parquet")).filter(|path| path.is_file());
-    let scored = Prepared::score_files(directory, &directory.join("measurements.csv"), clusters.as_deref())?;
+fn run(directory: &Path, path: &Path) -> Result<Sample, Failure> {
+    let world = world_of_run(path)?;
+    let RunFile { name, version, catalog_sha256, inject, mitsuba, scenario, .. } = world.read_run(path)?;
+    let evidence = world.evidence_file().map(|name| directory.join(name)).filter(|path| path.is_file());
+    let scored = world.score_files(directory, &directory.join("measurements.csv"), evidence.as_deref())?;
     let mut digest = FrameDigest::default();
-    for TelemetryRow { frame, telemetry, windows, .. } in read_telemetry(&directory.join("telemetry.csv"))? {
-        digest.add(&(frame, telemetry, windows));
-    }
-    for frame in TableReader::<FrameTruth>::open(&directory.join("truth/frames.parquet"))? {
-        frame?.1.iter().for_each(|truth| digest.add(truth));
-    }
-    let split = split("far_range", scenario_of(path, text)?)?;
+    world.known_of_frames(directory, &mut |row| digest.add(row))?;
+    let text = toml_file::read_text(path).map_err(|source| FileError::Io {
+        path: path.to_owned(),
+        doing: "read",
+        source,
+    })?;
+    let split = split(world.code(), scenario_of(path, &text)?)?;
     let identity = Identity {
         kind: SourceKind::Run,
-        world: "far_range".to_owned(),
-        name: run_file.name,
-        seed: run_file.scenario.seed,
-        version: run_file.version,
-        catalog_sha256: run_file.catalog_sha256,
-        inject: run_file.inject.map(|stage| stage.to_string()),
-        renderer: None,
-        scenario_sha256: split.scenario_sha256,
-        frames_sha256: digest.finish(),
-        pipeline: split.pipeline,
-        scenario: split.scenario,
-    };
-    Ok(Sample::new(identity, scored.units()))
-}
-
-fn docking(directory: &Path, path: &Path, text: &str) -> Result<Sample, Failure> {
-    let run_file = RunFile::<DockingScenario>::read(path)?;
-    let motion = Some(directory.join("motion.csv")).filter(|path| path.is_file());
-    let scored =
-        PreparedDocking::score_files(directory, &directory.join("measurements.csv"), motion.as_deref())?;
-    let mut digest = FrameDigest::default();
-    for FieldRow { field, lines, mut telemetry, .. } in
-        read_field_telemetry(&directory.join("telemetry.csv"))?
-    {
-        // What the pipeline asked of the digitiser is its own doing.
-        telemetry.digitiser = Digitiser::default();
-        digest.add(&(field, lines, telemetry));
-    }
-    for field in TableReader::<FieldTruth>::open(&directory.join("truth/fields.parquet"))? {
-        field?.1.iter().for_each(|truth| digest.add(truth));
-    }
-    let split = split("docking", scenario_of(path, text)?)?;
-    let identity = Identity {
-        kind: SourceKind::Run,
-        world: "docking".to_owned(),
-        name: run_file.name,
-        seed: run_file.scenario.seed,
-        version: run_file.version,
-        catalog_sha256: None,
-        inject: None,
-        renderer: run_file.mitsuba.map(|_| "mitsuba".to_owned()),
+        world: world.code().to_owned(),
+        name,
+        seed: scenario.seed(),
+        version,
+        catalog_sha256,
+        inject: inject.map(|stage| stage.to_string()),
+        renderer: mitsuba.map(|_| "mitsuba".to_owned()),
         scenario_sha256: split.scenario_sha256,
         frames_sha256: digest.finish(),
         pipeline: split.pipeline,
@@ -171,8 +119,8 @@ fn units_of_cases(table: &CaseTable) -> UnitTable {
         let terms = table.rows.iter().map(|row| term(row.figures[index])).collect();
         FigureTerms { name: name.clone(), reduction, terms }
     };
-    let of_verdicts = [names::CORRECT_RATE, score::docking::names::SUCCESS_RATE];
-    let verdict = table.figures.iter().position(|name| of_verdicts.contains(&name.as_str()));
+    let headlines: Vec<&str> = worlds().into_iter().map(|world| world.headline()).collect();
+    let verdict = table.figures.iter().position(|name| headlines.contains(&name.as_str()));
     let units = table.rows.iter().map(|row| UnitVerdict {
         number: row.case,
         group: "all".to_owned(),
@@ -189,7 +137,7 @@ fn units_of_cases(table: &CaseTable) -> UnitTable {
 struct FrameDigest(Sha256);
 
 impl FrameDigest {
-    fn add(&mut self, row: &impl std::fmt::Debug) {
+    fn add(&mut self, row: &dyn std::fmt::Debug) {
         self.0.update(format!("{row:?}\n"));
     }
 

@@ -2,11 +2,10 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use contract::docking::{Digitiser, Docking};
-use contract::{FarRange, PipelineFactory};
+use contract::docking::Digitiser;
 use files::docking::{FeatureRow, read_field_measurements, read_motion};
 use files::{Checksums, Failure, FrameCluster, Row, TableReader, read_field_telemetry, read_measurements};
-use run::{Prepared, PreparedDocking, SceneTruth, World};
+use run::{AnyFactory, AnyPrepared, Prepared, PreparedDocking, SceneTruth, World};
 use sim::docking::FieldTruth;
 use sim::truth::{FrameTruth, ObjectTruth, Trajectory};
 
@@ -22,17 +21,35 @@ pub const MOST_FRAMES: u64 = 50_000;
 /// What is monitored.
 pub enum Feed {
     /// Star fields with a distant spacecraft.
-    FarRange(Box<Prepared>, Measurements<Box<dyn PipelineFactory<FarRange>>>),
+    FarRange(Box<Prepared>, Measurements),
     /// The approach to a docking target.
-    Docking(Box<PreparedDocking>, Measurements<Box<dyn PipelineFactory<Docking>>>),
+    Docking(Box<PreparedDocking>, Measurements),
+}
+
+impl Feed {
+    /// A run that `measurements` are made or were made of.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a world that the page does not show.
+    pub fn new(prepared: Box<dyn AnyPrepared>, measurements: Measurements) -> Result<Self, Failure> {
+        match prepared.into_any().downcast::<Prepared>() {
+            Ok(prepared) => Ok(Self::FarRange(prepared, measurements)),
+            Err(other) => match other.downcast() {
+                Ok(prepared) => Ok(Self::Docking(prepared, measurements)),
+                Err(_) => {
+                    Err(Failure::Usage("the monitor shows the worlds far_range and docking alone".to_owned()))
+                }
+            },
+        }
+    }
 }
 
 /// Who measures.
-pub enum Measurements<F> {
+pub enum Measurements {
     /// A pipeline, now, on frames that so many threads make.
     Live {
         /// Builds the pipeline.
-        factory: F,
+        factory: AnyFactory,
         /// The frames.
         frames: Range<u64>,
         /// Threads.
@@ -42,7 +59,7 @@ pub enum Measurements<F> {
     Replay(PathBuf),
 }
 
-impl<F> Measurements<F> {
+impl Measurements {
     /// The word that the page has for it.
     pub(super) fn mode(&self) -> &'static str {
         match self {
@@ -70,22 +87,22 @@ impl Surroundings {
                     ground: Some(GroundTrack::Chaser(Box::new(trajectory.clone()))),
                     trajectory: Some(trajectory),
                     stretch: Stretch::of_sensor(&scenario.sensor),
-                    frames: frames(measurements, "truth/frames.parquet", numbers::<FrameTruth>)?,
+                    frames: frames(measurements, Prepared::TRUTH_FILE, numbers::<FrameTruth>)?,
                 })
             }
             Feed::Docking(prepared, measurements) => Ok(Self {
                 ground: GroundTrack::station(prepared.simulator()),
                 trajectory: None,
                 stretch: Stretch::plain(),
-                frames: frames(measurements, "truth/fields.parquet", numbers::<FieldTruth>)?,
+                frames: frames(measurements, PreparedDocking::TRUTH_FILE, numbers::<FieldTruth>)?,
             }),
         }
     }
 }
 
 /// The frames of a live run, or those of a run directory, which must be without gaps: a run's are.
-fn frames<F>(
-    measurements: &Measurements<F>,
+fn frames(
+    measurements: &Measurements,
     table: &str,
     numbers: fn(&Path) -> Result<Range<u64>, Failure>,
 ) -> Result<Range<u64>, Failure> {
@@ -147,7 +164,7 @@ pub(super) fn feed(feed: &Feed, surroundings: &Surroundings, session: &Session) 
             let reporter = FarRangeReporter { camera, trajectory, ground, start };
             match measurements {
                 Measurements::Live { factory, frames, jobs } => {
-                    prepared.follow(frames.clone(), *jobs, factory.as_ref(), |processed| {
+                    prepared.follow(frames.clone(), *jobs, factory.of()?, |processed| {
                         let SceneTruth { frame: truth, objects } = &processed.truth;
                         session.wait_for_goal(truth.frame)?;
                         let report = reporter.report(truth, objects, Some(&processed.outcome));
@@ -163,7 +180,7 @@ pub(super) fn feed(feed: &Feed, surroundings: &Surroundings, session: &Session) 
             let mut reporter = DockingReporter::new(prepared.setup(), names, surroundings.ground.as_ref());
             match measurements {
                 Measurements::Live { factory, frames, jobs } => {
-                    prepared.follow(frames.clone(), *jobs, factory.as_ref(), |processed| {
+                    prepared.follow(frames.clone(), *jobs, factory.of()?, |processed| {
                         let number = processed.image.number();
                         session.wait_for_goal(number)?;
                         let features = FeatureRow::of(number, &processed.outcome.features);

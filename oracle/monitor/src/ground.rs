@@ -115,9 +115,8 @@ fn point(time: Epoch, position_km: &Vector3<f64>) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use run::PreparedDocking;
     use run::docking::renderer::DockingRenderer;
-    use scenario::ScenarioSource;
+    use run::{PreparedDocking, ScenarioSource};
 
     #[test]
     fn the_sun_stands_over_the_station_where_the_scene_has_it() {

@@ -38,14 +38,13 @@ impl Stretch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scenario::{Scenario, ScenarioSource};
+    use run::ScenarioSource;
+    use scenario::FarRangeScenario;
 
     #[test]
     fn the_stretch_rises_from_black_at_the_bias_to_white_at_full_scale() {
-        let Scenario::FarRange(scenario) = ScenarioSource::read("argon").unwrap().scenario else {
-            panic!("argon is a far-range scenario")
-        };
-        let sensor = &scenario.sensor;
+        let source = ScenarioSource::read("argon").unwrap();
+        let sensor = &source.typed::<FarRangeScenario>("argon").unwrap().sensor;
         let Stretch(table) = Stretch::of_sensor(sensor);
         assert_eq!((table[0], table[sensor.bias_dn as usize]), (0, 0));
         assert_eq!((table.len(), table.last()), (usize::from(sensor.full_scale_dn()) + 1, Some(&255)));

@@ -36,6 +36,7 @@ mod picture;
 mod plotly;
 mod plotly_js;
 mod read;
+mod run_page;
 mod script_safe;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 mod sky_map;
@@ -58,11 +59,26 @@ pub use read::ResultKind;
 pub use study::{StudyResult, study_page};
 pub use visibility::{read_visibility, visibility_page};
 
-use self::read::world_of;
-use files::Failure;
-use files::{Checksums, WholeFile};
-use scenario::World;
-use score::FrameVerdict;
+use self::read::is_far_range_run;
+use self::run_page::run_page;
+use files::{Checksums, Failure, WholeFile};
+use run::{AnyScored, Prepared, PreparedDocking, World as _, world_of_run};
+use score::Scored;
+
+/// Reads a run directory and makes its page.
+type RunPage = fn(&Path) -> Result<Page, Failure>;
+
+/// Worlds with pages of their own. A run of another world has its figures and verdicts.
+const PAGES: [(&str, RunPage); 2] = [
+    (Prepared::CODE, |directory| {
+        let mut run = FarRangeRun::read(directory)?;
+        run.budget = InjectedRun::read_all(&kept_budget(directory), &run.run_file, &run.score)?;
+        far_range_page(&run, &FrameSheet::open(directory)?)
+    }),
+    (PreparedDocking::CODE, |directory| {
+        docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?)
+    }),
+];
 
 /// The report of a directory of results, with the error budget that is kept there.
 ///
@@ -70,14 +86,11 @@ use score::FrameVerdict;
 /// A [`Failure`] that names the file which is missing or cannot be read.
 pub fn report_of(directory: &Path) -> Result<Page, Failure> {
     let page = match ResultKind::of(directory)? {
-        ResultKind::Run => match world_of(directory)? {
-            World::FarRange => {
-                let mut run = FarRangeRun::read(directory)?;
-                run.budget = InjectedRun::read_all(&kept_budget(directory), &run.run_file, &run.score)?;
-                far_range_page(&run, &FrameSheet::open(directory)?)?
-            }
-            World::Docking => docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?)?,
-        },
+        ResultKind::Run => {
+            let world = world_of_run(&directory.join("run.toml"))?;
+            let of_world = PAGES.iter().find(|(code, _)| *code == world.code());
+            of_world.map_or(run_page as RunPage, |(_, page)| *page)(directory)?
+        }
         ResultKind::Study => study_page(&StudyResult::read(directory)?),
         ResultKind::Visibility => visibility_page(&read_visibility(directory)?),
     };
@@ -90,7 +103,7 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
 /// # Errors
 /// A [`Failure`] for a directory that is not of a far-range run.
 pub fn check_budget(directory: &Path) -> Result<(), Failure> {
-    if ResultKind::of(directory)? != ResultKind::Run || world_of(directory)? != World::FarRange {
+    if !is_far_range_run(directory)? {
         return Err(Failure::Usage(format!(
             "--budget is given, expected with a run of the far range alone: {} is none",
             directory.display()
@@ -111,12 +124,19 @@ pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, 
     far_range_page(&run, &FrameSheet::open(directory)?)
 }
 
-/// The report of a far-range run whose verdicts are at hand.
+/// The report of a run that has just been scored. What was scored is read from its files only where it is not at hand; verdicts are taken
+/// out of `scored`.
 ///
 /// # Errors
 /// As [`report_of`].
-pub fn far_range_report(directory: &Path, verdicts: Vec<FrameVerdict>) -> Result<Page, Failure> {
-    far_range_page(&FarRangeRun::with_verdicts(directory, verdicts)?, &FrameSheet::open(directory)?)
+pub fn report_of_run(directory: &Path, scored: &mut dyn AnyScored) -> Result<Page, Failure> {
+    match scored.as_any_mut().downcast_mut::<Scored>() {
+        Some(scored) => {
+            let run = FarRangeRun::with_verdicts(directory, std::mem::take(&mut scored.verdicts))?;
+            far_range_page(&run, &FrameSheet::open(directory)?)
+        }
+        None => report_of(directory),
+    }
 }
 
 /// Writes a page, at once or not at all; a report that was there is replaced. Returns its length, bytes.

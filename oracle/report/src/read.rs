@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use files::{Failure, FileError, Row, TableReader, toml_file};
-use scenario::{World, world};
+use files::{Failure, FileError, Row, TableReader};
+use run::world_of_run;
+use scenario::FarRangeScenario;
 use serde::de::DeserializeOwned;
 
 /// Longest JSON file that is read, bytes.
@@ -51,15 +52,10 @@ impl ResultKind {
     }
 }
 
-/// The world of a run, by its `run.toml`.
-pub(super) fn world_of(directory: &Path) -> Result<World, Failure> {
-    let path = directory.join("run.toml");
-    let text = toml_file::read_text(&path).map_err(|source| FileError::Io {
-        path: path.clone(),
-        doing: "read",
-        source,
-    })?;
-    world(&path, &text, "scenario.world")
+/// Whether a directory is that of a run of the far range.
+pub(super) fn is_far_range_run(directory: &Path) -> Result<bool, Failure> {
+    Ok(ResultKind::of(directory)? == ResultKind::Run
+        && world_of_run(&directory.join("run.toml"))?.is_of::<FarRangeScenario>())
 }
 
 /// A file of a run that is not there.

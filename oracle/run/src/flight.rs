@@ -1,9 +1,31 @@
-//! Frames in order, made on several threads.
+//! Which frames are made, and making them in order on several threads.
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
 use files::Failure;
+
+/// Which frames are made, on how many threads, and what is kept of their images.
+#[derive(Debug, Clone)]
+pub struct Flight<F> {
+    /// The frames.
+    pub frames: Range<u64>,
+    /// Threads that make frames; what is made does not depend on it.
+    pub jobs: usize,
+    /// Images to keep.
+    pub images: Option<F>,
+    /// Whether the noise-free expectation of every frame is kept with the truth, where a world has one.
+    pub expectation: Expectation,
+}
+
+/// What becomes of the noise-free expectation of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Expectation {
+    /// Written to `truth/expected/`, electrons, EXR.
+    Kept,
+    /// Dropped.
+    Dropped,
+}
 
 /// Frames that a thread may be ahead of what is taken, at most: enough to keep threads busy.
 const FRAMES_PER_JOB: u64 = 32;

@@ -11,15 +11,24 @@
     )
 )]
 
+pub mod any_world;
 mod by_number;
 pub mod docking;
+mod erased;
 pub mod far_range;
 pub mod flight;
 pub mod pipeline_choice;
+mod ran;
+mod source;
 pub mod world;
+pub mod worlds;
 
+pub use any_world::{AnyFactory, AnyPrepared, AnyScenario, AnyScored, AnyWorld, Options, ScenarioSource};
 pub use docking::PreparedDocking;
+pub use erased::Of;
 pub use far_range::{Prepared, SceneTruth};
-pub use world::{
-    Expectation, FirstFailure, Flight, Processed, ProcessedFrame, Ran, Scored, World, process, process_into,
-};
+pub use flight::{Expectation, Flight};
+pub use ran::{FirstFailure, Ran};
+pub use source::world_of_run;
+pub use world::{OpenDataset, Processed, ProcessedFrame, Scored, World, process, process_into};
+pub use worlds::{json_schema, register, world_called, worlds};

@@ -1,14 +1,7 @@
 //! Which pipeline runs: the built-in one, or somebody else's program.
 use std::path::Path;
-use std::sync::Arc;
 
-use contract::docking::{Docking, Field, FieldTelemetry};
-use contract::{FarRange, PipelineFactory};
-use files::{Failure, FrameHeader, ImageFormat, format_utc, toml_file, write_field, write_frame};
-use pipeline::docking::{DockingConfig, DockingFactory};
-use pipeline::external::ExternalFactory;
-use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
-use scenario::{Scenario, World};
+use files::{Failure, toml_file};
 use sha2::{Digest, Sha256};
 
 const EXEC: &str = "exec:";
@@ -28,24 +21,12 @@ pub struct PipelineChoice {
 
 impl PipelineChoice {
     /// Whether it is the built-in one of a world.
-    pub fn is_built_in(&self, world: World) -> bool {
-        self.word.as_deref().is_none_or(|word| word == world.code())
-    }
-
-    /// Refuses a choice that the world of a scenario does not have, or a program that is not there.
-    ///
-    /// # Errors
-    /// As [`PipelineChoice::factory`].
-    pub fn check(&self, scenario: &Scenario) -> Result<(), Failure> {
-        let nowhere = Path::new("");
-        match scenario {
-            Scenario::FarRange(scenario) => self.factory(&scenario.far_range, nowhere).map(drop),
-            Scenario::Docking(scenario) => self.docking_factory(&scenario.docking, nowhere).map(drop),
-        }
+    pub fn is_built_in(&self, world: &str) -> bool {
+        self.word.as_deref().is_none_or(|word| word == world)
     }
 
     /// Words of a command line that choose it; none for the built-in one of a world.
-    pub fn arguments(&self, world: World) -> Vec<String> {
+    pub fn arguments(&self, world: &str) -> Vec<String> {
         match &self.word {
             Some(word) if !self.is_built_in(world) => {
                 let (timeout_s, memory_mb) = (self.timeout_s.to_string(), self.memory_mb.to_string());
@@ -59,7 +40,7 @@ impl PipelineChoice {
 
     /// SHA-256 of what a program's answers depend on, as far as it can be known: its words, the files among them, its limits of time and memory;
     /// none for the built-in pipeline of a world, whose parameters are the scenario's.
-    pub fn hash(&self, world: World) -> Option<[u8; 32]> {
+    pub fn hash(&self, world: &str) -> Option<[u8; 32]> {
         let word = self.word.as_ref().filter(|_| !self.is_built_in(world))?;
         let mut hash = Sha256::new();
         let mut part = |bytes: &[u8]| {
@@ -78,89 +59,16 @@ impl PipelineChoice {
         Some(hash.finalize().into())
     }
 
-    /// The factory of a far-range pipeline. A program finds the images of its frames in `scratch`.
-    ///
-    /// # Errors
-    /// A [`Failure`] for a word that names no pipeline of that world, a command that is none, or a limit outside its range.
-    pub fn factory(
-        &self,
-        far_range: &FarRangeConfig,
-        scratch: &Path,
-    ) -> Result<Box<dyn PipelineFactory<FarRange>>, Failure> {
-        let Some(command) = self.command(World::FarRange)? else {
-            let factory = FarRangeFactory::new(far_range.clone());
-            return Ok(Box::new(factory.map_err(|error| Failure::Usage(error.to_string()))?));
-        };
-        let mut factory =
-            ExternalFactory::new(command, scratch.to_path_buf(), Arc::new(write_image), format_utc);
-        factory.timeout_s = self.timeout_s;
-        factory.memory_mb = self.memory_mb;
-        // Now, while nothing has been written for it.
-        factory.check()?;
-        Ok(Box::new(factory))
-    }
-
-    /// The factory of a docking pipeline. A program finds the images of its fields in `scratch`.
-    ///
-    /// # Errors
-    /// As [`PipelineChoice::factory`].
-    pub fn docking_factory(
-        &self,
-        docking: &DockingConfig,
-        scratch: &Path,
-    ) -> Result<Box<dyn PipelineFactory<Docking>>, Failure> {
-        let Some(command) = self.command(World::Docking)? else {
-            let factory = DockingFactory::new(docking.clone());
-            return Ok(Box::new(factory.map_err(|error| Failure::Usage(error.to_string()))?));
-        };
-        let mut factory = ExternalFactory::<Docking>::new(
-            command,
-            scratch.to_path_buf(),
-            Arc::new(write_field_image),
-            format_utc,
-        );
-        factory.timeout_s = self.timeout_s;
-        factory.memory_mb = self.memory_mb;
-        factory.check()?;
-        Ok(Box::new(factory))
-    }
-
-    /// The command of a program; `None` for the world's built-in pipeline.
-    fn command(&self, world: World) -> Result<Option<&str>, Failure> {
-        let Some(word) = self.word.as_deref().filter(|word| *word != world.code()) else { return Ok(None) };
+    /// The command of a program; `None` for the built-in pipeline of the world called `built_in`.
+    pub(crate) fn command(&self, built_in: &str) -> Result<Option<&str>, Failure> {
+        let Some(word) = self.word.as_deref().filter(|word| *word != built_in) else { return Ok(None) };
         if let Some(command) = word.strip_prefix(EXEC) {
             return Ok(Some(command));
-        }
-        let built_in = world.code();
-        if World::ALL.iter().any(|other| other.code() == word) {
-            return Err(Failure::Usage(format!(
-                "the pipeline `{word}` is of another world; expected `{built_in}` or `exec:COMMAND`"
-            )));
         }
         let hint = toml_file::nearest(word, [built_in, EXEC])
             .map_or(String::new(), |name| format!("; did you mean `{name}`?"));
         Err(Failure::Usage(format!(
-            "there is no pipeline `{word}`; expected `{built_in}` or `exec:COMMAND`{hint}"
+            "there is no pipeline `{word}` in the world `{built_in}`; expected `{built_in}` or `exec:COMMAND`{hint}"
         )))
     }
-}
-
-/// Writes a field for a program: PNG, which tells nothing but the pixels.
-fn write_field_image(field: &Field, _: &FieldTelemetry, path: &Path) -> Result<(), String> {
-    write_field(path, field).map_err(|error| error.to_string())
-}
-
-/// Writes a frame for a program: FITS with no more in its header than telemetry says.
-fn write_image(frame: &contract::Frame, telemetry: &contract::Telemetry, path: &Path) -> Result<(), String> {
-    let header = FrameHeader {
-        time: telemetry.time,
-        exposure_s: telemetry.exposure_s,
-        gain_e_per_dn: None,
-        seed: 0,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        configuration_hash: String::new(),
-        observer_velocity_km_s: None,
-        wcs: None,
-    };
-    write_frame(path, ImageFormat::Fits, frame, &header).map_err(|error| error.to_string())
 }

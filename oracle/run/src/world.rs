@@ -1,16 +1,23 @@
 //! One run over a world: expose, process, score, write.
 
+use std::fmt::Debug;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::sync::{Mutex, PoisonError};
 
 use contract::{Interface, Pipeline, PipelineFactory};
 use files::{Failure, FileError, PartialFiles, RunDirectory, WholeFile};
 use indexmap::IndexMap;
+use pipeline::external::Protocol;
+use scenario::run_file::{RunFile, ScenarioFile};
 use score::{Figure, UnitTable};
 use serde::Serialize;
+use serde_json::{Value, json};
 
-use crate::flight::in_order;
+use crate::any_world::{Options, ScenarioSource};
+use crate::flight::{Flight, in_order};
+use crate::ran::{FirstFailure, Ran};
 
 /// The setup that pipelines of a world are built with.
 pub type SetupOf<W> = <<W as World>::Interface as Interface>::Setup;
@@ -25,11 +32,32 @@ pub type OutcomeOf<W> = <<W as World>::Interface as Interface>::Outcome;
 ///
 /// Exposures are made on any number of threads. They are received and processed one after the other, because an answer may change how
 /// later images are received ([`World::Feedback`]): a closed loop, which no number of threads can change.
-pub trait World: Sized + Sync {
+pub trait World: Sized + Send + Sync + 'static {
+    /// Its word in files and on the command line. Also the name of its built-in pipeline, and of that pipeline's table in a scenario.
+    const CODE: &'static str = Self::Scenario::WORLD;
+    /// A commented scenario to begin with.
+    const STARTING_POINT: &'static str;
+    /// The file of a dataset that tells a pipeline what it knows before the first frame.
+    const SETUP_FILE: &'static str;
+    /// The table of a run directory with a row for every frame of the truth.
+    const TRUTH_FILE: &'static str;
+    /// The file beside the measurements that a score reads as well, if it is there.
+    const EVIDENCE_FILE: Option<&'static str>;
+    /// The rate by which runs are good or bad, a figure of the score.
+    const HEADLINE: &'static str;
+    /// How images of a rendered dataset are kept, unless told otherwise.
+    const IMAGES: Self::Images;
+    /// The word of the format in which a person looks at images.
+    const PICTURES: &'static str;
+
+    /// Its scenarios.
+    type Scenario: ScenarioFile;
+    /// Parameters of the built-in pipeline.
+    type Config;
     /// What its pipelines receive and answer.
-    type Interface: Interface;
+    type Interface: Protocol;
     /// Formats in which images are kept.
-    type Images: Copy + Sync;
+    type Images: Copy + Sync + FromStr<Err = String>;
     /// What a thread makes of a frame, before it is received.
     type Exposure: Send;
     /// What a thread reuses from frame to frame.
@@ -51,7 +79,99 @@ pub trait World: Sized + Sync {
     where
         Self: 'a;
     /// A scored run.
-    type Scored: Scored;
+    type Scored: Scored + Send + 'static;
+
+    /// Checks all values of a scenario and prepares its simulator.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the first value that is not allowed, or for an option that the world does not have.
+    fn prepare(source: &ScenarioSource, scenario: &Self::Scenario, options: Options)
+    -> Result<Self, Failure>;
+
+    /// The content of `run.toml`.
+    fn run_file(&self) -> &RunFile<Self::Scenario>;
+
+    /// The scenario.
+    fn scenario(&self) -> &Self::Scenario {
+        &self.run_file().scenario
+    }
+
+    /// What a check of the scenario tells: for a machine, and for a person.
+    fn summary(&self) -> (Value, String) {
+        let (name, frames) = (&self.run_file().name, self.frame_count());
+        let text = format!("{name}: {frames} {}s, no mistake found", Self::Interface::IMAGE);
+        (json!({ "scenario": name, "ok": true, "world": Self::CODE, "frames": frames }), text)
+    }
+
+    /// Parameters of the built-in pipeline in a scenario.
+    fn config(scenario: &Self::Scenario) -> &Self::Config;
+
+    /// The factory of the built-in pipeline.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a parameter outside its range.
+    fn built_in(config: &Self::Config) -> Result<Box<dyn PipelineFactory<Self::Interface> + Send>, Failure>;
+
+    /// Checks that the built-in pipeline can be run on the cameras of a scenario.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the parameter by which it cannot.
+    fn check_built_in(_: &ScenarioSource, _: &Self::Scenario) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Writes an image for a program, with no more beside the pixels than telemetry says.
+    ///
+    /// # Errors
+    /// Why it cannot be written.
+    fn write_image(image: &ImageOf<Self>, telemetry: &TelemetryOf<Self>, path: &Path) -> Result<(), String>;
+
+    /// Refuses a flight that cannot succeed, while nothing has been written.
+    ///
+    /// # Errors
+    /// A [`Failure`] that says why it cannot.
+    fn check_flight(&self, _: &Flight<Self::Images>) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// What a rendered dataset holds for a pipeline, in words.
+    fn files_for_pipelines(_: Self::Images) -> String {
+        format!("{}, telemetry.csv, frames/", Self::SETUP_FILE)
+    }
+
+    /// Refuses a flight whose images cannot be written to standard output.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a format that is no stream, or a world that has none.
+    fn check_stream(&self, _: &Flight<Self::Images>) -> Result<(), Failure> {
+        let code = Self::CODE;
+        Err(Failure::Usage(format!(
+            "--out is -, expected a directory: {code} has no format that is a stream"
+        )))
+    }
+
+    /// Writes images to standard output, in a format that is a stream.
+    ///
+    /// # Errors
+    /// As [`World::check_stream`]; a [`Failure`] when it cannot be written.
+    fn stream(&self, flight: &Flight<Self::Images>) -> Result<(), Failure> {
+        self.check_stream(flight)
+    }
+
+    /// Opens a dataset for a pipeline: real images, or a rendered one.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the first thing that is missing or wrong.
+    fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure>;
+
+    /// Hands over all that is known of the frames of a run beside the pipeline's answers: what two runs of the same frames have alike.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a file that cannot be read.
+    fn known_of_frames(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure>;
+
+    /// Names of the figures of a score.
+    fn figure_names() -> Vec<String>;
 
     /// Number of frames of the whole scenario.
     fn frame_count(&self) -> u64;
@@ -232,52 +352,20 @@ pub trait World: Sized + Sync {
     }
 }
 
-/// Which frames are made, on how many threads, and what is kept of their images.
-#[derive(Debug, Clone)]
-pub struct Flight<F> {
-    /// The frames.
-    pub frames: Range<u64>,
-    /// Threads that make frames; what is made does not depend on it.
-    pub jobs: usize,
-    /// Images to keep.
-    pub images: Option<F>,
-    /// Whether the noise-free expectation of every frame is kept with the truth, where a world has one.
-    pub expectation: Expectation,
+/// A dataset for a pipeline, not read yet.
+pub struct OpenDataset<W: World> {
+    /// What a pipeline is told before the first image.
+    pub setup: SetupOf<W>,
+    /// Parameters of the built-in pipeline.
+    pub config: W::Config,
+    /// Number of images, where it is known.
+    pub count: Option<u64>,
+    /// The images, in order.
+    pub images: Images<W>,
 }
 
-/// What becomes of the noise-free expectation of a frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Expectation {
-    /// Written to `truth/expected/`, electrons, EXR.
-    Kept,
-    /// Dropped.
-    Dropped,
-}
-
-/// What a run gave.
-#[derive(Debug)]
-pub struct Ran<S> {
-    /// Score and verdicts.
-    pub scored: S,
-    /// The first failure of the pipeline, if it failed at all.
-    pub first_failure: Option<FirstFailure>,
-}
-
-/// The first image that a pipeline failed at, and why.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct FirstFailure {
-    /// Number of the image.
-    pub frame: u64,
-    /// The reason.
-    pub reason: String,
-}
-
-impl FirstFailure {
-    /// That of an image, if the pipeline itself failed at it.
-    fn of<I: Interface>(frame: u64, outcome: &I::Outcome) -> Option<Self> {
-        I::failure(outcome).map(|reason| Self { frame, reason: reason.to_owned() })
-    }
-}
+/// Images with their telemetry, read one by one.
+pub type Images<W> = Box<dyn Iterator<Item = Result<(ImageOf<W>, TelemetryOf<W>), Failure>>>;
 
 /// An image of a run, and what the pipeline answered.
 pub struct ProcessedFrame<W: World> {

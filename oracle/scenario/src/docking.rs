@@ -4,8 +4,11 @@ use pipeline::docking::DockingConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sim::docking::{CameraConfig, DockingSimulation, LensConfig, LightingConfig};
+use sim::scene::docking::TargetFile;
 use sim::television::TelevisionConfig;
 use sim::truth::approach::ApproachConfig;
+
+use crate::scenario_file;
 
 /// A docking scenario, as a TOML file holds it. Units are in the names; unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -46,7 +49,16 @@ pub enum DockingWorld {
     Docking,
 }
 
+scenario_file!(DockingScenario, "docking");
+
 impl DockingScenario {
+    fn paths(&mut self) -> Vec<&mut String> {
+        match TargetFile::built_in(&self.target) {
+            Some(_) => Vec::new(),
+            None => vec![&mut self.target],
+        }
+    }
+
     /// What the simulator needs of it.
     pub fn simulation(&self) -> DockingSimulation {
         DockingSimulation {

@@ -5,12 +5,14 @@ use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sim::Simulation;
-use sim::catalog::CatalogConfig;
+use sim::catalog::{CatalogConfig, CatalogSource};
 use sim::onboard::{RoiConfig, ShutterConfig};
 use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
 use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::{SensorConfig, Switch};
 use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
+
+use crate::scenario_file;
 
 /// A far-range scenario, as a TOML file holds it. Units are in the names; unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -92,7 +94,21 @@ pub struct StarListConfig {
     pub magnitude_limit: f64,
 }
 
+scenario_file!(FarRangeScenario, "far_range");
+
 impl FarRangeScenario {
+    fn paths(&mut self) -> Vec<&mut String> {
+        let catalog = match &mut self.catalog.source {
+            CatalogSource::File(path) => Some(path),
+            CatalogSource::Hipparcos2 => None,
+        };
+        let psf = match &mut self.psf {
+            PsfConfig::Sampled { path, .. } => Some(path),
+            _ => None,
+        };
+        catalog.into_iter().chain(psf).collect()
+    }
+
     /// What the simulator needs of it.
     pub fn simulation(&self) -> Simulation {
         Simulation {

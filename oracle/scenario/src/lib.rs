@@ -1,4 +1,4 @@
-//! Scenarios: what to run, in words. A scenario belongs to one of two worlds, each with a type of its own.
+//! Scenarios: what to run, in words. Each world has a type of its own.
 
 #![cfg_attr(
     not(test),
@@ -16,16 +16,10 @@ mod cameras;
 mod docking;
 mod far_range;
 pub mod run_file;
-mod scenario;
-mod source;
 mod stage;
-mod world;
 
 pub use builtin::{BUILT_IN, BuiltIn, DOCKING, STARTING_POINT, is_argon};
 pub use cameras::CAMERAS;
 pub use docking::{DockingScenario, DockingWorld};
 pub use far_range::{FarRangeScenario, FarRangeWorld, StarListConfig};
-pub use scenario::Scenario;
-pub use source::{ScenarioSource, world};
 pub use stage::Stage;
-pub use world::World;

@@ -1,12 +1,22 @@
 //! `run.toml`: enough to repeat a run.
+use std::fmt::Debug;
 use std::path::Path;
 
 use files::sha256::sha256_hex;
-use files::toml_file::{self, TomlError};
-use files::{Failure, FileError, WholeFile};
+use files::toml_file;
+use files::{FileError, WholeFile};
 use serde::{Deserialize, Serialize};
 
-use crate::{DockingScenario, FarRangeScenario, Stage};
+use crate::{FarRangeScenario, Stage};
+
+// For `scenario_file!`.
+#[doc(hidden)]
+pub use {
+    files::Failure,
+    files::toml_file::{TomlError, parse},
+    schemars::{Schema, SchemaGenerator},
+    serde_json::Value,
+};
 
 /// What was run: the resolved scenario of one world with all defaults, and what else the frames depend on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -43,11 +53,14 @@ pub struct MitsubaRecord {
     pub rays_per_px: u32,
 }
 
-/// A scenario of one world as its files hold it.
+/// A scenario of one world as its files hold it. [`scenario_file!`](crate::scenario_file) implements it.
 ///
-/// Reading a scenario is the largest code of the program. These methods are not generic, so that it is compiled here, once per world, and
-/// not in every crate that reads a run.
-pub trait ScenarioFile: Clone {
+/// Reading a scenario is the largest code of the program. These methods are not generic, so that it is compiled where the type is, once per
+/// world, and not in every crate that reads a run.
+pub trait ScenarioFile: Clone + Debug + Send + Sync + 'static {
+    /// The word of its world: the key `world` of its files.
+    const WORLD: &'static str;
+
     /// Reads the text of a scenario, which came from `file`.
     ///
     /// # Errors
@@ -71,32 +84,99 @@ pub trait ScenarioFile: Clone {
     /// # Errors
     /// [`Failure::Usage`] for a value that TOML does not have.
     fn run_to_toml(run: &RunFile<Self>) -> Result<String, Failure>;
+
+    /// All its values, defaults included.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when they cannot be written as JSON.
+    fn to_json(&self) -> Result<Value, Failure>;
+
+    /// The JSON Schema of its files.
+    fn schema(generator: SchemaGenerator) -> Schema;
+
+    /// The same as a part of another schema.
+    fn subschema(generator: &mut SchemaGenerator) -> Schema;
+
+    /// What it is, in one line.
+    fn title(&self) -> &str;
+
+    /// Seed of its random draws.
+    fn seed(&self) -> u64;
+
+    /// Gives it another seed.
+    fn set_seed(&mut self, seed: u64);
+
+    /// The paths of files in it, which start from the folder of its file.
+    fn paths(&mut self) -> Vec<&mut String>;
 }
 
+/// Implements [`ScenarioFile`](crate::run_file::ScenarioFile) for a type with serde's traits, `JsonSchema`, fields `title` and `seed`, and a
+/// method `paths`: `scenario_file!(MyScenario, "my_world")`.
+#[macro_export]
 macro_rules! scenario_file {
-    ($scenario:ty) => {
-        impl ScenarioFile for $scenario {
-            fn parse(file: &Path, text: &str) -> Result<Self, Box<TomlError>> {
-                toml_file::parse(file, text)
+    ($scenario:ty, $world:literal) => {
+        impl $crate::run_file::ScenarioFile for $scenario {
+            const WORLD: &'static str = $world;
+
+            fn parse(file: &::std::path::Path, text: &str) -> Result<Self, Box<$crate::run_file::TomlError>> {
+                $crate::run_file::parse(file, text)
             }
 
-            fn parse_run(file: &Path, text: &str) -> Result<RunFile<Self>, Box<TomlError>> {
-                toml_file::parse(file, text)
+            fn parse_run(
+                file: &::std::path::Path,
+                text: &str,
+            ) -> Result<$crate::run_file::RunFile<Self>, Box<$crate::run_file::TomlError>> {
+                $crate::run_file::parse(file, text)
             }
 
-            fn to_toml(&self) -> Result<String, Failure> {
-                to_toml(self)
+            fn to_toml(&self) -> Result<String, $crate::run_file::Failure> {
+                $crate::run_file::to_toml(self)
             }
 
-            fn run_to_toml(run: &RunFile<Self>) -> Result<String, Failure> {
-                to_toml(run)
+            fn run_to_toml(
+                run: &$crate::run_file::RunFile<Self>,
+            ) -> Result<String, $crate::run_file::Failure> {
+                $crate::run_file::to_toml(run)
+            }
+
+            fn to_json(&self) -> Result<$crate::run_file::Value, $crate::run_file::Failure> {
+                $crate::run_file::to_json(self)
+            }
+
+            fn schema(generator: $crate::run_file::SchemaGenerator) -> $crate::run_file::Schema {
+                generator.into_root_schema_for::<Self>()
+            }
+
+            fn subschema(generator: &mut $crate::run_file::SchemaGenerator) -> $crate::run_file::Schema {
+                generator.subschema_for::<Self>()
+            }
+
+            fn title(&self) -> &str {
+                &self.title
+            }
+
+            fn seed(&self) -> u64 {
+                self.seed
+            }
+
+            fn set_seed(&mut self, seed: u64) {
+                self.seed = seed;
+            }
+
+            fn paths(&mut self) -> Vec<&mut String> {
+                self.paths()
             }
         }
     };
 }
 
-scenario_file!(FarRangeScenario);
-scenario_file!(DockingScenario);
+impl<S> RunFile<S> {
+    /// The same run with its scenario in another form.
+    pub fn map<T>(self, form: impl FnOnce(S) -> T) -> RunFile<T> {
+        let Self { name, version, catalog_sha256, hash, inject, mitsuba, scenario } = self;
+        RunFile { name, version, catalog_sha256, hash, inject, mitsuba, scenario: form(scenario) }
+    }
+}
 
 impl<S: ScenarioFile> RunFile<S> {
     /// The file of a run that is about to start.
@@ -150,6 +230,13 @@ impl<S: ScenarioFile> RunFile<S> {
     }
 }
 
-fn to_toml(value: &impl Serialize) -> Result<String, Failure> {
+#[doc(hidden)]
+pub fn to_toml(value: &impl Serialize) -> Result<String, Failure> {
     toml::to_string(value).map_err(|error| Failure::Usage(format!("the scenario cannot be written: {error}")))
+}
+
+#[doc(hidden)]
+pub fn to_json(value: &impl Serialize) -> Result<Value, Failure> {
+    serde_json::to_value(value)
+        .map_err(|error| Failure::Usage(format!("the scenario cannot be written as JSON: {error}")))
 }

@@ -8,6 +8,7 @@ use sim::truth::{FrameTruth, ObjectTruth};
 use thiserror::Error;
 
 use super::angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
+use super::argon_table2::Table2;
 use super::cause::{Cause, Detector};
 use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
 use super::report::{Figure, GroupScore, Score, names};
@@ -38,6 +39,8 @@ pub struct Scored {
     pub score: Score,
     /// One verdict a frame, in order.
     pub verdicts: Vec<FrameVerdict>,
+    /// The published figures of the same scenario, where there are any.
+    pub published: Option<&'static Table2>,
 }
 
 /// A truth that cannot be scored.
@@ -147,7 +150,7 @@ impl<'a> Scorer<'a> {
             wrong: all.wrong,
             wrong_taken: all.wrong_taken,
         };
-        Scored { score, verdicts: self.verdicts }
+        Scored { score, verdicts: self.verdicts, published: None }
     }
 }
 

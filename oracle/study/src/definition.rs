@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use files::sha256::hex;
 use files::{Failure, toml_file};
 use indexmap::IndexMap;
-use scenario::{Scenario, ScenarioSource};
+use run::{AnyScenario, Options, ScenarioSource};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use sim::randomness::{Effect, Seed};
@@ -169,11 +169,7 @@ impl Study {
         study.hash = study.make_hash()?;
         study.check_names()?;
         let first = study.case(0)?.source;
-        let count = match &first.scenario {
-            Scenario::FarRange(scenario) => first.simulator(scenario)?.schedule().frame_count(),
-            Scenario::Docking(scenario) => first.docking_simulator(scenario)?.field_count(),
-        };
-        study.frames(count)?;
+        study.frames(first.prepare(Options::default())?.frame_count())?;
         Ok(study)
     }
 
@@ -195,9 +191,7 @@ impl Study {
         const MOST_POINTS: u64 = 1000;
         for number in 0..self.sweep_points().min(self.cases()).min(MOST_POINTS) {
             let source = self.case(number)?.source;
-            if let Scenario::FarRange(scenario) = &source.scenario {
-                source.check_built_in_pipeline(scenario)?;
-            }
+            source.world().check_built_in(&source)?;
         }
         Ok(())
     }
@@ -208,8 +202,8 @@ impl Study {
     }
 
     /// The scenario that the cases begin from.
-    pub fn scenario(&self) -> &Scenario {
-        &self.base.scenario
+    pub fn scenario(&self) -> &dyn AnyScenario {
+        self.base.scenario.as_ref()
     }
 
     /// Frames of every case of a scenario that has `count`.
@@ -266,20 +260,13 @@ impl Study {
 
     /// Names of the figures that are recorded.
     pub fn figures(&self) -> Vec<String> {
-        let all = figure_names(self.scenario());
-        match &self.file.record.figures {
-            Some(names) => names.clone(),
-            None => all,
-        }
+        self.file.record.figures.clone().unwrap_or_else(|| self.scenario().world().figure_names())
     }
 
     /// The figure by which cases are good or bad.
     pub fn worst_by(&self) -> String {
-        let default = match self.scenario() {
-            Scenario::FarRange(_) => score::names::CORRECT_RATE,
-            Scenario::Docking(_) => score::docking::names::SUCCESS_RATE,
-        };
-        self.file.record.worst_by.clone().unwrap_or_else(|| default.to_owned())
+        let headline = || self.scenario().world().headline().to_owned();
+        self.file.record.worst_by.clone().unwrap_or_else(headline)
     }
 
     /// A case, by its number alone.
@@ -334,7 +321,7 @@ impl Study {
 
     /// Figures and paths that there are.
     fn check_names(&self) -> Result<(), Failure> {
-        let known = figure_names(self.scenario());
+        let known = self.scenario().world().figure_names();
         let check = |at: &str, name: &str| {
             if known.iter().any(|figure| figure == name) {
                 return Ok(());
@@ -445,12 +432,4 @@ fn recorded(value: &Value) -> Drawn {
 
 fn unwritable(error: serde_json::Error) -> Failure {
     Failure::Usage(format!("the study cannot be written as JSON: {error}"))
-}
-
-/// Names of all figures of a score of a scenario's world, in their order.
-fn figure_names(scenario: &Scenario) -> Vec<String> {
-    match scenario {
-        Scenario::FarRange(_) => score::figure_names(),
-        Scenario::Docking(_) => score::docking::figure_names(),
-    }
 }

@@ -2,13 +2,10 @@
 
 use std::path::Path;
 
-use contract::PipelineFactory;
 use files::Failure;
 use indexmap::IndexMap;
-use run::docking::renderer::DockingRenderer;
-use run::{FirstFailure, Prepared, PreparedDocking, Scored, World};
-use scenario::Scenario;
-use score::{self, Figure};
+use run::{FirstFailure, Options};
+use score::Figure;
 
 use super::cases::{CaseFigure, CaseRow};
 use super::definition::{Case, Study};
@@ -54,24 +51,8 @@ fn figures_of(
     pipeline: &dyn StudyPipeline,
     scratch: &Path,
 ) -> Result<(IndexMap<String, Figure>, Option<FirstFailure>), Failure> {
-    match &case.source.scenario {
-        Scenario::FarRange(scenario) => {
-            let factory = pipeline.factory(&scenario.far_range, scratch)?;
-            figures_in(study, &Prepared::new(&case.source)?, factory.as_ref())
-        }
-        Scenario::Docking(scenario) => {
-            let factory = pipeline.docking_factory(&scenario.docking, scratch)?;
-            let prepared = PreparedDocking::new(&case.source, DockingRenderer::Fast)?;
-            figures_in(study, &prepared, factory.as_ref())
-        }
-    }
-}
-
-fn figures_in<W: World>(
-    study: &Study,
-    world: &W,
-    factory: &dyn PipelineFactory<W::Interface>,
-) -> Result<(IndexMap<String, Figure>, Option<FirstFailure>), Failure> {
-    let ran = world.score(study.frames(world.frame_count())?, factory)?;
+    let factory = pipeline.factory(case.source.scenario.as_ref(), scratch)?;
+    let prepared = case.source.prepare(Options::default())?;
+    let ran = prepared.score(study.frames(prepared.frame_count())?, &factory)?;
     Ok((ran.scored.figures().clone(), ran.first_failure))
 }

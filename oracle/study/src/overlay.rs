@@ -1,6 +1,6 @@
 //! A scenario with some of its values replaced.
 use files::Failure;
-use scenario::ScenarioSource;
+use run::ScenarioSource;
 use serde_json::Value;
 
 /// A scenario with values of its own at some paths, as in `sensor.gain_e_per_dn`, and its seed as it is or as one of them says.

@@ -1,14 +1,10 @@
 //! The pipeline that a study tries.
 use std::path::Path;
 
-use contract::docking::Docking;
-use contract::{FarRange, PipelineFactory};
 use files::Failure;
 use files::sha256::{hex, sha256_hex};
-use pipeline::docking::DockingConfig;
-use pipeline::far_range::FarRangeConfig;
 use run::pipeline_choice::PipelineChoice;
-use scenario::{Scenario, World};
+use run::{AnyFactory, AnyScenario, AnyWorld};
 
 use super::definition::Study;
 
@@ -19,34 +15,20 @@ pub trait StudyPipeline: Sync {
     ///
     /// # Errors
     /// A [`Failure`] that says what was expected.
-    fn check(&self, scenario: &Scenario) -> Result<(), Failure>;
+    fn check(&self, scenario: &dyn AnyScenario) -> Result<(), Failure>;
 
     /// SHA-256 of what its answers depend on, as far as it can be known, so that rows of two pipelines never mix; none for the built-in
     /// pipeline of a world, whose parameters are the scenario's.
-    fn hash(&self, world: World) -> Option<[u8; 32]>;
+    fn hash(&self, world: &dyn AnyWorld) -> Option<[u8; 32]>;
 
     /// What runs a case of a study again, as a reader would type it; `path` is the study's file.
     fn replay(&self, study: &Study, path: &Path, case: u64) -> String;
 
-    /// Builds it for a case of the far range. A program finds the images of its frames in `scratch`.
+    /// The factory of the pipeline for a case. A program finds its images in `scratch`.
     ///
     /// # Errors
-    /// A [`Failure`] when there is no such pipeline.
-    fn factory(
-        &self,
-        far_range: &FarRangeConfig,
-        scratch: &Path,
-    ) -> Result<Box<dyn PipelineFactory<FarRange>>, Failure>;
-
-    /// The same for a case of docking.
-    ///
-    /// # Errors
-    /// As [`StudyPipeline::factory`].
-    fn docking_factory(
-        &self,
-        docking: &DockingConfig,
-        scratch: &Path,
-    ) -> Result<Box<dyn PipelineFactory<Docking>>, Failure>;
+    /// A [`Failure`] when there is no such pipeline in the world of the scenario.
+    fn factory(&self, scenario: &dyn AnyScenario, scratch: &Path) -> Result<AnyFactory, Failure>;
 }
 
 impl Study {
@@ -60,37 +42,26 @@ impl Study {
 }
 
 impl StudyPipeline for PipelineChoice {
-    fn check(&self, scenario: &Scenario) -> Result<(), Failure> {
-        PipelineChoice::check(self, scenario)
+    fn check(&self, scenario: &dyn AnyScenario) -> Result<(), Failure> {
+        scenario.world().check_choice(scenario, self)
     }
 
-    fn hash(&self, world: World) -> Option<[u8; 32]> {
-        PipelineChoice::hash(self, world)
+    fn hash(&self, world: &dyn AnyWorld) -> Option<[u8; 32]> {
+        PipelineChoice::hash(self, world.code())
     }
 
     fn replay(&self, study: &Study, path: &Path, case: u64) -> String {
         let mut words = ["boresight", "study", "replay"].map(str::to_owned).to_vec();
         words.push(path.display().to_string());
         words.extend(["--case".to_owned(), case.to_string()]);
-        words.extend(self.arguments(study.scenario().world()));
-        words.extend(["--save-frames", "png"].map(str::to_owned));
+        let world = study.scenario().world();
+        words.extend(self.arguments(world.code()));
+        words.extend(["--save-frames", world.pictures()].map(str::to_owned));
         command_line(&words)
     }
 
-    fn factory(
-        &self,
-        far_range: &FarRangeConfig,
-        scratch: &Path,
-    ) -> Result<Box<dyn PipelineFactory<FarRange>>, Failure> {
-        PipelineChoice::factory(self, far_range, scratch)
-    }
-
-    fn docking_factory(
-        &self,
-        docking: &DockingConfig,
-        scratch: &Path,
-    ) -> Result<Box<dyn PipelineFactory<Docking>>, Failure> {
-        PipelineChoice::docking_factory(self, docking, scratch)
+    fn factory(&self, scenario: &dyn AnyScenario, scratch: &Path) -> Result<AnyFactory, Failure> {
+        scenario.world().factory(scenario, self, scratch)
     }
 }
 

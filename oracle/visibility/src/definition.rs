@@ -3,7 +3,8 @@ use std::path::{Path, PathBuf};
 
 use contract::Camera;
 use files::{Failure, toml_file};
-use scenario::{BUILT_IN, BuiltIn, CAMERAS, FarRangeScenario, ScenarioSource};
+use run::ScenarioSource;
+use scenario::{BUILT_IN, BuiltIn, CAMERAS, FarRangeScenario};
 use serde::Deserialize;
 use sim::SimError;
 use sim::optics::{PsfConfig, RadiometryConfig};
@@ -156,7 +157,7 @@ impl Source<'_> {
             Err(Failure::Usage(message)) => return Err(self.refuse("camera.scenario", message)),
             other => other?,
         };
-        match source.far_range("camera.scenario") {
+        match source.typed::<FarRangeScenario>("camera.scenario") {
             Err(Failure::Usage(message)) => Err(self.refuse("camera.scenario", message)),
             other => other.cloned(),
         }

@@ -5,10 +5,8 @@ use std::path::Path;
 
 use files::Failure;
 use monitor::{BUILD_COMMAND, Feed, Measurements, is_page_built, serve};
-use run::PreparedDocking;
-use run::docking::renderer::DockingRenderer;
-use run::{Prepared, World as _};
-use scenario::{BUILT_IN, Scenario, ScenarioSource};
+use run::{Options, ScenarioSource};
+use scenario::BUILT_IN;
 use serde_json::json;
 
 use super::MonitorArguments;
@@ -77,23 +75,10 @@ impl MonitorArguments {
 /// A run that is simulated and processed as it is watched.
 fn live(arguments: &MonitorArguments, scratch: &Path) -> Result<(String, Feed), Failure> {
     let source = arguments.selection.scenario()?;
-    let jobs = arguments.selection.jobs();
-    let choice = arguments.pipeline.choice();
-    let feed = match &source.scenario {
-        Scenario::FarRange(_) => {
-            let prepared = Prepared::new(&source)?;
-            let frames = arguments.frames(prepared.frame_count())?;
-            let factory = choice.factory(&prepared.scenario().far_range, scratch)?;
-            Feed::FarRange(Box::new(prepared), Measurements::Live { factory, frames, jobs })
-        }
-        Scenario::Docking(_) => {
-            let prepared = PreparedDocking::new(&source, DockingRenderer::Fast)?;
-            let frames = arguments.frames(prepared.frame_count())?;
-            let factory = choice.docking_factory(&prepared.scenario().docking, scratch)?;
-            Feed::Docking(Box::new(prepared), Measurements::Live { factory, frames, jobs })
-        }
-    };
-    Ok((source.name, feed))
+    let prepared = source.prepare(Options::default())?;
+    let (frames, jobs) = (arguments.frames(prepared.frame_count())?, arguments.selection.jobs());
+    let factory = prepared.factory(&arguments.pipeline.choice(), scratch)?;
+    Ok((source.name, Feed::new(prepared, Measurements::Live { factory, frames, jobs })?))
 }
 
 /// A run directory: its measurements and its truth as they are, its pictures drawn anew.
@@ -106,10 +91,7 @@ fn replay(directory: &Path) -> Result<(String, Feed), Failure> {
         )));
     }
     let source = ScenarioSource::read(&run.to_string_lossy())?;
-    let truth = match &source.scenario {
-        Scenario::FarRange(_) => "truth/frames.parquet",
-        Scenario::Docking(_) => "truth/fields.parquet",
-    };
+    let truth = source.world().truth_file();
     // A table has its name when it is complete.
     if let Some(missing) =
         [truth, "telemetry.csv", "measurements.csv"].iter().find(|name| !directory.join(name).is_file())
@@ -120,17 +102,10 @@ fn replay(directory: &Path) -> Result<(String, Feed), Failure> {
             directory.display()
         )));
     }
-    let measurements = || directory.to_path_buf();
-    let feed = match &source.scenario {
-        Scenario::FarRange(_) => {
-            Feed::FarRange(Box::new(Prepared::new(&source)?), Measurements::Replay(measurements()))
-        }
-        Scenario::Docking(_) => {
-            let prepared = PreparedDocking::new(&source, DockingRenderer::Fast)?;
-            Feed::Docking(Box::new(prepared), Measurements::Replay(measurements()))
-        }
-    };
-    Ok((source.name, feed))
+    Ok((
+        source.name.clone(),
+        Feed::new(source.prepare(Options::default())?, Measurements::Replay(directory.to_owned()))?,
+    ))
 }
 
 /// Ends with Ctrl-C, and where there is such a thing with a request to terminate.

@@ -5,8 +5,8 @@ use clap::ValueEnum;
 use files::{Failure, FileError, RunDirectory, WholeFile, toml_file};
 use report::{FarRangeRun, check_budget};
 use run::pipeline_choice::PipelineChoice;
-use run::{Expectation, Flight, Prepared, World as _};
-use scenario::{ScenarioSource, Stage};
+use run::{Expectation, Flight, Options, ScenarioSource};
+use scenario::Stage;
 
 use crate::command::options::default_jobs;
 use crate::command::output::Output;
@@ -58,13 +58,13 @@ fn fly(
     // Beside what is kept of it: the truth of a long run may be more than a folder for temporary files can hold.
     let scratch = tempfile::Builder::new().prefix("flight-").tempdir_in(folder);
     let scratch = scratch.map_err(|error| create(folder, error))?;
-    let prepared = Prepared::with_truth_for(source, Some(stage))?;
+    let prepared = source.prepare(Options { inject: Some(stage), ..Options::default() })?;
     let choice = PipelineChoice { word: None, timeout_s: 0.0, memory_mb: 0 };
-    let factory = choice.factory(&prepared.scenario().far_range, scratch.path())?;
+    let factory = prepared.factory(&choice, scratch.path())?;
     let flown = RunDirectory::create(&scratch.path().join("run"))?;
     let progress = output.progress(frames.end - frames.start, &format!("{}, true {stage}", source.name));
     let flight = Flight { frames, jobs: default_jobs(), images: None, expectation: Expectation::Dropped };
-    let ran = prepared.run(&flown, &flight, factory.as_ref(), || {
+    let ran = prepared.run(&flown, &flight, &factory, &|| {
         progress.inc(1);
         Ok(())
     });

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use files::Failure;
 use gate::GateReport;
-use score::FrameVerdict;
+use run::AnyScored;
 use visibility::VisibilityReport;
 
 use crate::command::missing_feature;
@@ -13,7 +13,7 @@ pub(super) fn write_report(_: &Path, _: &[PathBuf], _: &Path, _: &Output) -> Res
     Err(missing_feature("report"))
 }
 
-pub(in crate::command) fn write_beside_far_range_run(_: &Path, _: Vec<FrameVerdict>, output: &Output) {
+pub(in crate::command) fn write_beside_run(_: &Path, _: &mut dyn AnyScored, output: &Output) {
     note(output);
 }
 

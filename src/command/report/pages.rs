@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 use files::Failure;
 use gate::GateReport;
 use report::{
-    FlippedFrames, Page, far_range_report, gate_page, report_of, report_with_budget, visibility_page,
-    write_page,
+    FlippedFrames, Page, gate_page, report_of, report_of_run, report_with_budget, visibility_page, write_page,
 };
-use score::FrameVerdict;
+use run::AnyScored;
 use visibility::VisibilityReport;
 
 use super::budget::fly_budget;
@@ -40,13 +39,9 @@ pub(super) fn write_report(
     write_page(&page, path)
 }
 
-/// Writes the report of a far-range run that has just been scored into its directory.
-pub(in crate::command) fn write_beside_far_range_run(
-    directory: &Path,
-    verdicts: Vec<FrameVerdict>,
-    output: &Output,
-) {
-    write_beside(far_range_report(directory, verdicts), directory, output);
+/// Writes the report of a run that has just been scored into its directory.
+pub(in crate::command) fn write_beside_run(directory: &Path, scored: &mut dyn AnyScored, output: &Output) {
+    write_beside(report_of_run(directory, scored), directory, output);
 }
 
 /// Writes the report of a directory of complete results into it.

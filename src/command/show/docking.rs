@@ -11,9 +11,10 @@ use files::{
     Failure, FieldOrder, FieldRow, FieldSource, Scan, SequenceOptions, format_utc, read_field_telemetry,
     read_listed_field,
 };
+use run::ScenarioSource;
 use run::docking::renderer::DockingRenderer;
+use scenario::DockingScenario;
 use scenario::run_file::RunFile;
-use scenario::{DockingScenario, ScenarioSource};
 use score::UnitVerdict;
 use score::docking::{DockingContext, DockingScorer, TrueField, lens_names};
 use show::{
@@ -148,7 +149,7 @@ fn fields(
         return Err(not_stored(source, "field", missing));
     }
     let run = ScenarioSource::read(&source.directory.join("run.toml").to_string_lossy())?;
-    let simulator = run.docking_simulator(run.docking("boresight show")?)?;
+    let simulator = run::docking::simulator(&run, run.typed("boresight show")?)?;
     let mut workspace = simulator.workspace()?;
     for row in needed.values() {
         let exposure = DockingRenderer::Fast.expose(&simulator, setup, &mut workspace, row.field)?;

@@ -6,7 +6,7 @@ use contract::{Camera, Cluster, Frame, Outcome, PixelPoint, Telemetry, Window};
 use files::{
     CameraFile, Failure, FileError, FrameCluster, TelemetryRow, format_utc, read_measurements, read_telemetry,
 };
-use scenario::ScenarioSource;
+use run::ScenarioSource;
 use scenario::run_file::RunFile;
 use score::{ScoreContext, Scorer, Verdict};
 use show::{
@@ -115,7 +115,7 @@ fn images(
             Some(simulator) => simulator,
             None => {
                 let run = ScenarioSource::read(&source.directory.join("run.toml").to_string_lossy())?;
-                &*simulator.insert(run.simulator(run.far_range("boresight show")?)?)
+                &*simulator.insert(run::far_range::simulator(&run, run.typed("boresight show")?)?)
             }
         };
         images.push((simulator.camera()?.expose(row.frame)?.frame, PixelSource::DrawnAgain));

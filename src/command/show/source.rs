@@ -2,15 +2,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use files::{Checksums, Failure, FileError, Row, TableReader, toml_file};
-use scenario::{World, world};
+use files::{Checksums, Failure, FileError, Row, TableReader};
+use run::{AnyWorld, world_of_run, worlds};
 
 /// A run directory or a dataset.
 pub(super) struct Source {
     /// The directory.
     pub(super) directory: PathBuf,
     /// Its world.
-    pub(super) world: World,
+    pub(super) world: &'static dyn AnyWorld,
     /// Name for titles: that of the directory, until `run.toml` tells the scenario's.
     pub(super) name: String,
     /// Whether there is a `run.toml`: frames can be drawn again, and answers be judged.
@@ -27,17 +27,11 @@ impl Source {
     pub(super) fn open(directory: &Path, measurements: Option<&Path>) -> Result<Self, Failure> {
         let has = |name: &str| directory.join(name).is_file();
         let run = directory.join("run.toml");
+        let of_dataset = worlds().into_iter().find(|world| has(world.setup_file()));
         let world = if has("run.toml") {
-            let text = toml_file::read_text(&run).map_err(|source| FileError::Io {
-                path: run.clone(),
-                doing: "read",
-                source,
-            })?;
-            world(&run, &text, "scenario.world")?
-        } else if has("setup.toml") {
-            World::Docking
-        } else if has("camera.toml") {
-            World::FarRange
+            world_of_run(&run)?
+        } else if let Some(world) = of_dataset {
+            world
         } else {
             let what = if directory.is_dir() {
                 "holds neither run.toml nor camera.toml nor setup.toml"

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::docking::renderer::DockingRenderer;
-use boresight::run::{Prepared, PreparedDocking, Scored as _, World as _};
-use boresight::scenario::{Scenario, ScenarioSource};
+use boresight::run::{Prepared, PreparedDocking, ScenarioSource, Scored as _, World as _};
+use boresight::scenario::FarRangeScenario;
 use boresight::score::{FrameVerdict, UnitTable};
 use contract::docking::{Docking, DockingOutcome, DockingSetup, DockingSolution, Field, FieldTelemetry};
 use contract::{Pipeline, PipelineFactory};
@@ -25,12 +25,13 @@ fn source(name: &str, seed: u64) -> ScenarioSource {
 pub(crate) fn runs(seeds: Range<u64>, stretches: usize, frames: u64) -> Vec<Vec<FrameVerdict>> {
     let run = |seed: u64| {
         let mut source = source("argon", seed);
-        let Scenario::FarRange(scenario) = &mut source.scenario else { panic!("not far range") };
+        let scenario = source.scenario.as_any_mut().downcast_mut::<FarRangeScenario>().unwrap();
         let mut place = 0..;
         scenario.schedule.retain(|_| place.next().unwrap() % 6 < stretches);
         scenario.schedule.iter_mut().for_each(|stretch| stretch.count = frames);
         let prepared = Prepared::new(&source).unwrap();
-        let factory = PIPELINE.factory(&prepared.scenario().far_range, &std::env::temp_dir()).unwrap();
+        let factory =
+            PIPELINE.factory::<Prepared>(&prepared.scenario().far_range, &std::env::temp_dir()).unwrap();
         prepared.score(0..prepared.frame_count(), factory.as_ref()).unwrap().scored.verdicts
     };
     seeds.into_par_iter().map(run).collect()
@@ -40,7 +41,8 @@ pub(crate) fn runs(seeds: Range<u64>, stretches: usize, frames: u64) -> Vec<Vec<
 pub(crate) fn docking_runs(seeds: Range<u64>, fields: Range<u64>) -> Vec<(UnitTable, UnitTable)> {
     let run = |seed: u64| {
         let prepared = PreparedDocking::new(&source("docking", seed), DockingRenderer::Fast).unwrap();
-        let factory = PIPELINE.docking_factory(&prepared.scenario().docking, &std::env::temp_dir()).unwrap();
+        let factory =
+            PIPELINE.factory::<PreparedDocking>(&prepared.scenario().docking, &std::env::temp_dir()).unwrap();
         let own = prepared.score(fields.clone(), factory.as_ref()).unwrap().scored.units();
         let scaled = prepared.score(fields.clone(), &Scaled(factory.as_ref())).unwrap().scored.units();
         (own, scaled)

@@ -14,7 +14,7 @@ use super::folder;
 use super::input::Input;
 use super::listed_video::{ListedVideo, video_of};
 use super::stream::StreamReader;
-use super::whole_frame::{Format, Scan, WholeFrame};
+use super::whole_frame::{FieldOrder, Format, Scan, WholeFrame};
 
 /// Frames a second of a sequence that does not say: 625-line television.
 const DEFAULT_RATE_HZ: f64 = 25.0;
@@ -54,6 +54,17 @@ pub struct SequenceOptions {
     pub raw: Option<FrameSize>,
     /// How the video was digitised.
     pub digitiser: Digitiser,
+}
+
+impl SequenceOptions {
+    /// Interlaced television of the first camera, the top field first.
+    pub const INTERLACED: Self = Self {
+        scan: Scan::Interlaced(FieldOrder::Top),
+        camera: 0,
+        frame_rate_hz: None,
+        raw: None,
+        digitiser: Digitiser::NEUTRAL,
+    };
 }
 
 /// The fields of a sequence, in the order of time.

@@ -6,8 +6,9 @@ use contract::docking::{DockingOutcome, DockingSetup, DockingSolution};
 use contract::{PixelPoint, Window};
 use files::Failure;
 use files::docking::FeatureRow;
+use run::ScenarioSource;
 use run::docking::renderer::DockingRenderer;
-use scenario::ScenarioSource;
+use run::docking::simulator;
 use sim::docking::{DockingSimulator, FieldTruth};
 
 use super::DockingRun;
@@ -33,7 +34,7 @@ impl FieldSheet {
     pub fn open(directory: &Path) -> Result<Self, Failure> {
         let path = directory.join("run.toml");
         let source = ScenarioSource::read(&path.to_string_lossy())?;
-        let simulator = source.docking_simulator(source.docking("the report of a docking run")?);
+        let simulator = simulator(&source, source.typed("the report of a docking run")?);
         Ok(Self {
             simulator: simulator
                 .map(|simulator| {

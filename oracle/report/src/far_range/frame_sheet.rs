@@ -4,7 +4,8 @@ use std::path::Path;
 
 use contract::{Cluster, Label, Outcome, PixelPoint, Window};
 use files::{Failure, FrameCluster};
-use scenario::ScenarioSource;
+use run::ScenarioSource;
+use run::far_range::simulator;
 use score::{FrameVerdict, Verdict};
 use sim::truth::{ObjectKind, ObjectTruth, Visibility};
 use sim::{Exposure, Simulator};
@@ -30,7 +31,7 @@ impl FrameSheet {
     pub fn open(directory: &Path) -> Result<Self, Failure> {
         let path = directory.join("run.toml");
         let source = ScenarioSource::read(&path.to_string_lossy())?;
-        let simulator = source.simulator(source.far_range("the report of a far-range run")?);
+        let simulator = simulator(&source, source.typed("the report of a far-range run")?);
         Ok(Self {
             simulator: simulator.map_err(|failure| failure.to_string()),
             clusters: Some(directory.join("clusters.parquet")).filter(|path| path.is_file()),

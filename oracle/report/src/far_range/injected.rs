@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use files::Failure;
 use scenario::run_file::RunFile;
-use scenario::{FarRangeScenario, Stage, World};
+use scenario::{FarRangeScenario, Stage};
 use score::Score;
 
-use crate::read::{missing, read_json, world_of};
+use crate::read::{is_far_range_run, missing, read_json};
 
 /// A run of the same frames that was told the truth for one stage.
 pub struct InjectedRun {
@@ -33,7 +33,7 @@ impl InjectedRun {
         }
         let path = directory.join("run.toml");
         let refuse = |what: &str| Err(Failure::Usage(format!("{}: {what}", path.display())));
-        if world_of(directory)? != World::FarRange {
+        if !is_far_range_run(directory)? {
             return refuse("`scenario.world` is that of docking, expected a run of the far range");
         }
         let run_file = RunFile::<FarRangeScenario>::read(&path)?;

@@ -8,47 +8,45 @@ pub mod dataset;
 mod prepared;
 pub mod renderer;
 
-pub use prepared::PreparedDocking;
+pub use prepared::{PreparedDocking, simulator};
 
-use std::ops::Range;
+use std::fmt::Debug;
 use std::path::Path;
 
-use contract::Camera;
 use contract::docking::{Digitiser, Docking, DockingOutcome, DockingSetup, Field, FieldTelemetry};
+use contract::{Camera, PipelineFactory};
 use files::docking::{SetupFile, read_field_measurements, read_motion, truth_as_filed};
-use files::{Failure, RunDirectory, TableReader, Y4mWriter};
+use files::{
+    Failure, FieldRow, FieldSource, RunDirectory, SequenceOptions, TableReader, Y4mWriter,
+    read_field_telemetry, write_field,
+};
 use indexmap::IndexMap;
-use scenario::DockingScenario;
+use pipeline::docking::{DockingConfig, DockingFactory};
 use scenario::run_file::RunFile;
-use score::docking::{DockingContext, DockingScore, DockingScorer, TrueField};
+use scenario::{DOCKING, DockingScenario};
+use score::docking::{DockingContext, DockingScore, DockingScorer, TrueField, names};
 use score::{Figure, UnitTable};
+use serde_json::{Value, json};
 use sim::docking::{DockingWorkspace, FieldExposure, FieldTruth};
 
 use self::answers::{FieldAnswers, answer_as_filed};
 use self::dataset::{FieldDataset, FieldImages};
+use crate::any_world::{Options, ScenarioSource};
 use crate::by_number::ByNumber;
-use crate::flight::in_order;
-use crate::world::{self, Flight, World, unscorable};
-
-impl PreparedDocking {
-    /// Makes fields, digitised as they are by default, and writes them to standard output as Y4M.
-    ///
-    /// # Errors
-    /// A [`Failure`] when standard output cannot be written.
-    pub fn stream(&self, fields: Range<u64>, jobs: usize) -> Result<(), Failure> {
-        let size = self.setup.cameras.first().map_or((0, 0), |camera| (camera.columns, camera.rows));
-        let rate_hz = self.scenario().television.frame_rate_hz;
-        let mut video = Y4mWriter::standard_output(size, rate_hz)?;
-        let make = |workspace: &mut DockingWorkspace, field| {
-            Ok(self.expose(workspace, field)?.video.digitise(&Digitiser::default()))
-        };
-        let bytes = self.exposure_bytes() as u64;
-        in_order(fields, jobs, bytes, || self.workspace(), make, |field| Ok(video.write(&field)?))?;
-        Ok(video.finish()?)
-    }
-}
+use crate::flight::{Expectation, Flight, in_order};
+use crate::world::{self, OpenDataset, World, unscorable};
 
 impl World for PreparedDocking {
+    const STARTING_POINT: &'static str = DOCKING;
+    const SETUP_FILE: &'static str = "setup.toml";
+    const TRUTH_FILE: &'static str = "truth/fields.parquet";
+    const EVIDENCE_FILE: Option<&'static str> = Some("motion.csv");
+    const HEADLINE: &'static str = names::SUCCESS_RATE;
+    const IMAGES: FieldImages = FieldImages::Png;
+    const PICTURES: &'static str = "png";
+
+    type Scenario = DockingScenario;
+    type Config = DockingConfig;
     type Interface = Docking;
     type Images = FieldImages;
     type Exposure = FieldExposure;
@@ -60,6 +58,124 @@ impl World for PreparedDocking {
     type Answers = FieldAnswers;
     type Scorer<'a> = Scorer;
     type Scored = ScoredFields;
+
+    fn prepare(source: &ScenarioSource, _: &DockingScenario, options: Options) -> Result<Self, Failure> {
+        match options.inject {
+            Some(stage) => {
+                Err(Failure::Usage(format!("--inject is {stage}, expected with a far-range scenario alone")))
+            }
+            None => Self::new(source, options.renderer),
+        }
+    }
+
+    fn run_file(&self) -> &RunFile<DockingScenario> {
+        &self.run_file
+    }
+
+    fn summary(&self) -> (Value, String) {
+        let (name, fields, target) = (&self.run_file.name, self.frame_count(), &self.setup.target);
+        let (seconds, cameras) =
+            (fields as f64 / self.simulator.field_rate_hz(), self.scenario().cameras.len());
+        let document = json!({
+            "scenario": name,
+            "ok": true,
+            "world": Self::CODE,
+            "frames": fields,
+            "duration_s": seconds,
+            "target": target.name,
+            "marks": target.marks.len(),
+            "cameras": cameras,
+        });
+        let text = format!(
+            "{name}: {fields} fields in {seconds:.0} s, target {} with {} marks, {cameras} cameras, no mistake found",
+            target.name,
+            target.marks.len(),
+        );
+        (document, text)
+    }
+
+    fn config(scenario: &DockingScenario) -> &DockingConfig {
+        &scenario.docking
+    }
+
+    fn built_in(config: &DockingConfig) -> Result<Box<dyn PipelineFactory<Docking> + Send>, Failure> {
+        let factory = DockingFactory::new(config.clone());
+        Ok(Box::new(factory.map_err(|error| Failure::Usage(error.to_string()))?))
+    }
+
+    /// PNG, which tells nothing but the pixels.
+    fn write_image(field: &Field, _: &FieldTelemetry, path: &Path) -> Result<(), String> {
+        write_field(path, field).map_err(|error| error.to_string())
+    }
+
+    fn check_flight(&self, flight: &Flight<FieldImages>) -> Result<(), Failure> {
+        if flight.expectation == Expectation::Kept {
+            let message = "--expected is given, expected with a far-range scenario alone";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        let count = flight.frames.end - flight.frames.start;
+        if let Some(most) = flight.images.and_then(|images| images.most_fields(&self.setup))
+            && count > most
+        {
+            return Err(Failure::Usage(format!(
+                "{count} fields are more than the {most} of an uncompressed AVI of 4 GB; expected fewer (--frames), or mjpeg, \
+                 png or y4m"
+            )));
+        }
+        self.probe(flight.frames.start)
+    }
+
+    fn files_for_pipelines(images: FieldImages) -> String {
+        format!("setup.toml, telemetry.csv, {}", images.place())
+    }
+
+    fn check_stream(&self, flight: &Flight<FieldImages>) -> Result<(), Failure> {
+        if flight.images == Some(FieldImages::Y4m) {
+            return Ok(());
+        }
+        let message = "--out is -, expected with --format y4m alone: no other format is a stream";
+        Err(Failure::Usage(message.to_owned()))
+    }
+
+    /// Fields, digitised as they are by default, as Y4M.
+    fn stream(&self, flight: &Flight<FieldImages>) -> Result<(), Failure> {
+        self.check_stream(flight)?;
+        let size = self.setup.cameras.first().map_or((0, 0), |camera| (camera.columns, camera.rows));
+        let rate_hz = self.scenario().television.frame_rate_hz;
+        let mut video = Y4mWriter::standard_output(size, rate_hz)?;
+        let make = |workspace: &mut DockingWorkspace, field| {
+            Ok(self.expose(workspace, field)?.video.digitise(&Digitiser::default()))
+        };
+        let (fields, bytes) = (flight.frames.clone(), self.exposure_bytes() as u64);
+        in_order(fields, flight.jobs, bytes, || self.workspace(), make, |field| Ok(video.write(&field)?))?;
+        Ok(video.finish()?)
+    }
+
+    fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure> {
+        let file = SetupFile::read(&directory.join(Self::SETUP_FILE))?;
+        let setup = file.setup();
+        let images = FieldSource::open(directory, &setup, &SequenceOptions::INTERLACED)?;
+        let images = Box::new(images.map(|field| Ok(field?)));
+        Ok(OpenDataset { setup, config: file.docking, count: None, images })
+    }
+
+    fn known_of_frames(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
+        for FieldRow { field, lines, mut telemetry, .. } in
+            read_field_telemetry(&directory.join("telemetry.csv"))?
+        {
+            // What the pipeline asked of the digitiser is its own doing.
+            telemetry.digitiser = Digitiser::default();
+            add(&(field, lines, telemetry));
+        }
+        for field in TableReader::<FieldTruth>::open(&directory.join(Self::TRUTH_FILE))? {
+            field?.1.iter().for_each(|truth| add(truth));
+        }
+        Ok(())
+    }
+
+    fn figure_names() -> Vec<String> {
+        score::docking::figure_names()
+    }
 
     fn frame_count(&self) -> u64 {
         self.simulator.field_count()
@@ -112,7 +228,7 @@ impl World for PreparedDocking {
         let run_file = RunFile::<DockingScenario>::read(&directory.join("run.toml"))?;
         let setup = SetupFile::read(&directory.join("setup.toml"))?.setup();
         let mut scorer = Scorer::new(&run_file, &setup);
-        let truth = directory.join("truth/fields.parquet");
+        let truth = directory.join(Self::TRUTH_FILE);
         let truths = TableReader::<FieldTruth>::open(&truth)?;
         let mut answers =
             ByNumber::new(read_field_measurements(measurements)?, measurements, "field", &truth);

@@ -1,12 +1,14 @@
 //! A docking scenario, ready to fly.
 
 use contract::docking::DockingSetup;
-use files::Failure;
+use files::{Failure, toml_file};
+use scenario::DockingScenario;
 use scenario::run_file::RunFile;
-use scenario::{DockingScenario, ScenarioSource};
 use sim::docking::DockingSimulator;
+use sim::scene::docking::TargetFile;
 
 use super::renderer::DockingRenderer;
+use crate::any_world::{ScenarioSource, explain};
 
 /// A docking scenario with its simulator, ready to fly.
 pub struct PreparedDocking {
@@ -22,8 +24,8 @@ impl PreparedDocking {
     /// # Errors
     /// A [`Failure`] with the place of the first value that is not allowed.
     pub fn new(source: &ScenarioSource, renderer: DockingRenderer) -> Result<Self, Failure> {
-        let scenario = source.docking("docking")?;
-        let simulator = source.docking_simulator(scenario)?;
+        let scenario = source.typed::<DockingScenario>("docking")?;
+        let simulator = simulator(source, scenario)?;
         let mut run_file = RunFile::new(&source.name, scenario, None, None)?;
         run_file.mitsuba = renderer.record().cloned();
         Ok(Self { setup: simulator.setup(), simulator, renderer, run_file })
@@ -34,23 +36,45 @@ impl PreparedDocking {
         &self.simulator
     }
 
-    /// The scenario.
-    pub fn scenario(&self) -> &DockingScenario {
-        &self.run_file.scenario
-    }
-
     /// Who draws the scene.
     pub fn renderer(&self) -> &DockingRenderer {
         &self.renderer
     }
 
     /// Draws a field and forgets it: before anything is written, it shows whether the renderer can.
-    ///
-    /// # Errors
-    /// A [`Failure`] when there is no such field, or the renderer gives no image.
-    pub fn probe(&self, field: u64) -> Result<(), Failure> {
+    pub(super) fn probe(&self, field: u64) -> Result<(), Failure> {
         let mut workspace = self.simulator.workspace()?;
         self.renderer.expose(&self.simulator, &self.setup, &mut workspace, field)?;
         Ok(())
     }
+}
+
+/// The simulator of a scenario, which came from `source`; every value is checked, those of the target's file too.
+///
+/// # Errors
+/// A [`Failure`] with the place of the first value that is not allowed.
+pub fn simulator(source: &ScenarioSource, scenario: &DockingScenario) -> Result<DockingSimulator, Failure> {
+    source.check_pipeline("docking", scenario.docking.check())?;
+    check_target(source, &scenario.target)?;
+    DockingSimulator::new(&scenario.simulation(), &source.folder).map_err(|error| source.explain(error))
+}
+
+/// Checks the target's file, so that a mistake in it is told with its place there.
+fn check_target(source: &ScenarioSource, target: &str) -> Result<(), Failure> {
+    if TargetFile::built_in(target).is_some() {
+        return Ok(());
+    }
+    let file = source.folder.join(target);
+    let text = toml_file::read_text(&file).map_err(|error| {
+        let word = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+        let hint = toml_file::nearest(&word, TargetFile::built_in_names()).map_or_else(
+            || format!("built-in targets: {}", TargetFile::built_in_names().collect::<Vec<_>>().join(", ")),
+            |name| format!("did you mean `{name}`?"),
+        );
+        let problem =
+            format!("is neither a built-in target nor a TOML file that can be read ({error}); {hint}");
+        source.refuse("target", format!("`{}` {problem}", file.display()))
+    })?;
+    let parsed: TargetFile = toml_file::parse(&file, &text)?;
+    parsed.check().map_err(|error| explain(&file, &text, error))
 }

@@ -6,29 +6,47 @@ mod inject;
 mod prepared;
 pub mod star_list;
 
-pub use prepared::{Prepared, SceneTruth};
+pub use prepared::{Prepared, SceneTruth, simulator};
 
+use std::fmt::Debug;
 use std::path::Path;
 
-use contract::{FarRange, Frame, Outcome, Setup, Telemetry};
+use contract::{FarRange, Frame, Outcome, PipelineFactory, Setup, Telemetry};
 use files::{
-    Expected, Failure, FrameCluster, ImageFormat, RunDirectory, TableReader, read_measurements,
-    write_expected,
+    Dataset, Expected, Failure, FrameCluster, FrameHeader, ImageFormat, RunDirectory, StarRow, TableReader,
+    TelemetryRow, read_measurements, read_stars, read_telemetry, write_expected, write_frame,
 };
 use indexmap::IndexMap;
-use scenario::FarRangeScenario;
+use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
 use scenario::run_file::RunFile;
-use score::{Figure, Score, ScoreContext, Scored, UnitTable};
+use scenario::{FarRangeScenario, STARTING_POINT, is_argon};
+use score::{ARGON_TABLE_2, Figure, Score, ScoreContext, Scored, UnitTable, names};
+use serde_json::{Value, json};
+use sim::catalog::Catalog;
+use sim::onboard::image_bytes;
 use sim::optics::Projection;
 use sim::truth::{FrameTruth, ObjectTruth};
 
 use self::answers::FrameAnswers;
 use self::dataset::{FrameDataset, save_image};
 use self::inject::InjectedPipeline;
+use self::star_list::star_list;
+use crate::any_world::{Options, ScenarioSource};
 use crate::by_number::ByNumber;
-use crate::world::{self, Expectation, Flight, InformedPipeline, World, unscorable};
+use crate::flight::{Expectation, Flight};
+use crate::world::{self, InformedPipeline, OpenDataset, World, unscorable};
 
 impl World for Prepared {
+    const STARTING_POINT: &'static str = STARTING_POINT;
+    const SETUP_FILE: &'static str = "camera.toml";
+    const TRUTH_FILE: &'static str = "truth/frames.parquet";
+    const EVIDENCE_FILE: Option<&'static str> = Some("clusters.parquet");
+    const HEADLINE: &'static str = names::CORRECT_RATE;
+    const IMAGES: ImageFormat = ImageFormat::Fits;
+    const PICTURES: &'static str = "png";
+
+    type Scenario = FarRangeScenario;
+    type Config = FarRangeConfig;
     type Interface = FarRange;
     type Images = ImageFormat;
     type Exposure = sim::Exposure;
@@ -40,6 +58,103 @@ impl World for Prepared {
     type Answers = FrameAnswers;
     type Scorer<'a> = Scorer<'a>;
     type Scored = Scored;
+
+    fn prepare(source: &ScenarioSource, _: &FarRangeScenario, options: Options) -> Result<Self, Failure> {
+        if options.renderer.record().is_some() {
+            let message = "--renderer is mitsuba, expected with a docking scenario alone";
+            return Err(Failure::Usage(message.to_owned()));
+        }
+        Self::with_truth_for(source, options.inject)
+    }
+
+    fn run_file(&self) -> &RunFile<FarRangeScenario> {
+        &self.run_file
+    }
+
+    fn summary(&self) -> (Value, String) {
+        let (scenario, name) = (self.scenario(), &self.run_file.name);
+        let (frames, stars) = (self.frame_count(), self.simulator.catalog().stars().len());
+        let bit_depth = scenario.sensor.bit_depth;
+        let image = image_bytes(scenario.camera.columns, scenario.camera.rows, bit_depth);
+        let (budget, telemetry) = match &scenario.roi {
+            None => (image, format!("whole images: {image} bytes of telemetry a frame")),
+            Some(roi) => {
+                let budget = roi.budget_bytes(bit_depth);
+                let regions = format!("{} regions of {} × {} pixels", roi.count, roi.columns, roi.rows);
+                (
+                    budget,
+                    format!("{regions}: {budget} bytes of telemetry a frame at most, a whole image {image}"),
+                )
+            }
+        };
+        let document = json!({
+            "scenario": name,
+            "ok": true,
+            "frames": frames,
+            "stars": stars,
+            "frame_bytes_at_most": budget,
+            "whole_image_bytes": image,
+        });
+        (document, format!("{name}: {frames} frames, {stars} stars, no mistake found\n{telemetry}"))
+    }
+
+    fn config(scenario: &FarRangeScenario) -> &FarRangeConfig {
+        &scenario.far_range
+    }
+
+    fn built_in(config: &FarRangeConfig) -> Result<Box<dyn PipelineFactory<FarRange> + Send>, Failure> {
+        let factory = FarRangeFactory::new(config.clone());
+        Ok(Box::new(factory.map_err(|error| Failure::Usage(error.to_string()))?))
+    }
+
+    fn check_built_in(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<(), Failure> {
+        let (floor_dn, bit_depth) = (scenario.zero_suppression_dn, scenario.sensor.bit_depth);
+        source.check_pipeline(Self::CODE, scenario.far_range.check_suppression(floor_dn, bit_depth))
+    }
+
+    /// FITS with no more in its header than telemetry says.
+    fn write_image(frame: &Frame, telemetry: &Telemetry, path: &Path) -> Result<(), String> {
+        let header = FrameHeader {
+            time: telemetry.time,
+            exposure_s: telemetry.exposure_s,
+            gain_e_per_dn: None,
+            seed: 0,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            configuration_hash: String::new(),
+            observer_velocity_km_s: None,
+            wcs: None,
+        };
+        write_frame(path, ImageFormat::Fits, frame, &header).map_err(|error| error.to_string())
+    }
+
+    fn files_for_pipelines(_: ImageFormat) -> String {
+        "camera.toml, stars.csv, telemetry.csv, frames/".to_owned()
+    }
+
+    fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure> {
+        let dataset = Dataset::open(directory)?;
+        let (setup, config) = (setup_of(directory, &dataset)?, dataset.camera().far_range.clone());
+        let frames = dataset.frames().to_vec();
+        let count = Some(frames.len() as u64);
+        let images = frames.into_iter().map(move |frame| Ok((dataset.read(&frame)?, *frame.telemetry())));
+        Ok(OpenDataset { setup, config, count, images: Box::new(images) })
+    }
+
+    fn known_of_frames(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
+        for TelemetryRow { frame, telemetry, windows, .. } in
+            read_telemetry(&directory.join("telemetry.csv"))?
+        {
+            add(&(frame, telemetry, windows));
+        }
+        for frame in TableReader::<FrameTruth>::open(&directory.join(Self::TRUTH_FILE))? {
+            frame?.1.iter().for_each(|truth| add(truth));
+        }
+        Ok(())
+    }
+
+    fn figure_names() -> Vec<String> {
+        score::figure_names()
+    }
 
     fn frame_count(&self) -> u64 {
         self.simulator.schedule().frame_count()
@@ -111,7 +226,7 @@ impl World for Prepared {
     }
 
     fn scorer(&self) -> Scorer<'_> {
-        Scorer(score::Scorer::new(context(&self.run_file, self.simulator.projection())))
+        Scorer::new(&self.run_file, self.simulator.projection())
     }
 
     fn score_files(
@@ -121,8 +236,8 @@ impl World for Prepared {
     ) -> Result<Scored, Failure> {
         let run_file = RunFile::<FarRangeScenario>::read(&directory.join("run.toml"))?;
         let projection = Projection::new(&run_file.scenario.camera)?;
-        let mut scorer = score::Scorer::new(context(&run_file, &projection));
-        let truth = directory.join("truth/frames.parquet");
+        let mut scorer = Scorer::new(&run_file, &projection);
+        let truth = directory.join(Self::TRUTH_FILE);
         let mut objects = TableReader::<ObjectTruth>::open(&directory.join("truth/objects.parquet"))?;
         let frames = TableReader::<FrameTruth>::open(&truth)?;
         let mut clusters = clusters.map(TableReader::<FrameCluster>::open).transpose()?;
@@ -135,25 +250,57 @@ impl World for Prepared {
                 outcome.clusters = table.rows_of(number)?.into_iter().map(|row| row.cluster).collect();
             }
             for truth in &truths {
-                scorer.add(truth, &objects, outcome.as_ref()).map_err(unscorable)?;
+                scorer.scorer.add(truth, &objects, outcome.as_ref()).map_err(unscorable)?;
             }
         }
         answers.end()?;
-        Ok(scorer.finish())
+        Ok(world::Scorer::finish(scorer))
     }
 }
 
+/// What the pipeline is told of a dataset: its own star list, or the built-in catalogue to its magnitude limit.
+fn setup_of(directory: &Path, dataset: &Dataset) -> Result<Setup, Failure> {
+    let camera = dataset.camera();
+    let file = directory.join("stars.csv");
+    let stars = if file.exists() {
+        read_stars(&file)?
+    } else {
+        let epoch = dataset
+            .star_epoch()
+            .ok_or_else(|| Failure::Usage(format!("{}: a dataset without frames", directory.display())))?;
+        star_list(&Catalog::hipparcos2(), camera.magnitude_limit, epoch)
+    };
+    Ok(Setup {
+        camera: camera.camera.clone(),
+        camera_from_body: camera.mounting.camera_from_body(),
+        bit_depth: camera.bit_depth,
+        readout: camera.readout,
+        zero_suppression_dn: camera.zero_suppression_dn,
+        stars: stars.iter().map(StarRow::listed).collect(),
+    })
+}
+
 /// Judges the frames of a run.
-pub struct Scorer<'a>(score::Scorer<'a>);
+pub struct Scorer<'a> {
+    scorer: score::Scorer<'a>,
+    is_argon: bool,
+}
+
+impl<'a> Scorer<'a> {
+    fn new(run_file: &RunFile, projection: &'a Projection) -> Self {
+        let scorer = score::Scorer::new(context(run_file, projection));
+        Self { scorer, is_argon: is_argon(&run_file.scenario) }
+    }
+}
 
 impl world::Scorer<Prepared> for Scorer<'_> {
     fn add(&mut self, truth: &SceneTruth, outcome: &Outcome) -> Result<(), Failure> {
-        self.0.add(&truth.frame, &truth.objects, Some(outcome)).map_err(unscorable)?;
+        self.scorer.add(&truth.frame, &truth.objects, Some(outcome)).map_err(unscorable)?;
         Ok(())
     }
 
     fn finish(self) -> Scored {
-        self.0.finish()
+        Scored { published: self.is_argon.then_some(&ARGON_TABLE_2), ..self.scorer.finish() }
     }
 }
 

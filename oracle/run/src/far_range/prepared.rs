@@ -4,11 +4,12 @@ use contract::Setup;
 use files::{Failure, StarRow};
 use hifitime::Epoch;
 use scenario::run_file::RunFile;
-use scenario::{FarRangeScenario, ScenarioSource, Stage};
+use scenario::{FarRangeScenario, Stage};
 use sim::Simulator;
 use sim::truth::{FrameTruth, ObjectTruth};
 
 use super::star_list::star_list;
+use crate::any_world::ScenarioSource;
 
 /// A scenario with its simulator and star list, ready to fly.
 pub struct Prepared {
@@ -42,14 +43,14 @@ impl Prepared {
     /// # Errors
     /// As [`Prepared::new`]; [`Failure::Usage`] for the regions of interest of a scenario that has none.
     pub fn with_truth_for(source: &ScenarioSource, inject: Option<Stage>) -> Result<Self, Failure> {
-        let mut scenario = source.far_range("far range")?.clone();
+        let mut scenario = source.typed::<FarRangeScenario>("far range")?.clone();
         if inject == Some(Stage::Roi) && scenario.roi.take().is_none() {
             return Err(Failure::Usage(format!(
                 "--inject is roi, expected a scenario with regions of interest: `{}` has no [roi]",
                 source.name
             )));
         }
-        let simulator = source.simulator(&scenario)?;
+        let simulator = simulator(source, &scenario)?;
         let run_file = RunFile::new(&source.name, &scenario, Some(simulator.catalog().sha256()), inject)?;
         let (_, star_epoch) = simulator
             .schedule()
@@ -60,15 +61,23 @@ impl Prepared {
         Ok(Self { simulator, run_file, setup, stars, star_epoch })
     }
 
-    /// The scenario.
-    pub fn scenario(&self) -> &FarRangeScenario {
-        &self.run_file.scenario
-    }
-
     /// What makes its frames.
     pub fn simulator(&self) -> &Simulator {
         &self.simulator
     }
+}
+
+/// The simulator of a scenario, which came from `source`; every value is checked.
+///
+/// # Errors
+/// A [`Failure`] with the place of the first value that is not allowed.
+pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<Simulator, Failure> {
+    let limit = scenario.star_list.magnitude_limit;
+    if !(-2.0..=15.0).contains(&limit) {
+        return Err(source.refuse("star_list.magnitude_limit", format!("is {limit}, expected -2 to 15")));
+    }
+    source.check_pipeline("far_range", scenario.far_range.check())?;
+    Simulator::new(&scenario.simulation(), &source.folder).map_err(|error| source.explain(error))
 }
 
 fn setup(scenario: &FarRangeScenario, stars: &[StarRow]) -> Setup {

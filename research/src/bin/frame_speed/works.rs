@@ -3,8 +3,9 @@
 use std::error::Error;
 use std::hint::black_box;
 
+use boresight::run::ScenarioSource;
 use boresight::run::{Prepared, World as _};
-use boresight::scenario::{FarRangeScenario, ScenarioSource};
+use boresight::scenario::FarRangeScenario;
 use contract::{Frame, Outcome, Pipeline, Rotation, Setup, Telemetry};
 use hifitime::{Epoch, Unit};
 use pipeline::far_range::{FarRangeConfig, FarRangePipeline};
@@ -56,7 +57,7 @@ impl Work {
 pub(crate) fn works(scene: &PlainScene) -> Result<Vec<Work>, Box<dyn Error>> {
     let mut works = vec![plain("plain", scene)?, plain("plain-uneven", &scene.uneven())?];
     let source = ScenarioSource::read("argon")?;
-    let scenario = source.far_range("frame_speed")?;
+    let scenario = source.typed::<FarRangeScenario>("frame_speed")?;
     let whole = FarRangeScenario { roi: None, ..scenario.clone() };
     let field = star_field(scenario);
     for (name, scenario) in
@@ -82,7 +83,7 @@ fn simulator(
     source: &ScenarioSource,
     scenario: &FarRangeScenario,
 ) -> Result<&'static Simulator, Box<dyn Error>> {
-    Ok(Box::leak(Box::new(source.simulator(scenario)?)))
+    Ok(Box::leak(Box::new(boresight::run::far_range::simulator(source, scenario)?)))
 }
 
 /// Stars to V = 7 and the target with the camera of `argon`, on a detector that is uneven and nothing more.

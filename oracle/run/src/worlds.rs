@@ -1,0 +1,64 @@
+//! The register of worlds.
+
+use std::sync::{PoisonError, RwLock};
+
+use files::toml_file;
+use schemars::{Schema, SchemaGenerator, json_schema};
+
+use crate::any_world::AnyWorld;
+use crate::erased::Of;
+use crate::{Prepared, PreparedDocking};
+
+/// The world of a scenario that names none.
+pub const FIRST: &dyn AnyWorld = &Of::<Prepared>::NEW;
+
+/// The worlds that there are: one line each.
+const BUILT_IN: [&dyn AnyWorld; 2] = [FIRST, &Of::<PreparedDocking>::NEW];
+
+/// Worlds of somebody's own.
+static REGISTERED: RwLock<Vec<&'static dyn AnyWorld>> = RwLock::new(Vec::new());
+
+/// Adds a world for the rest of the process, as in `register(&Of::<MyWorld>::NEW)`: every command, study and gate then has it.
+pub fn register(world: &'static dyn AnyWorld) {
+    REGISTERED.write().unwrap_or_else(PoisonError::into_inner).push(world);
+}
+
+/// Every world.
+pub fn worlds() -> Vec<&'static dyn AnyWorld> {
+    let registered = REGISTERED.read().unwrap_or_else(PoisonError::into_inner);
+    BUILT_IN.into_iter().chain(registered.iter().copied()).collect()
+}
+
+/// The world of a word.
+///
+/// # Errors
+/// A message that names the word and those that there are.
+pub fn world_called(word: &str) -> Result<&'static dyn AnyWorld, String> {
+    let worlds = worlds();
+    worlds.iter().copied().find(|world| world.code() == word).ok_or_else(|| {
+        let codes: Vec<&str> = worlds.iter().map(|world| world.code()).collect();
+        let hint = toml_file::nearest(word, codes.iter().copied())
+            .map_or(String::new(), |name| format!("; did you mean `{name}`?"));
+        let expected: Vec<String> = codes.iter().map(|code| format!("`{code}`")).collect();
+        format!("there is no world `{word}`, expected {}{hint}", expected.join(" or "))
+    })
+}
+
+/// The JSON Schema of scenario files, from the types that read them: of one world, or of any.
+pub fn json_schema(world: Option<&dyn AnyWorld>) -> Schema {
+    let mut generator = SchemaGenerator::default();
+    match world {
+        Some(world) => world.schema(generator),
+        None => {
+            let kinds: Vec<Schema> =
+                worlds().into_iter().map(|world| world.subschema(&mut generator)).collect();
+            json_schema!({
+                "$schema": generator.settings().meta_schema.as_deref(),
+                "title": "Scenario",
+                "description": "A scenario file: of one world, by its key `world`.",
+                "anyOf": kinds,
+                "$defs": generator.take_definitions(true),
+            })
+        }
+    }
+}
