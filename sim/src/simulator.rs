@@ -1,5 +1,7 @@
 //! A simulation, checked and prepared.
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use std::path::Path;
 
 use contract::{Body, Camera, CameraFrame, Rotation};
@@ -102,11 +104,12 @@ impl Simulator {
         if let Some(roi) = &simulation.roi {
             roi.check(columns, rows)?;
             if let Some(floor_dn) = simulation.zero_suppression_dn {
-                return Err(SimError::Parameter {
-                    field: "zero_suppression_dn",
-                    value: floor_dn.to_string(),
-                    expected: "none beside [roi]: the pixels of regions are sent as they are",
-                });
+                return Err(OutOfRange::new(
+                    "zero_suppression_dn",
+                    floor_dn,
+                    "none beside [roi]: the pixels of regions are sent as they are",
+                )
+                .into());
             }
         }
         simulation.catalog.check()?;
@@ -208,20 +211,9 @@ fn check_times(
         let Some((_, time)) = schedule.frame(number) else { continue };
         let states = trajectory.at(time - earlier_s * Unit::Second);
         let chaser = states.chaser;
-        Observer::new(time - earlier_s * Unit::Second, chaser.position_km, chaser.velocity_km_s).map_err(
-            |error| match error {
-                SimError::Parameter { value, expected, .. } => {
-                    SimError::Parameter { field: "schedule", value, expected }
-                }
-                other => other,
-            },
-        )?;
-        crate::error::require(
-            "orbit.relative",
-            states.range_km() * 1000.0,
-            "a separation of 1 m or more",
-            |m| m >= 1.0,
-        )?;
+        Observer::new(time - earlier_s * Unit::Second, chaser.position_km, chaser.velocity_km_s)
+            .map_err(|error| OutOfRange { path: "schedule".to_owned(), ..error })?;
+        require("orbit.relative", states.range_km() * 1000.0, "a separation of 1 m or more", |m| m >= 1.0)?;
     }
     Ok(())
 }

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use contract::{OutOfRange, bounds};
 use files::{Failure, toml_file};
-use pipeline::PipelineError;
 use serde_json::Value;
 use sim::catalog::CatalogSource;
 use sim::docking::DockingSimulator;
@@ -155,12 +155,8 @@ impl ScenarioSource {
     /// # Errors
     /// A [`Failure`] with the place of the first value that is not allowed.
     pub fn simulator(&self, scenario: &FarRangeScenario) -> Result<Simulator, Failure> {
-        let limit = scenario.star_list.magnitude_limit;
-        if !(-2.0..=15.0).contains(&limit) {
-            let message = format!("is {limit}, expected -2 to 15");
-            return Err(self.refuse("star_list.magnitude_limit", message));
-        }
-        self.check_pipeline("far_range", scenario.far_range.check())?;
+        bounds::check(&scenario.star_list, "star_list").map_err(|error| self.out_of_range(error))?;
+        self.check_part("far_range", scenario.far_range.check())?;
         Simulator::new(&scenario.simulation(), &self.folder).map_err(|error| self.explain(error))
     }
 
@@ -170,7 +166,7 @@ impl ScenarioSource {
     /// A [`Failure`] with the place of the parameter by which it cannot.
     pub fn check_built_in_pipeline(&self, scenario: &FarRangeScenario) -> Result<(), Failure> {
         let (floor_dn, bit_depth) = (scenario.zero_suppression_dn, scenario.sensor.bit_depth);
-        self.check_pipeline("far_range", scenario.far_range.check_suppression(floor_dn, bit_depth))
+        self.check_part("far_range", scenario.far_range.check_suppression(floor_dn, bit_depth))
     }
 
     /// The simulator of a docking scenario; every value is checked, those of the target's file too.
@@ -178,7 +174,7 @@ impl ScenarioSource {
     /// # Errors
     /// A [`Failure`] with the place of the first value that is not allowed.
     pub fn docking_simulator(&self, scenario: &DockingScenario) -> Result<DockingSimulator, Failure> {
-        self.check_pipeline("docking", scenario.docking.check())?;
+        self.check_part("docking", scenario.docking.check())?;
         self.check_target(&scenario.target)?;
         DockingSimulator::new(&scenario.simulation(), &self.folder).map_err(|error| self.explain(error))
     }
@@ -205,42 +201,24 @@ impl ScenarioSource {
             self.refuse("target", format!("`{}` {problem}", file.display()))
         })?;
         let parsed: TargetFile = toml_file::parse(&file, &text)?;
-        let refuse = |path: &str, message| toml_file::refuse(&file, &text, path, message).into();
-        parsed.check().map_err(|error| match &error {
-            SimError::Parameter { field, value, expected } => {
-                refuse(field, format!("is {value}, expected {expected}"))
-            }
-            SimError::Entry { path, value, expected } => {
-                refuse(path, format!("is {value}, expected {expected}"))
-            }
-            _ => refuse("", error.to_string()),
-        })
-    }
-
-    fn check_pipeline(&self, table: &str, checked: Result<(), PipelineError>) -> Result<(), Failure> {
-        match checked {
-            Err(PipelineError::Parameter { field, value, expected }) => {
-                Err(self.refuse(&format!("{table}.{field}"), format!("is {value}, expected {expected}")))
-            }
-            Err(PipelineError::Contract(error)) => Err(error.into()),
-            Ok(()) => Ok(()),
-        }
+        parsed.check().map_err(|error| toml_file::out_of_range(&file, &text, &error).into())
     }
 
     /// Gives a refused value its place in the file.
     fn explain(&self, error: SimError) -> Failure {
-        match &error {
-            SimError::Parameter { field, value, expected } => {
-                self.refuse(field, format!("is {value}, expected {expected}"))
-            }
-            SimError::Entry { path, value, expected } => {
-                self.refuse(path, format!("is {value}, expected {expected}"))
-            }
-            SimError::Contract(contract::ContractError::OutOfRange { field, value, expected }) => {
-                self.refuse(field, format!("is {value}, expected {expected}"))
-            }
-            _ => error.into(),
+        match error {
+            SimError::OutOfRange(error) => self.out_of_range(error),
+            error => error.into(),
         }
+    }
+
+    /// What a pipeline says of its part of the scenario, the table `table`.
+    fn check_part(&self, table: &str, checked: Result<(), OutOfRange>) -> Result<(), Failure> {
+        checked.map_err(|error| self.out_of_range(error.under(table)))
+    }
+
+    fn out_of_range(&self, error: OutOfRange) -> Failure {
+        toml_file::out_of_range(&self.file, &self.text, &error).into()
     }
 
     fn refuse(&self, path: &str, message: String) -> Failure {

@@ -1,5 +1,6 @@
 //! The far-range pipeline: its steps in order, and what it remembers from frame to frame.
 
+use contract::OutOfRange;
 use contract::{
     AttitudeSource, Body, CameraFrame, Cluster, ContractError, FarRange, Frame, Icrs, Label, ListedStar,
     Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution, Telemetry,
@@ -53,7 +54,7 @@ impl FarRangePipeline {
     ///
     /// # Errors
     /// Those of [`FarRangeConfig::check`], of the camera's check and of [`contract::Readout::check`];
-    /// [`PipelineError::Parameter`] for fitted centres with a camera whose readout is not known, and for thresholds below the zero
+    /// [`OutOfRange`] for fitted centres with a camera whose readout is not known, and for thresholds below the zero
     /// suppression of the camera.
     pub fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
         config.check()?;
@@ -66,11 +67,8 @@ impl FarRangePipeline {
                 Some(CentroidFitter::new(*psf_sigma_px, readout))
             }
             (CentroidConfig::Fit { .. }, None) => {
-                return Err(PipelineError::Parameter {
-                    field: "centroid.mode",
-                    value: "fit".to_owned(),
-                    expected: "brightness, for a camera whose readout (gain, bias, read noise, saturation) is not known",
-                });
+                let expected = "brightness, for a camera whose readout (gain, bias, read noise, saturation) is not known";
+                return Err(OutOfRange::new("centroid.mode", "fit", expected).into());
             }
         };
         Ok(Self {

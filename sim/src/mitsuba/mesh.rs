@@ -1,5 +1,6 @@
 //! Facets as triangle meshes in the PLY format.
 
+use contract::bounds::require;
 use std::collections::BTreeMap;
 
 use contract::docking::Pose;
@@ -8,7 +9,6 @@ use nalgebra::Vector3;
 
 use super::Layer;
 use crate::SimError;
-use crate::error::require;
 use crate::scene::docking::{DockingScene, Facet, Part, Sun};
 
 /// How far behind the camera a shade is put, m.

@@ -5,6 +5,7 @@
 //! the Jacobian is positive definite on a convex set, the potential is strictly convex there and no two points
 //! share an image. That is how a camera whose distortion folds inside the detector is recognised.
 
+use contract::OutOfRange;
 use std::f64::consts::PI;
 
 use contract::{Angle, Camera, CameraFrame, Direction, PixelPoint};
@@ -49,7 +50,7 @@ impl Projection {
     /// The model of a camera.
     ///
     /// # Errors
-    /// [`SimError::Contract`] for a number out of range; [`SimError::Parameter`] when the distortion folds inside
+    /// [`SimError::Contract`] for a number out of range; [`SimError::OutOfRange`] when the distortion folds inside
     /// the detector, so that a pixel has no direction or more than one.
     pub fn new(camera: &Camera) -> Result<Self, SimError> {
         camera.check()?;
@@ -71,10 +72,12 @@ impl Projection {
             domain_px: distortion.one_to_one_radius(Self::DOMAIN_FACTOR * corner_px),
             half_diagonal: Angle::ZERO,
         };
-        projection.half_diagonal = projection.border_angle().ok_or_else(|| SimError::Parameter {
-            field: "camera.radial, camera.tangential",
-            value: format!("{:?}, {:?}", camera.radial, camera.tangential),
-            expected: "a distortion that does not fold inside the detector",
+        projection.half_diagonal = projection.border_angle().ok_or_else(|| {
+            OutOfRange::new(
+                "camera.radial, camera.tangential",
+                format!("{:?}, {:?}", camera.radial, camera.tangential),
+                "a distortion that does not fold inside the detector",
+            )
         })?;
         Ok(projection)
     }

@@ -1,10 +1,9 @@
 //! How many photo-electrons a photon gives.
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::SimError;
-use crate::error::require;
 
 /// Quantum efficiency of a detector by wavelength.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -29,19 +28,19 @@ impl QuantumEfficiency {
     /// Checks the table.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when it is too short or too long, does not grow, or has a value outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
+    /// [`OutOfRange`] when it is too short or too long, does not grow, or has a value outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
         let Self::Table(table) = self else { return Ok(()) };
-        let field = "radiometry.quantum_efficiency";
-        require(field, table.len() as f64, "a table of 2 to 1000 pairs", |n| (2.0..=1000.0).contains(&n))?;
+        let path = "radiometry.quantum_efficiency";
+        require(path, table.len() as f64, "a table of 2 to 1000 pairs", |n| (2.0..=1000.0).contains(&n))?;
         for [wavelength_nm, efficiency] in table {
             let expected = "wavelengths of 200 to 1200 nm";
-            require(field, *wavelength_nm, expected, |w| (200.0..=1200.0).contains(&w))?;
-            require(field, *efficiency, "efficiencies of 0 to 1", |q| (0.0..=1.0).contains(&q))?;
+            require(path, *wavelength_nm, expected, |w| (200.0..=1200.0).contains(&w))?;
+            require(path, *efficiency, "efficiencies of 0 to 1", |q| (0.0..=1.0).contains(&q))?;
         }
         for pair in table.windows(2) {
             let [[before, _], [after, _]] = pair else { continue };
-            require(field, *after, "wavelengths that grow", |w| w > *before)?;
+            require(path, *after, "wavelengths that grow", |w| w > *before)?;
         }
         Ok(())
     }
