@@ -1,7 +1,6 @@
 //! Truth → scene → optics → sensor → on board: one frame, in one function.
 
-use contract::OutOfRange;
-use contract::{Frame, Telemetry, Window};
+use contract::{Frame, OutOfRange, Telemetry, Window};
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 

@@ -1,10 +1,9 @@
 //! A simulation, checked and prepared.
 
-use contract::OutOfRange;
-use contract::bounds::require;
 use std::path::Path;
 
-use contract::{Body, Camera, CameraFrame, Rotation};
+use contract::bounds::require;
+use contract::{Body, Camera, CameraFrame, OutOfRange, Rotation};
 use hifitime::Unit;
 
 use crate::SimError;

@@ -8,6 +8,7 @@ mod architecture;
 mod argon;
 mod bad_input;
 mod best_mode;
+mod bounds;
 mod docking;
 mod docking_artefacts;
 mod docking_consistency;

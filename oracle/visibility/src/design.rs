@@ -1,7 +1,7 @@
 //! One camera design, and the probability with which it meets a demand, by the analytic law.
-use contract::OutOfRange;
 use std::cell::OnceCell;
 
+use contract::OutOfRange;
 use files::Failure;
 use sim::SimError;
 

@@ -1,7 +1,6 @@
 //! All parameters of the docking method.
 
-use contract::OutOfRange;
-use contract::bounds;
+use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,10 +1,9 @@
 //! Hotspots of the detector (section 2.2, after Eq. 10).
 
-use contract::OutOfRange;
-use contract::bounds::require;
 use std::collections::BTreeSet;
 
-use contract::PixelPoint;
+use contract::bounds::require;
+use contract::{OutOfRange, PixelPoint};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

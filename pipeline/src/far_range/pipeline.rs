@@ -1,9 +1,9 @@
 //! The far-range pipeline: its steps in order, and what it remembers from frame to frame.
 
-use contract::OutOfRange;
 use contract::{
     AttitudeSource, Body, CameraFrame, Cluster, ContractError, FarRange, Frame, Icrs, Label, ListedStar,
-    Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution, Telemetry,
+    Measurement, NoSolution, OutOfRange, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution,
+    Telemetry,
 };
 use hifitime::Epoch;
 
@@ -63,7 +63,7 @@ impl FarRangePipeline {
         let fitter = match (&config.centroid, setup.readout) {
             (CentroidConfig::Brightness, _) => None,
             (CentroidConfig::Fit { psf_sigma_px }, Some(readout)) => {
-                readout.check()?;
+                readout.check().map_err(ContractError::from)?;
                 Some(CentroidFitter::new(*psf_sigma_px, readout))
             }
             (CentroidConfig::Fit { .. }, None) => {

@@ -1,8 +1,7 @@
 //! The thresholds I1 and I2 of detection (section 2.1).
 
-use contract::Frame;
-use contract::OutOfRange;
 use contract::bounds::require;
+use contract::{Frame, OutOfRange};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

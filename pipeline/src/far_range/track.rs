@@ -1,10 +1,9 @@
 //! Tracking: linking the clusters of two frames (section 2.2, Eqs. 5 to 10).
 
-use contract::OutOfRange;
-use contract::bounds::require;
 use std::collections::VecDeque;
 
-use contract::{CameraFrame, Icrs, PixelPoint, Rotation};
+use contract::bounds::require;
+use contract::{CameraFrame, Icrs, OutOfRange, PixelPoint, Rotation};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

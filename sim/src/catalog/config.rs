@@ -1,7 +1,6 @@
 //! What a scenario says about its catalogue.
 
-use contract::OutOfRange;
-use contract::bounds;
+use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,8 +1,7 @@
 //! What the simulator of an approach is told.
 
-use contract::Camera;
-use contract::OutOfRange;
 use contract::bounds::{self, require};
+use contract::{Camera, OutOfRange};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,11 +1,10 @@
 //! Glints: small shiny fittings that mirror the Sun into the camera.
 
-use contract::OutOfRange;
-use contract::bounds::require;
 use std::f64::consts::PI;
 
-use contract::PixelPoint;
+use contract::bounds::require;
 use contract::docking::Lines;
+use contract::{OutOfRange, PixelPoint};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

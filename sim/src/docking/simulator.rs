@@ -1,9 +1,9 @@
 //! A docking simulation, checked and prepared, and how it makes a field.
 
-use contract::OutOfRange;
-use contract::bounds::require;
 use std::path::Path;
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use contract::docking::{Digitiser, DockingSetup, FieldTelemetry, Lines, TargetModel};
 use hifitime::{Duration, Epoch};
 

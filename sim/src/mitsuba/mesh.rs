@@ -1,8 +1,8 @@
 //! Facets as triangle meshes in the PLY format.
 
-use contract::bounds::require;
 use std::collections::BTreeMap;
 
+use contract::bounds::require;
 use contract::docking::Pose;
 use earcut::Earcut;
 use nalgebra::Vector3;

@@ -1,9 +1,8 @@
 //! The scene file of Mitsuba 3.
 
-use contract::Camera;
-use contract::OutOfRange;
 use contract::bounds::require;
 use contract::docking::Pose;
+use contract::{Camera, OutOfRange};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::matrix::matrix;

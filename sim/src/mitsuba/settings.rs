@@ -1,7 +1,6 @@
 //! How finely a scene is rendered, and which part of its image.
 
-use contract::Camera;
-use contract::OutOfRange;
+use contract::{Camera, OutOfRange};
 
 /// A part of the image, px.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,9 +4,8 @@
 //! object at its topmost bright row, so the region's place hangs on the top of the object: one taller than the region
 //! keeps its top and loses its bottom. That cuts in y, not in x, and spoils the declination. A scan by columns cuts in x.
 
-use contract::OutOfRange;
-use contract::Window;
 use contract::bounds::{self, require};
+use contract::{OutOfRange, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

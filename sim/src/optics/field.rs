@@ -1,8 +1,6 @@
 //! What of the optics changes over the field of view.
 
-use contract::OutOfRange;
-use contract::bounds;
-use contract::{Camera, PixelPoint};
+use contract::{Camera, OutOfRange, PixelPoint, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -5,10 +5,9 @@
 //! the Jacobian is positive definite on a convex set, the potential is strictly convex there and no two points
 //! share an image. That is how a camera whose distortion folds inside the detector is recognised.
 
-use contract::OutOfRange;
 use std::f64::consts::PI;
 
-use contract::{Angle, Camera, CameraFrame, Direction, PixelPoint};
+use contract::{Angle, Camera, CameraFrame, Direction, OutOfRange, PixelPoint};
 use nalgebra::Vector3;
 
 use crate::SimError;

@@ -1,8 +1,7 @@
 //! Cosmic rays: straight tracks of charge through the sensitive layer.
 
-use contract::OutOfRange;
 use contract::bounds::require;
-use contract::{Camera, PixelPoint};
+use contract::{Camera, OutOfRange, PixelPoint};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;

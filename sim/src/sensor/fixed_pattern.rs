@@ -1,8 +1,8 @@
 //! What is different from pixel to pixel and the same in every frame: response, dark current, defects.
 
-use contract::OutOfRange;
 use std::sync::{Mutex, PoisonError};
 
+use contract::OutOfRange;
 use rand::Rng;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,7 @@
 //! From expected photo-electrons to digital numbers.
 
+use contract::OutOfRange;
+
 use super::blooming::Overflow;
 use super::charge::Charge;
 use super::detector::Sensor;
@@ -9,7 +11,6 @@ use super::raw_image::RawImage;
 use crate::SimError;
 use crate::draw::ExpectedImage;
 use crate::randomness::{Effect, Seed, normal};
-use contract::OutOfRange;
 
 impl Sensor {
     /// Draws the digital number of every pixel.

@@ -17,9 +17,8 @@ mod overlay;
 mod sun_glare;
 mod video;
 
-use contract::OutOfRange;
-use contract::bounds;
 use contract::docking::Lines;
+use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -5,9 +5,8 @@
 //! Written from the papers and held against ERFA (`golden/apparent`). Neglected: deflection by planets (16 mas at
 //! Jupiter's limb, under 1 mas from 6′ on) and by the Earth (0.4 mas at its limb from a low orbit).
 
-use contract::OutOfRange;
 use contract::bounds::require;
-use contract::{Direction, Icrs};
+use contract::{Direction, Icrs, OutOfRange};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
@@ -92,7 +91,7 @@ impl Observer {
     /// let observer = Observer::new(time, Vector3::new(7_100.0, 0.0, 0.0), Vector3::new(0.0, 0.0, 7.5))?;
     /// // The Earth carries the spacecraft along at 30 km/s.
     /// assert!((20.0..40.0).contains(&observer.barycentric_velocity_km_s().norm()));
-    /// # Ok::<(), boresight_sim::OutOfRange>(())
+    /// # Ok::<(), boresight_sim::SimError>(())
     /// ```
     pub fn new(
         time: Epoch,

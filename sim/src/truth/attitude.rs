@@ -1,8 +1,7 @@
 //! The true attitude of the chaser: guidance through the nominal mounting, plus what control does not achieve.
 
-use contract::OutOfRange;
 use contract::bounds::{self, require};
-use contract::{Body, CameraFrame, Icrs, Rotation};
+use contract::{Body, CameraFrame, Icrs, OutOfRange, Rotation};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

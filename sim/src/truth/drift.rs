@@ -1,10 +1,9 @@
 //! Slow errors about the three body axes, and fast ones frame by frame: functions of time and address, with no memory.
 
-use contract::OutOfRange;
-use contract::bounds::require;
 use std::f64::consts::PI;
 
-use contract::{Angle, Body, Rotation};
+use contract::bounds::require;
+use contract::{Angle, Body, OutOfRange, Rotation};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

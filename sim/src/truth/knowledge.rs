@@ -1,8 +1,6 @@
 //! What the chaser knows, or believes, about its own attitude and velocity.
 
-use contract::OutOfRange;
-use contract::Telemetry;
-use contract::bounds;
+use contract::{OutOfRange, Telemetry, bounds};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;

@@ -1,7 +1,6 @@
 //! Impulsive manoeuvres of the chaser.
 
-use contract::OutOfRange;
-use contract::bounds;
+use contract::{OutOfRange, bounds};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;

@@ -1,8 +1,6 @@
 //! How the camera really sits on the spacecraft, and how everybody believes it does.
 
-use contract::Mounting;
-use contract::OutOfRange;
-use contract::bounds;
+use contract::{Mounting, OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

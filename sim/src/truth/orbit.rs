@@ -8,9 +8,8 @@
 //! - the velocity is the Keplerian one of the elements at that instant. It differs from the derivative of the
 //!   position by the drift rates, about 1e-3 of the orbital velocity: 0.005″ of aberration.
 
-use contract::OutOfRange;
 use contract::bounds::{self, require};
-use contract::{Icrs, Rotation};
+use contract::{Icrs, OutOfRange, Rotation};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -6,8 +6,7 @@
 //! the target's. All are multiplied by the target's a and given in metres. The map to the chaser's own elements
 //! is exact: nothing is linearised.
 
-use contract::OutOfRange;
-use contract::bounds;
+use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,10 +1,9 @@
 //! Which frame is taken when.
 
-use contract::OutOfRange;
-use contract::bounds;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use contract::{OutOfRange, bounds};
 use hifitime::{Duration, Epoch, TimeScale};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,7 @@
 //! How the target is turned.
 
-use contract::OutOfRange;
 use contract::bounds::require;
-use contract::{Angle, Icrs, Rotation, Target};
+use contract::{Angle, Icrs, OutOfRange, Rotation, Target};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

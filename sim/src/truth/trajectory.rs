@@ -4,8 +4,7 @@
 //! manoeuvre to the next, so that any instant can be computed alone. Time inside is seconds (SI, as TT and TAI
 //! count them) since the orbit's epoch, exact to 0.1 ns within months of it.
 
-use contract::OutOfRange;
-use contract::{Icrs, Rotation};
+use contract::{Icrs, OutOfRange, Rotation};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;

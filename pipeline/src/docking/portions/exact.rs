@@ -1,8 +1,7 @@
 //! Portions of poses: position and attitude together, with the covariance that forgetting leaves.
 
-use contract::OutOfRange;
-use contract::bounds;
 use contract::docking::{Motion, PoseEstimate};
+use contract::{OutOfRange, bounds};
 use nalgebra::{Matrix6, SMatrix, SVector, Vector6};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,7 @@
 //! The paper's portions: position by Gauss–Newton on cross and circle, then attitude by three regressions.
 
-use contract::OutOfRange;
-use contract::bounds;
 use contract::docking::{Motion, Pose};
+use contract::{OutOfRange, bounds};
 use nalgebra::{Matrix2, Matrix3, Matrix6, Vector2, Vector3, Vector6};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

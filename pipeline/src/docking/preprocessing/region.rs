@@ -1,12 +1,11 @@
 //! The region of interest: given from outside, or predicted from the previous fields.
 
-use contract::OutOfRange;
 use contract::bounds::require;
+use contract::{OutOfRange, PixelPoint};
 use nalgebra::{Vector2, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use contract::PixelPoint;
 use contract::docking::{Pose, TargetModel};
 
 use super::view::Lens;

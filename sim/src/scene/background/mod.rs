@@ -8,11 +8,9 @@ mod zodiacal;
 
 pub use stray::StrayLightConfig;
 
-use contract::OutOfRange;
-use contract::bounds;
 use std::sync::Arc;
 
-use contract::{Camera, CameraFrame, Icrs, PixelPoint, Rotation};
+use contract::{Camera, CameraFrame, Icrs, OutOfRange, PixelPoint, Rotation, bounds};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;

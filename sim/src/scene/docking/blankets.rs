@@ -1,9 +1,9 @@
 //! Thermal blankets on the station's end: irregular tiles in rings, with dark gaps between them.
 
-use contract::OutOfRange;
-use contract::bounds::require;
 use std::f64::consts::PI;
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,9 @@
 //! The docking unit: a ring that stands on the station's end, with the receiving cone inside and blocks on it.
 
-use contract::OutOfRange;
-use contract::bounds::require;
 use std::f64::consts::PI;
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use contract::docking::Outline;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -347,15 +347,16 @@ fn bad_values_are_refused_with_their_path() {
     // Before the disk's plane; through the station's wall.
     refused("fittings.body[1]", |t| fitting(t, [0.0, 1.0, 0.1], 0.1));
     refused("fittings.body[1].radius_m", |t| fitting(t, [0.0, 1.0, -0.2], -0.1));
-    refused("fittings.body[1].to_m", |t| fitting(t, [0.0, 1.0, f64::NAN], 0.1));
+    refused("fittings.body[1].to_m[2]", |t| fitting(t, [0.0, 1.0, f64::NAN], 0.1));
     refused("structure.body[0]", |t| {
         let body = t.fittings.as_ref().unwrap().body[0].clone();
         t.structure.as_mut().unwrap().body[0] = body;
     });
-    refused("structure.body[1].cells", |t| panel(t, [usize::MAX, 3]));
-    refused("structure.body[1].cells", |t| panel(t, [0, 3]));
+    refused("structure.body[1].cells[0]", |t| panel(t, [usize::MAX, 3]));
+    refused("structure.body[1].cells[0]", |t| panel(t, [0, 3]));
+    refused("structure.body[1].cells", |t| panel(t, [9, 8]));
     refused("structure.body[1].gap_m", |t| panel(t, [1, 64]));
-    refused("number of structure.body", |t| {
+    refused("structure.body", |t| {
         let bodies = &mut t.structure.as_mut().unwrap().body;
         *bodies = vec![bodies[0].clone(); 101];
     });

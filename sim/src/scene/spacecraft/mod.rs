@@ -12,9 +12,8 @@ mod body_tests;
 pub use plate::{BoxConfig, PlateConfig};
 pub use surface::SurfaceConfig;
 
-use contract::OutOfRange;
 use contract::bounds::{self, require};
-use contract::{Icrs, PixelPoint, Rotation, Target};
+use contract::{Icrs, OutOfRange, PixelPoint, Rotation, Target};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,9 +1,9 @@
 //! How a plate reflects: diffusely, and about the direction of a mirror.
 
-use contract::OutOfRange;
-use contract::bounds::require;
 use std::f64::consts::PI;
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

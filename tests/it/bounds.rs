@@ -1,0 +1,137 @@
+//! The ranges of numbers that users write: each declared once, told by the schema, and as the documentation says.
+
+use boresight::files::{CameraFile, docking::SetupFile};
+use boresight::scenario::{DockingScenario, FarRangeScenario, Scenario, World};
+use boresight::study::StudyFile;
+use boresight::visibility::RequirementFile;
+use schemars::schema_for;
+use serde_json::Value;
+use sim::scene::docking::TargetFile;
+
+/// Every number of a file that a user writes, with its path in the types, as `SensorConfig.gain_e_per_dn`.
+fn numbers() -> Vec<(String, Field)> {
+    let schemas = [
+        schema_for!(FarRangeScenario),
+        schema_for!(DockingScenario),
+        schema_for!(TargetFile),
+        schema_for!(CameraFile),
+        schema_for!(SetupFile),
+        schema_for!(RequirementFile),
+        schema_for!(StudyFile),
+    ];
+    let mut all = Vec::new();
+    for schema in schemas.map(schemars::Schema::to_value) {
+        collect(schema["title"].as_str().unwrap(), &schema, &mut all);
+    }
+    all.sort_by(|a: &(String, Field), b| a.0.cmp(&b.0));
+    all.dedup();
+    all
+}
+
+/// A field that holds a number, or lists of numbers.
+#[derive(Debug, PartialEq)]
+struct Field {
+    description: String,
+    /// Of the number: at least, above, at most, below.
+    limits: [Option<f64>; 4],
+    /// Of the list that it is in, when it is in one: its greatest length.
+    longest: Option<f64>,
+    is_integer: bool,
+}
+
+fn collect(owner: &str, schema: &Value, all: &mut Vec<(String, Field)>) {
+    for (name, definition) in schema["$defs"].as_object().into_iter().flatten() {
+        collect(name, definition, all);
+    }
+    for (key, property) in schema["properties"].as_object().into_iter().flatten() {
+        if let Some(number) = number(property) {
+            let limit = |key: &str| number[key].as_f64();
+            let field = Field {
+                description: property["description"].as_str().unwrap_or_default().to_owned(),
+                limits: ["minimum", "exclusiveMinimum", "maximum", "exclusiveMaximum"].map(limit),
+                longest: property["maxItems"].as_f64(),
+                is_integer: is_of(number, "integer"),
+            };
+            all.push((format!("{owner}.{key}"), field));
+        } else {
+            collect(owner, property, all);
+        }
+    }
+    for key in ["oneOf", "anyOf", "allOf", "prefixItems"] {
+        schema[key].as_array().into_iter().flatten().for_each(|part| collect(owner, part, all));
+    }
+    if schema["items"].is_object() {
+        collect(owner, &schema["items"], all);
+    }
+}
+
+fn is_of(schema: &Value, name: &str) -> bool {
+    schema["type"] == name || schema["type"].as_array().is_some_and(|types| types.iter().any(|t| t == name))
+}
+
+/// The number that a schema is of, inside lists too.
+fn number(schema: &Value) -> Option<&Value> {
+    if is_of(schema, "number") || is_of(schema, "integer") {
+        Some(schema)
+    } else if schema["items"].is_object() {
+        number(&schema["items"])
+    } else {
+        schema["prefixItems"].get(0).and_then(number)
+    }
+}
+
+/// The first range that a description names, "0.05 to 1e5" or "above 0 to 5".
+fn named(description: &str) -> Option<[f64; 2]> {
+    let plain = description.replace('−', "-").replace("10 000", "10000");
+    let words: Vec<&str> = plain.split_whitespace().collect();
+    let number = |word: &str| word.trim_end_matches([',', ';', '.', ':', ')']).parse::<f64>().ok();
+    words.windows(3).find_map(|three| match three {
+        [from, "to", to] => Some([number(from)?, number(to)?]),
+        _ => None,
+    })
+}
+
+#[test]
+fn a_range_in_the_documentation_is_the_declared_one() {
+    let mut wrong = Vec::new();
+    let mut compared = 0;
+    for (name, field) in numbers() {
+        let [at_least, above, at_most, below] = field.limits;
+        let Some([from, to]) = named(&field.description) else { continue };
+        compared += 1;
+        if above.or(at_least) != Some(from) || below.or(at_most) != Some(to) {
+            wrong.push(format!("{name}: {:?}, but: {}", field.limits, field.description));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(compared > 200, "{compared}");
+}
+
+#[test]
+fn every_number_has_a_range_or_is_free_on_purpose() {
+    let has_none = |(_, field): &&(String, Field)| {
+        let [at_least, above, at_most, below] = field.limits;
+        // An unsigned integer has a minimum by its type.
+        let lower = if field.is_integer { None } else { at_least.or(above) };
+        lower.or(at_most).or(below).is_none()
+    };
+    let numbers = numbers();
+    let mut free: Vec<&str> = numbers.iter().filter(has_none).map(|(name, _)| name.as_str()).collect();
+    free.dedup();
+    assert_eq!(free, FREE);
+}
+
+/// What may be any number, each for a reason.
+const FREE: [&str; 0] = [];
+
+#[test]
+fn the_schema_of_scenarios_tells_the_ranges() {
+    let schema = Scenario::json_schema(Some(World::FarRange)).to_value();
+    let gain = &schema["$defs"]["SensorConfig"]["properties"]["gain_e_per_dn"];
+    assert_eq!((gain["minimum"].as_f64(), gain["maximum"].as_f64()), (Some(0.05), Some(1e5)));
+    let level = &Scenario::json_schema(None).to_value()["$defs"]["DriftConfig"]["properties"]["rms_arcsec"];
+    assert_eq!(
+        (level["items"]["minimum"].as_f64(), level["items"]["maximum"].as_f64()),
+        (Some(0.0), Some(36e3))
+    );
+}
