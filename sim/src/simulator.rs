@@ -137,8 +137,7 @@ impl Simulator {
                 .sensor
                 .cosmic_rays
                 .as_ref()
-                .map(|config| CosmicRays::new(config, &simulation.camera))
-                .transpose()?,
+                .map(|config| CosmicRays::new(config, &simulation.camera)),
             shutter,
             roi: simulation.roi.clone(),
             zero_suppression_dn: simulation.zero_suppression_dn,

@@ -72,7 +72,7 @@ impl DockingSimulation {
     /// Checks every value but the target and what depends on it.
     ///
     /// # Errors
-    /// [`SimError`] for the first one that is not allowed.
+    /// [`OutOfRange`] for the first one that is not allowed.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "")?;
         parse_utc_of("start_utc", &self.start_utc)?;

@@ -105,7 +105,7 @@ impl Default for FloodlightConfig {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShadeConfig {
-    /// Its corners in order, target frame, m: 3 to 64, in one plane within 1 µm, each coordinate −1000 to 1000.
+    /// Its corners in order, target frame, m, each coordinate −1000 to 1000; 3 to 64 of them, in one plane within 1 µm.
     #[schemars(length(min = 3, max = 64), inner(inner(range(min = -1000, max = 1000))))]
     pub corners_m: Vec<[f64; 3]>,
 }

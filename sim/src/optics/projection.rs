@@ -49,8 +49,8 @@ impl Projection {
     /// The model of a camera.
     ///
     /// # Errors
-    /// [`SimError::Contract`] for a number out of range; [`SimError::OutOfRange`] when the distortion folds inside
-    /// the detector, so that a pixel has no direction or more than one.
+    /// [`SimError::OutOfRange`] for a number out of range, and when the distortion folds inside the detector, so that a
+    /// pixel has no direction or more than one.
     pub fn new(camera: &Camera) -> Result<Self, SimError> {
         camera.check()?;
         let (focal_x_px, focal_y_px) = camera.focal_length_px();

@@ -131,15 +131,15 @@ pub(crate) struct Track {
 }
 
 impl CosmicRays {
-    pub(crate) fn new(config: &CosmicRayConfig, camera: &Camera) -> Result<Self, OutOfRange> {
-        config.check()?;
-        Ok(Self {
+    /// Of a configuration that was checked with its sensor.
+    pub(crate) fn new(config: &CosmicRayConfig, camera: &Camera) -> Self {
+        Self {
             config: config.clone(),
             columns: camera.columns,
             rows: camera.rows,
             pixel_width_um: camera.pixel_width_um,
             pixel_height_um: camera.pixel_height_um,
-        })
+        }
     }
 
     /// Particles a second and cm² at a place: `position_km` from the centre of the Earth in ICRS axes.

@@ -18,7 +18,7 @@ impl MountingConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Contract`] for an angle that is not finite.
+    /// [`OutOfRange`] for an angle that is not finite.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "mounting")
     }

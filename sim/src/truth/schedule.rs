@@ -78,7 +78,7 @@ impl Schedule {
     ///
     /// # Errors
     /// [`OutOfRange`] when a group is wrong by itself, a name comes twice, a group does not begin after the last
-    /// frame of the one before, or there are too many frames; [`OutOfRange`] when there is no group.
+    /// frame of the one before, or there are too many frames, or there is no group.
     pub fn new(configs: &[GroupConfig]) -> Result<Self, OutOfRange> {
         let mut names = BTreeSet::new();
         let mut groups: Vec<Group> = Vec::with_capacity(configs.len());

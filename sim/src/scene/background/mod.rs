@@ -68,7 +68,7 @@ impl BackgroundConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::OutOfRange`] for the first one outside its range.
+    /// [`OutOfRange`] for the first one outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "background")
     }

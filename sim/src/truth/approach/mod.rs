@@ -29,7 +29,7 @@ pub enum ApproachConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConstantVelocityConfig {
-    /// d at the beginning, m; d3 from 0.05 to 20000, also at the end, d1 and d2 from −20000 to 20000.
+    /// d at the beginning, m, each from −20000 to 20000; d3 from 0.05 on, also at the end.
     #[schemars(inner(range(min = -20000, max = 20000)))]
     pub position_m: [f64; 3],
     /// Velocity, m/s, each from −100 to 100.
