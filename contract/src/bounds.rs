@@ -92,7 +92,7 @@ impl<'a> Walk<'a> {
             }
             DeValue::Float(float) => {
                 let number = float.as_str().parse().unwrap_or(f64::NAN);
-                check_number(&parts, number, &number, path)
+                check_number(&parts, number, number, path)
             }
             DeValue::Array(items) => {
                 for part in &parts {
