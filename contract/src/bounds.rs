@@ -60,7 +60,7 @@ pub fn require(
 /// # Errors
 /// [`OutOfRange`] for the first that is not.
 pub fn check<T: Serialize + JsonSchema + 'static>(value: &T, path: &str) -> Result<(), OutOfRange> {
-    // As TOML, which leaves out what is absent and keeps NaN, infinity and every integer; JSON has null for the former three.
+    // As TOML, which leaves out what is absent and keeps NaN, infinity and every integer; in JSON all but the last are null.
     let unreadable = |error: &dyn ToString| OutOfRange::new(path, error.to_string(), "a table");
     let text = toml::to_string(value).map_err(|error| unreadable(&error))?;
     let table = DeTable::parse(&text).map_err(|error| unreadable(&error))?;
@@ -170,12 +170,10 @@ impl<'a> Walk<'a> {
 }
 
 fn check_number(parts: &[&Value], number: f64, value: impl ToString, path: &str) -> Result<(), OutOfRange> {
-    let ranges = parts.iter().map(|part| Range::of_number(part));
-    match ranges.filter(|range| !number.is_finite() || !range.contains(number)).max_by_key(Range::limits) {
-        Some(range) => Err(OutOfRange::new(path, value, range.words())),
-        None if number.is_finite() => Ok(()),
-        None => Err(OutOfRange::new(path, value, "a finite number")),
-    }
+    // A number that no schema speaks of is finite too.
+    let mut ranges = parts.iter().copied().chain([&Value::Null]).map(Range::of_number);
+    let refusing = ranges.find(|range| !(number.is_finite() && range.contains(number)));
+    refusing.map_or(Ok(()), |range| Err(OutOfRange::new(path, value, range.words())))
 }
 
 /// What a schema allows of a number.
@@ -196,10 +194,6 @@ impl Range {
 
     fn of_number(schema: &Value) -> Self {
         Self::of(schema, ["minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum"])
-    }
-
-    fn limits(&self) -> usize {
-        [self.at_least, self.at_most, self.more_than, self.less_than].into_iter().flatten().count()
     }
 
     fn contains(&self, number: f64) -> bool {
