@@ -3,8 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::error::require;
-use crate::{Angle, Body, CameraFrame, ContractError, Rotation};
+use crate::{Angle, Body, CameraFrame, OutOfRange, Rotation, bounds};
 
 /// Geometry of a camera: detector, focal length, principal point, distortion (far-range paper, Table 1).
 ///
@@ -17,24 +16,33 @@ use crate::{Angle, Body, CameraFrame, ContractError, Rotation};
 #[serde(deny_unknown_fields)]
 pub struct Camera {
     /// Columns of the detector, 1 to 16384.
+    #[schemars(range(min = 1, max = Self::MAX_SIDE_PX))]
     pub columns: usize,
     /// Rows of the detector, 1 to 16384.
+    #[schemars(range(min = 1, max = Self::MAX_SIDE_PX))]
     pub rows: usize,
     /// Focal length, mm, 0.01 to 1e6.
+    #[schemars(range(min = 0.01, max = 1e6))]
     pub focal_length_mm: f64,
     /// Width of a pixel (along columns), µm, 0.01 to 1e4.
+    #[schemars(range(min = 0.01, max = 1e4))]
     pub pixel_width_um: f64,
     /// Height of a pixel (along rows), µm, 0.01 to 1e4.
+    #[schemars(range(min = 0.01, max = 1e4))]
     pub pixel_height_um: f64,
     /// Principal point along columns, px, -1e5 to 1e5; the centre of the first pixel is 0.
+    #[schemars(range(min = -1e5, max = 1e5))]
     pub principal_x_px: f64,
     /// Principal point along rows, px, -1e5 to 1e5; the centre of the first pixel is 0.
+    #[schemars(range(min = -1e5, max = 1e5))]
     pub principal_y_px: f64,
     /// Radial distortion (k1, k2, k3) in px⁻², px⁻⁴, px⁻⁶, each -1 to 1.
     #[serde(default)]
+    #[schemars(inner(range(min = -1, max = 1)))]
     pub radial: [f64; 3],
     /// Tangential distortion (p1, p2) in px⁻¹, each -1 to 1.
     #[serde(default)]
+    #[schemars(inner(range(min = -1, max = 1)))]
     pub tangential: [f64; 2],
 }
 
@@ -42,33 +50,13 @@ impl Camera {
     /// Largest number of columns or rows; bounds what a file can make us allocate.
     pub const MAX_SIDE_PX: usize = 16384;
 
-    /// Checks every number.
+    /// Checks every number. Pixels are from a hundredth of a micrometre to a centimetre: beyond, the unit is wrong. The principal point
+    /// may be far outside, as a detector may be a part of a larger image circle.
     ///
     /// # Errors
-    /// [`ContractError::OutOfRange`] for the first field outside its range.
-    pub fn check(&self) -> Result<(), ContractError> {
-        let side = |v: f64| (1.0..=Self::MAX_SIDE_PX as f64).contains(&v);
-        require("camera.columns", self.columns as f64, "1 to 16384", side)?;
-        require("camera.rows", self.rows as f64, "1 to 16384", side)?;
-        require("camera.focal_length_mm", self.focal_length_mm, "0.01 to 1e6", |v| {
-            (0.01..=1e6).contains(&v)
-        })?;
-        // From a hundredth of a micrometre to a centimetre: beyond, the unit is wrong.
-        let pixel = |v: f64| (0.01..=1e4).contains(&v);
-        require("camera.pixel_width_um", self.pixel_width_um, "0.01 to 1e4", pixel)?;
-        require("camera.pixel_height_um", self.pixel_height_um, "0.01 to 1e4", pixel)?;
-        // A detector may be a part of a larger image circle.
-        let place = |v: f64| v.abs() <= 1e5;
-        require("camera.principal_x_px", self.principal_x_px, "-1e5 to 1e5", place)?;
-        require("camera.principal_y_px", self.principal_y_px, "-1e5 to 1e5", place)?;
-        let small = |v: f64| v.abs() <= 1.0;
-        for k in self.radial {
-            require("camera.radial", k, "numbers of -1 to 1", small)?;
-        }
-        for p in self.tangential {
-            require("camera.tangential", p, "numbers of -1 to 1", small)?;
-        }
-        Ok(())
+    /// [`OutOfRange`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "camera")
     }
 
     /// Focal length in pixels along columns and along rows.
@@ -94,11 +82,9 @@ impl Mounting {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`ContractError::OutOfRange`] for an angle that is not finite.
-    pub fn check(&self) -> Result<(), ContractError> {
-        require("mounting.phi_deg", self.phi_deg, "a finite number", |_| true)?;
-        require("mounting.theta_deg", self.theta_deg, "a finite number", |_| true)?;
-        require("mounting.psi_deg", self.psi_deg, "a finite number", |_| true)
+    /// [`OutOfRange`] for an angle that is not finite.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "mounting")
     }
 
     /// The rotation from body to camera.
@@ -135,10 +121,7 @@ mod tests {
         let refused = |field: &str, change: fn(&mut Camera)| {
             let mut wrong = camera();
             change(&mut wrong);
-            match wrong.check() {
-                Err(ContractError::OutOfRange { field: named, .. }) => assert_eq!(named, field),
-                other => panic!("{field}: {other:?}"),
-            }
+            assert_eq!(wrong.check().unwrap_err().path, field);
         };
         refused("camera.columns", |c| c.columns = 0);
         refused("camera.rows", |c| c.rows = Camera::MAX_SIDE_PX + 1);
@@ -148,8 +131,8 @@ mod tests {
         refused("camera.pixel_height_um", |c| c.pixel_height_um = f64::NAN);
         refused("camera.principal_x_px", |c| c.principal_x_px = -1e6);
         refused("camera.principal_y_px", |c| c.principal_y_px = f64::INFINITY);
-        refused("camera.radial", |c| c.radial[2] = 1e300);
-        refused("camera.tangential", |c| c.tangential[1] = -2.0);
+        refused("camera.radial[2]", |c| c.radial[2] = 1e300);
+        refused("camera.tangential[1]", |c| c.tangential[1] = -2.0);
     }
 
     #[test]
@@ -167,9 +150,7 @@ mod tests {
             ("mounting.theta_deg", Mounting { theta_deg: f64::INFINITY, ..Mounting::default() }),
             ("mounting.psi_deg", Mounting { psi_deg: f64::NEG_INFINITY, ..Mounting::default() }),
         ] {
-            assert!(
-                matches!(wrong.check(), Err(ContractError::OutOfRange { field: named, .. }) if named == field)
-            );
+            assert_eq!(wrong.check().unwrap_err().path, field);
         }
     }
 }

@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 
 use nalgebra::Vector3;
 
-use crate::{Angle, ContractError};
+use crate::{Angle, ContractError, OutOfRange};
 
 /// The celestial frame: ICRS axes, treated as J2000 (the frame bias of about 20 mas is below every budget).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,11 +46,7 @@ impl<F> Direction<F> {
         if norm.is_finite() && norm > f64::MIN_POSITIVE {
             Ok(Self::from_unit(vector / norm))
         } else {
-            Err(ContractError::OutOfRange {
-                field: "length of a direction vector",
-                value: norm,
-                expected: "finite and greater than 0",
-            })
+            Err(OutOfRange::new("length of a direction vector", norm, "finite and greater than 0").into())
         }
     }
 

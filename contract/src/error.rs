@@ -2,19 +2,14 @@
 
 use thiserror::Error;
 
+use crate::OutOfRange;
+
 /// A value that the contract does not allow: which, what it was, and what was expected.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ContractError {
     /// A number outside its range, or not finite.
-    #[error("{field} is {value}, expected {expected}")]
-    OutOfRange {
-        /// Name of the field, with its unit.
-        field: &'static str,
-        /// The value met.
-        value: f64,
-        /// The range or property expected.
-        expected: &'static str,
-    },
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// Four numbers that are not a unit quaternion.
     #[error("quaternion (w, x, y, z) = {wxyz:?} has norm {norm}, expected 1 within 1e-5")]
     NotUnit {
@@ -41,21 +36,4 @@ pub enum ContractError {
         /// Why.
         reason: String,
     },
-}
-
-/// Checks that `value` is finite and satisfies `holds`.
-///
-/// # Errors
-/// [`ContractError::OutOfRange`] with the field and what was expected.
-pub(crate) fn require(
-    field: &'static str,
-    value: f64,
-    expected: &'static str,
-    holds: impl Fn(f64) -> bool,
-) -> Result<(), ContractError> {
-    if value.is_finite() && holds(value) {
-        Ok(())
-    } else {
-        Err(ContractError::OutOfRange { field, value, expected })
-    }
 }

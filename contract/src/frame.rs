@@ -1,6 +1,6 @@
 //! One image, as it arrives on the ground.
 
-use crate::ContractError;
+use crate::{ContractError, OutOfRange};
 
 /// A rectangle of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,22 +52,16 @@ impl Frame {
             return Err(ContractError::ImageSize { columns, rows, got: dn.len() });
         }
         if !(1..=16).contains(&bit_depth) {
-            return Err(ContractError::OutOfRange {
-                field: "bit depth of a frame",
-                value: f64::from(bit_depth),
-                expected: "1 to 16",
-            });
+            return Err(OutOfRange::new("bit depth of a frame", bit_depth, "1 to 16").into());
         }
         for window in windows.iter().flatten() {
             let fits = |first: usize, count: usize, n: usize| {
                 count > 0 && first.checked_add(count).is_some_and(|end| end <= n)
             };
             if !fits(window.x, window.columns, columns) || !fits(window.y, window.rows, rows) {
-                return Err(ContractError::OutOfRange {
-                    field: "window of a frame",
-                    value: if fits(window.x, window.columns, columns) { window.y } else { window.x } as f64,
-                    expected: "a rectangle inside the image (value: its first column or row)",
-                });
+                let first = if fits(window.x, window.columns, columns) { window.y } else { window.x };
+                let expected = "a rectangle inside the image (value: its first column or row)";
+                return Err(OutOfRange::new("window of a frame", first, expected).into());
             }
         }
         Ok(Self { number, columns, rows, bit_depth, dn, windows })

@@ -17,6 +17,7 @@
 )]
 
 mod angle;
+pub mod bounds;
 mod camera;
 #[allow(
     clippy::indexing_slicing,
@@ -38,6 +39,7 @@ mod star;
 mod telemetry;
 
 pub use angle::Angle;
+pub use bounds::OutOfRange;
 pub use camera::{Camera, Mounting};
 pub use direction::{Body, CameraFrame, Direction, Icrs, Target};
 pub use error::ContractError;

@@ -1,38 +1,15 @@
 //! The one error type of this crate.
 
+use contract::{ContractError, OutOfRange};
 use thiserror::Error;
 
 /// Why a pipeline's configuration is refused.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PipelineError {
-    /// A parameter outside its range.
-    #[error("{field} is {value}, expected {expected}")]
-    Parameter {
-        /// Path of the parameter in the configuration, with its unit.
-        field: &'static str,
-        /// The value met.
-        value: String,
-        /// What is allowed.
-        expected: &'static str,
-    },
+    /// A parameter that is not allowed, by its path in the configuration.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// A value that the contract refuses.
     #[error(transparent)]
-    Contract(#[from] contract::ContractError),
-}
-
-/// Checks that `value` is finite and satisfies `holds`.
-///
-/// # Errors
-/// [`PipelineError::Parameter`] with the field and what was expected.
-pub(crate) fn require(
-    field: &'static str,
-    value: f64,
-    expected: &'static str,
-    holds: impl Fn(f64) -> bool,
-) -> Result<(), PipelineError> {
-    if value.is_finite() && holds(value) {
-        Ok(())
-    } else {
-        Err(PipelineError::Parameter { field, value: value.to_string(), expected })
-    }
+    Contract(#[from] ContractError),
 }

@@ -2,34 +2,18 @@
 
 use std::path::PathBuf;
 
+use contract::{ContractError, OutOfRange};
 use thiserror::Error;
 
 /// Why a simulation cannot be made.
 #[derive(Debug, Error)]
 pub enum SimError {
-    /// A parameter outside its range.
-    #[error("{field} is {value}, expected {expected}")]
-    Parameter {
-        /// Path of the parameter in the scenario, with its unit.
-        field: &'static str,
-        /// The value met.
-        value: String,
-        /// What is allowed.
-        expected: &'static str,
-    },
-    /// A parameter outside its range in an entry of a list.
-    #[error("{path} is {value}, expected {expected}")]
-    Entry {
-        /// Path of the parameter in the scenario with the place of its entry, counted from 0: `schedule[2].count`.
-        path: String,
-        /// The value met.
-        value: String,
-        /// What is allowed.
-        expected: &'static str,
-    },
+    /// A parameter that is not allowed, by its path in the scenario.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// A value that the contract refuses.
     #[error(transparent)]
-    Contract(#[from] contract::ContractError),
+    Contract(ContractError),
     /// A star catalogue that cannot be used.
     #[error(transparent)]
     Catalog(#[from] crate::catalog::CatalogError),
@@ -51,34 +35,11 @@ pub enum SimError {
     },
 }
 
-impl SimError {
-    /// The error of a parameter of a list, as `schedule[].count`, with the place of its entry, counted from 0.
-    pub(crate) fn in_entry(self, index: usize) -> Self {
-        match self {
-            Self::Parameter { field, value, expected } => {
-                Self::Entry { path: field.replacen("[]", &format!("[{index}]"), 1), value, expected }
-            }
-            Self::Entry { path, value, expected } => {
-                Self::Entry { path: path.replacen("[]", &format!("[{index}]"), 1), value, expected }
-            }
-            other => other,
+impl From<ContractError> for SimError {
+    fn from(error: ContractError) -> Self {
+        match error {
+            ContractError::OutOfRange(error) => Self::OutOfRange(error),
+            error => Self::Contract(error),
         }
-    }
-}
-
-/// Checks that `value` is finite and satisfies `holds`.
-///
-/// # Errors
-/// [`SimError::Parameter`] with the field and what was expected.
-pub(crate) fn require(
-    field: &'static str,
-    value: f64,
-    expected: &'static str,
-    holds: impl Fn(f64) -> bool,
-) -> Result<(), SimError> {
-    if value.is_finite() && holds(value) {
-        Ok(())
-    } else {
-        Err(SimError::Parameter { field, value: value.to_string(), expected })
     }
 }

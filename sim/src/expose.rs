@@ -1,6 +1,6 @@
 //! Truth → scene → optics → sensor → on board: one frame, in one function.
 
-use contract::{Frame, Telemetry, Window};
+use contract::{Frame, OutOfRange, Telemetry, Window};
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 
@@ -114,14 +114,13 @@ impl<'a> SimulatedCamera<'a> {
     /// Makes frame number `number`: the same bits whatever was made before.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when the schedule has no such frame.
+    /// [`SimError::OutOfRange`] when the schedule has no such frame.
     pub fn expose(&mut self, number: u64) -> Result<Exposure, SimError> {
         let simulator = self.simulator;
-        let (group, time) = simulator.schedule.frame(number).ok_or_else(|| SimError::Parameter {
-            field: "frame",
-            value: number.to_string(),
-            expected: "a frame of the schedule",
-        })?;
+        let (group, time) = simulator
+            .schedule
+            .frame(number)
+            .ok_or_else(|| OutOfRange::new("frame", number, "a frame of the schedule"))?;
         let lag_s = simulator.shutter.lag_s();
         let watched = Moment::at(simulator, time - lag_s * Unit::Second, number)?;
         let exposure_s = self.exposure_s(&watched, time - lag_s * Unit::Second);

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use contract::{Body, Camera, CameraFrame, Rotation};
+use contract::bounds::require;
+use contract::{Body, Camera, CameraFrame, OutOfRange, Rotation};
 use hifitime::Unit;
 
 use crate::SimError;
@@ -102,11 +103,12 @@ impl Simulator {
         if let Some(roi) = &simulation.roi {
             roi.check(columns, rows)?;
             if let Some(floor_dn) = simulation.zero_suppression_dn {
-                return Err(SimError::Parameter {
-                    field: "zero_suppression_dn",
-                    value: floor_dn.to_string(),
-                    expected: "none beside [roi]: the pixels of regions are sent as they are",
-                });
+                return Err(OutOfRange::new(
+                    "zero_suppression_dn",
+                    floor_dn,
+                    "none beside [roi]: the pixels of regions are sent as they are",
+                )
+                .into());
             }
         }
         simulation.catalog.check()?;
@@ -135,8 +137,7 @@ impl Simulator {
                 .sensor
                 .cosmic_rays
                 .as_ref()
-                .map(|config| CosmicRays::new(config, &simulation.camera))
-                .transpose()?,
+                .map(|config| CosmicRays::new(config, &simulation.camera)),
             shutter,
             roi: simulation.roi.clone(),
             zero_suppression_dn: simulation.zero_suppression_dn,
@@ -208,20 +209,9 @@ fn check_times(
         let Some((_, time)) = schedule.frame(number) else { continue };
         let states = trajectory.at(time - earlier_s * Unit::Second);
         let chaser = states.chaser;
-        Observer::new(time - earlier_s * Unit::Second, chaser.position_km, chaser.velocity_km_s).map_err(
-            |error| match error {
-                SimError::Parameter { value, expected, .. } => {
-                    SimError::Parameter { field: "schedule", value, expected }
-                }
-                other => other,
-            },
-        )?;
-        crate::error::require(
-            "orbit.relative",
-            states.range_km() * 1000.0,
-            "a separation of 1 m or more",
-            |m| m >= 1.0,
-        )?;
+        Observer::new(time - earlier_s * Unit::Second, chaser.position_km, chaser.velocity_km_s)
+            .map_err(|error| OutOfRange { path: "schedule".to_owned(), ..error })?;
+        require("orbit.relative", states.range_km() * 1000.0, "a separation of 1 m or more", |m| m >= 1.0)?;
     }
     Ok(())
 }

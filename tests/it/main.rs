@@ -9,6 +9,7 @@ mod argon;
 mod bad_input;
 mod best_mode;
 mod blinking_dot;
+mod bounds;
 mod docking;
 mod docking_artefacts;
 mod docking_consistency;

@@ -298,7 +298,7 @@ fn a_study_that_is_wrong_says_where() {
     refused("\"psf.sigma_px\"", "\"title\"", &["vary[0].path", "is `title`", "seed of its own"]);
     refused("psf.sigma_px", "schedule[9].count", &["vary[0].path", "has 5 of these"]);
     refused("psf.sigma_px", "sensor.hot_pixels", &["vary[1].path", "sensor.hot_pixels"]);
-    refused("sigma = 0.1", "sigma = -0.1", &["vary[0].law.sigma", "-0.1", "> 0"]);
+    refused("sigma = 0.1", "sigma = -0.1", &["vary[0].law.sigma", "-0.1", "above 0"]);
     refused("kind = \"normal\"", "kind = \"normale\"", &["normale"]);
     refused("max = 40", "max = -1", &["max"]);
     refused("cases = 6", "cases = 0", &["stop.cases", "is 0"]);

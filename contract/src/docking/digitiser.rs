@@ -3,8 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::ContractError;
-use crate::error::require;
+use crate::{OutOfRange, bounds};
 
 /// Contrast and brightness of the digitiser: DN = full scale × (contrast × signal + brightness), rounded and clipped.
 /// The signal is 0 at the video's black level and 1 at its white level.
@@ -15,8 +14,10 @@ use crate::error::require;
 #[serde(deny_unknown_fields)]
 pub struct Digitiser {
     /// Contrast, 0.1 to 20, without unit.
+    #[schemars(range(min = 0.1, max = 20))]
     pub contrast: f64,
     /// Brightness, −10 to 10, in units of full scale.
+    #[schemars(range(min = -10, max = 10))]
     pub brightness: f64,
 }
 
@@ -34,9 +35,8 @@ impl Digitiser {
     /// Checks both numbers.
     ///
     /// # Errors
-    /// [`ContractError::OutOfRange`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), ContractError> {
-        require("digitiser.contrast", self.contrast, "0.1 to 20", |v| (0.1..=20.0).contains(&v))?;
-        require("digitiser.brightness", self.brightness, "-10 to 10", |v| v.abs() <= 10.0)
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "digitiser")
     }
 }

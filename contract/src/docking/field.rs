@@ -1,7 +1,7 @@
 //! One field of television, as it arrives.
 
 use crate::docking::Digitiser;
-use crate::{ContractError, Frame};
+use crate::{ContractError, Frame, OutOfRange};
 
 /// Which rows of the camera an image holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -71,11 +71,8 @@ impl Field {
     /// [`ContractError::OutOfRange`] when the image has not as many rows as `lines` of such a camera.
     pub fn new(image: Frame, lines: Lines, camera_rows: usize) -> Result<Self, ContractError> {
         if image.rows() != lines.rows(camera_rows) {
-            return Err(ContractError::OutOfRange {
-                field: "rows of a field",
-                value: image.rows() as f64,
-                expected: "half the rows of the camera, or all of them when it is not interlaced",
-            });
+            let expected = "half the rows of the camera, or all of them when it is not interlaced";
+            return Err(OutOfRange::new("rows of a field", image.rows(), expected).into());
         }
         Ok(Self { image, lines, camera_rows })
     }

@@ -1,49 +1,61 @@
 //! What a pipeline knows of the target: dimensions, in the target frame.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::ContractError;
-use crate::error::require;
+use crate::OutOfRange;
+use crate::bounds::{self, require};
 
 /// The stand-off cross: two perpendicular bars along y1 and y2, their front face at y3 = height.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StandOffCross {
     /// b: height of the front face over the disk's plane, m.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub height_m: f64,
     /// From the centre to the end of a bar, m.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub half_length_m: f64,
     /// Width of a bar, m.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub width_m: f64,
     /// Thickness of a bar, along y3, m.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub thickness_m: f64,
     /// Width of the post that carries the bars, seen from any side, m.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub post_width_m: f64,
 }
 
 /// A circular outline parallel to the disk.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Outline {
     /// Centre (y1, y2), m.
+    #[schemars(inner(range(min = -1000, max = 1000)))]
     pub centre_m: [f64; 2],
     /// Radius, m.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub radius_m: f64,
     /// h: how far it lies behind the disk's plane, m.
+    #[schemars(range(min = -1000, max = 1000))]
     pub depth_m: f64,
 }
 
 /// The target's dimensions as a pipeline is told them.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TargetModel {
     /// Name of the target.
     pub name: String,
     /// Radius of the dark plate behind the marks, m.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub plate_radius_m: f64,
     /// r: radius of the circle through the centres of the marks, m.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub mark_circle_radius_m: f64,
     /// Bright marks in the disk's plane (y3 = 0): corners (y1, y2) in m, counter-clockwise seen from the front.
+    #[schemars(inner(inner(inner(range(min = -1000, max = 1000)))))]
     pub marks: Vec<[[f64; 2]; 4]>,
     /// The cross that stands off.
     pub cross: StandOffCross,
@@ -53,55 +65,24 @@ pub struct TargetModel {
     pub station: Outline,
 }
 
-/// Nothing of a target is larger or farther away than this, m: beyond it the unit is wrong.
-const FARTHEST_M: f64 = 1000.0;
-
 impl TargetModel {
-    /// Checks every number.
+    /// Checks every number. Nothing of a target is larger or farther away than 1000 m: beyond it the unit is wrong.
     ///
     /// # Errors
-    /// [`ContractError::OutOfRange`] for the first field outside its range.
-    pub fn check(&self) -> Result<(), ContractError> {
-        length("target.plate_radius_m", self.plate_radius_m)?;
-        length("target.mark_circle_radius_m", self.mark_circle_radius_m)?;
-        for corner in self.marks.iter().flatten().flatten() {
-            coordinate("target.marks", *corner)?;
-        }
-        self.cross.check()?;
-        let [x, y] = self.docking_unit.centre_m;
-        length("target.docking_unit.radius_m", self.docking_unit.radius_m)?;
-        coordinate("target.docking_unit.centre_m", x)?;
-        coordinate("target.docking_unit.centre_m", y)?;
-        coordinate("target.docking_unit.depth_m", self.docking_unit.depth_m)?;
-        let [x, y] = self.station.centre_m;
-        length("target.station.radius_m", self.station.radius_m)?;
-        coordinate("target.station.centre_m", x)?;
-        coordinate("target.station.centre_m", y)?;
-        coordinate("target.station.depth_m", self.station.depth_m)
-    }
-}
-
-impl StandOffCross {
-    fn check(&self) -> Result<(), ContractError> {
-        length("target.cross.height_m", self.height_m)?;
-        length("target.cross.half_length_m", self.half_length_m)?;
-        let part_of = |whole: f64| move |v: f64| v > 0.0 && v < whole;
-        let width = "greater than 0, less than half_length_m";
-        require("target.cross.width_m", self.width_m, width, part_of(self.half_length_m))?;
-        let thickness = "greater than 0, less than height_m";
-        require("target.cross.thickness_m", self.thickness_m, thickness, part_of(self.height_m))?;
-        require("target.cross.post_width_m", self.post_width_m, "greater than 0, at most width_m", |v| {
-            v > 0.0 && v <= self.width_m
+    /// [`OutOfRange`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "target")?;
+        let StandOffCross { height_m, half_length_m, width_m, thickness_m, post_width_m } = self.cross;
+        require("target.cross.width_m", width_m, "greater than 0, less than half_length_m", |v| {
+            v < half_length_m
+        })?;
+        require("target.cross.thickness_m", thickness_m, "greater than 0, less than height_m", |v| {
+            v < height_m
+        })?;
+        require("target.cross.post_width_m", post_width_m, "greater than 0, at most width_m", |v| {
+            v <= width_m
         })
     }
-}
-
-fn length(field: &'static str, value: f64) -> Result<(), ContractError> {
-    require(field, value, "greater than 0, at most 1000", |v| v > 0.0 && v <= FARTHEST_M)
-}
-
-fn coordinate(field: &'static str, value: f64) -> Result<(), ContractError> {
-    require(field, value, "-1000 to 1000", |v| v.abs() <= FARTHEST_M)
 }
 
 #[cfg(test)]
@@ -132,14 +113,11 @@ mod tests {
         let refused = |field: &str, change: fn(&mut TargetModel)| {
             let mut wrong = target();
             change(&mut wrong);
-            match wrong.check() {
-                Err(ContractError::OutOfRange { field: named, .. }) => assert_eq!(named, field),
-                other => panic!("{field}: {other:?}"),
-            }
+            assert_eq!(wrong.check().unwrap_err().path, field);
         };
         refused("target.plate_radius_m", |t| t.plate_radius_m = 0.0);
         refused("target.mark_circle_radius_m", |t| t.mark_circle_radius_m = 1e300);
-        refused("target.marks", |t| t.marks[0][2][1] = f64::NAN);
+        refused("target.marks[0][2][1]", |t| t.marks[0][2][1] = f64::NAN);
         refused("target.cross.height_m", |t| t.cross.height_m = -0.3);
         refused("target.cross.half_length_m", |t| t.cross.half_length_m = f64::INFINITY);
         refused("target.cross.width_m", |t| t.cross.width_m = 0.15);
@@ -147,10 +125,10 @@ mod tests {
         refused("target.cross.thickness_m", |t| t.cross.thickness_m = 0.3);
         refused("target.cross.post_width_m", |t| t.cross.post_width_m = 0.031);
         refused("target.docking_unit.radius_m", |t| t.docking_unit.radius_m = 0.0);
-        refused("target.docking_unit.centre_m", |t| t.docking_unit.centre_m[1] = 1001.0);
+        refused("target.docking_unit.centre_m[1]", |t| t.docking_unit.centre_m[1] = 1001.0);
         refused("target.docking_unit.depth_m", |t| t.docking_unit.depth_m = f64::NAN);
         refused("target.station.radius_m", |t| t.station.radius_m = -2.0);
-        refused("target.station.centre_m", |t| t.station.centre_m[0] = f64::NEG_INFINITY);
+        refused("target.station.centre_m[0]", |t| t.station.centre_m[0] = f64::NEG_INFINITY);
         refused("target.station.depth_m", |t| t.station.depth_m = 1e9);
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use contract::{Camera, Frame, Mounting, Readout, Telemetry};
+use contract::{Camera, Frame, Mounting, OutOfRange, Readout, Telemetry, bounds};
 use hifitime::Epoch;
 use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::error::Place;
 use super::frame_file::read_image;
 use super::telemetry::read_with_lines;
-use super::toml_table::{self, Refused, TomlTable, check_bit_depth};
+use super::toml_table::{self, TomlTable};
 use super::{FileError, TelemetryRow, parse_utc};
 
 /// `camera.toml`: what a pipeline knows before the first frame, except the stars themselves.
@@ -21,10 +21,12 @@ use super::{FileError, TelemetryRow, parse_utc};
 #[serde(deny_unknown_fields)]
 pub struct CameraFile {
     /// Bits of the analogue-digital converter, 1 to 16.
+    #[schemars(range(min = 1, max = 16))]
     pub bit_depth: u8,
     /// Magnitude V down to which stars of the built-in catalogue are listed for the pipeline when the dataset has no
     /// `stars.csv`, −2 to 15; without it, 7.
     #[serde(default = "default_magnitude_limit")]
+    #[schemars(range(min = -2, max = 15))]
     pub magnitude_limit: f64,
     /// UTC time to which proper motion is applied in the star list, as 2012-04-25T00:00:00Z; without it, the time of
     /// the first frame.
@@ -70,23 +72,13 @@ impl CameraFile {
 }
 
 impl TomlTable for CameraFile {
-    fn check(&self) -> Result<(), Refused> {
-        self.camera.check().map_err(|error| Refused::by_contract("camera", &error))?;
-        self.mounting.check().map_err(|error| Refused::by_contract("mounting", &error))?;
-        if let Some(readout) = &self.readout {
-            readout.check().map_err(|error| Refused::by_contract("readout", &error))?;
-        }
-        check_bit_depth(self.bit_depth)?;
-        if !(-2.0..=15.0).contains(&self.magnitude_limit) {
-            return Err(Refused::new("magnitude_limit", self.magnitude_limit, "-2 to 15"));
-        }
-        self.far_range.check().map_err(|error| Refused::by_pipeline("far_range", &error))?;
-        match &self.star_epoch_utc {
-            Some(text) => {
-                parse_utc(text).map(|_| ()).map_err(|expected| Refused::new("star_epoch_utc", text, expected))
-            }
-            None => Ok(()),
-        }
+    fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "")?;
+        self.far_range.check().map_err(|error| error.under("far_range"))?;
+        self.star_epoch_utc.as_ref().map_or(Ok(()), |text| {
+            let refused = |expected| OutOfRange::new("star_epoch_utc", text, expected);
+            parse_utc(text).map(|_| ()).map_err(refused)
+        })
     }
 }
 

@@ -167,8 +167,8 @@ impl FileError {
         }
     }
 
-    pub(super) fn contract(path: &Path, source: contract::ContractError) -> Self {
-        Self::Contract { path: path.to_owned(), source }
+    pub(super) fn contract(path: &Path, source: impl Into<contract::ContractError>) -> Self {
+        Self::Contract { path: path.to_owned(), source: source.into() }
     }
 }
 

@@ -49,3 +49,9 @@ impl From<Box<TomlError>> for Failure {
         Self::Toml(error)
     }
 }
+
+impl From<contract::OutOfRange> for Failure {
+    fn from(error: contract::OutOfRange) -> Self {
+        Self::Contract(error.into())
+    }
+}

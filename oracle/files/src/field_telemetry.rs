@@ -96,12 +96,10 @@ fn parse(row: &CsvRow<'_>, previous: Option<&FieldRow>) -> Result<FieldRow, File
         contrast: line.contrast.unwrap_or(nominal.contrast),
         brightness: line.brightness.unwrap_or(nominal.brightness),
     };
-    for (column, part) in [
-        ("contrast", Digitiser { contrast: digitiser.contrast, ..nominal }),
-        ("brightness", Digitiser { brightness: digitiser.brightness, ..nominal }),
-    ] {
-        part.check().map_err(|error| row.error(column, error.to_string()))?;
-    }
+    digitiser.check().map_err(|error| {
+        let column = if error.path.ends_with("contrast") { "contrast" } else { "brightness" };
+        row.error(column, error.to_string())
+    })?;
     let camera = line.camera.unwrap_or(0);
     let file = Some(line.file.trim()).filter(|file| !file.is_empty()).map(str::to_owned);
     Ok(FieldRow { field, file, lines, telemetry: FieldTelemetry { time_s, camera, digitiser } })

@@ -1,7 +1,6 @@
 //! Times in files: the simulator's reader and writer of UTC, with the words that a cell's error needs.
 
 use hifitime::Epoch;
-use sim::SimError;
 use sim::truth::clock;
 
 /// An epoch as `2012-04-25T13:02:07.250000000Z`; see [`clock::format_utc`].
@@ -13,9 +12,6 @@ pub fn format_utc(epoch: Epoch) -> String {
 ///
 /// # Errors
 /// What was expected.
-pub fn parse_utc(text: &str) -> Result<Epoch, &'static str> {
-    clock::parse_utc(text).map_err(|error| match error {
-        SimError::Parameter { expected, .. } => expected,
-        _ => "a UTC time such as 2012-04-25T12:18:54.5Z",
-    })
+pub fn parse_utc(text: &str) -> Result<Epoch, String> {
+    clock::parse_utc(text).map_err(|error| error.expected)
 }

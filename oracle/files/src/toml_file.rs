@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use contract::OutOfRange;
 use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -96,6 +97,11 @@ pub fn parse<T: DeserializeOwned>(file: &Path, text: &str) -> Result<T, Box<Toml
 pub fn refuse(file: &Path, text: &str, path: &str, message: String) -> Box<TomlError> {
     let span = locate(text, path).unwrap_or(0..0);
     Box::new(TomlError::new(file, text, span, path.to_owned(), message))
+}
+
+/// A value that a check refuses; see [`refuse`].
+pub fn out_of_range(file: &Path, text: &str, error: &OutOfRange) -> Box<TomlError> {
+    refuse(file, text, &error.path, format!("is {}, expected {}", error.value, error.expected))
 }
 
 /// The place of the value at a dotted path, or of the longest part of it that exists.

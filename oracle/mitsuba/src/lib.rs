@@ -24,11 +24,12 @@ use std::time::Duration;
 
 use cache::{Cache, read_judged};
 use command::MitsubaCommand;
-use contract::Camera;
 use contract::docking::Pose;
+use contract::{Camera, OutOfRange};
 pub use error::MitsubaError;
 use files::FileError;
 use process::{End, last_words};
+use sim::SimError;
 use sim::mitsuba::{Layer, SceneFiles, Settings};
 use sim::scene::docking::{DockingScene, Lighting};
 use sim::vector::RadianceImage;
@@ -79,10 +80,9 @@ impl MitsubaRenderer {
     /// [`MitsubaError::Simulation`] for a time limit that is none, [`MitsubaError::File`] for a cache that cannot be made.
     pub fn new(options: MitsubaOptions) -> Result<Self, MitsubaError> {
         let limit = Duration::try_from_secs_f64(options.time_limit_s).ok().filter(|limit| !limit.is_zero());
-        let limit = limit.ok_or_else(|| sim::SimError::Parameter {
-            field: "time limit of Mitsuba, s",
-            value: options.time_limit_s.to_string(),
-            expected: "greater than 0",
+        let limit = limit.ok_or_else(|| {
+            let (path, value) = ("time limit of Mitsuba, s", options.time_limit_s);
+            SimError::from(OutOfRange::new(path, value, "greater than 0"))
         })?;
         let cache = Cache::open(options.cache.as_deref())?;
         Ok(Self { options, limit, cache, command: OnceLock::new() })
@@ -100,7 +100,7 @@ impl MitsubaRenderer {
         pose: &Pose,
         camera: &Camera,
     ) -> Result<RadianceImage, MitsubaError> {
-        let crop = self.options.settings.check(camera)?;
+        let crop = self.options.settings.check(camera).map_err(SimError::from)?;
         let mut sum = RadianceImage {
             columns: crop.columns,
             rows: crop.rows,

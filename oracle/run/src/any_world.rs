@@ -1,15 +1,14 @@
 //! Worlds behind one face: all that commands, studies and gates need of any of them.
 
 use std::any::{Any, TypeId};
-use std::fmt::{Debug, Display};
+use std::fmt::Debug;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use contract::{ContractError, Interface, PipelineFactory};
+use contract::{Interface, OutOfRange, PipelineFactory};
 use files::toml_file::{self, TomlError};
 use files::{Failure, RunDirectory};
 use indexmap::IndexMap;
-use pipeline::PipelineError;
 use scenario::Stage;
 use scenario::run_file::{RunFile, ScenarioFile};
 use schemars::{Schema, SchemaGenerator};
@@ -387,40 +386,27 @@ impl ScenarioSource {
 
     /// Gives a value that the simulator refuses its place in the file.
     pub fn explain(&self, error: SimError) -> Failure {
-        explain(&self.file, &self.text, error)
+        match error {
+            SimError::OutOfRange(error) => self.out_of_range(&error),
+            error => error.into(),
+        }
     }
 
-    /// Gives a value that a pipeline refuses its place in the file; `table` holds the pipeline's parameters.
+    /// Gives a value that is refused in the table `table` of the scenario its place in the file.
     ///
     /// # Errors
     /// A [`Failure`] with the place of the value.
-    pub fn check_pipeline(&self, table: &str, checked: Result<(), PipelineError>) -> Result<(), Failure> {
-        match checked {
-            Err(PipelineError::Parameter { field, value, expected }) => {
-                Err(self.refuse(&format!("{table}.{field}"), format!("is {value}, expected {expected}")))
-            }
-            Err(PipelineError::Contract(error)) => Err(error.into()),
-            Ok(()) => Ok(()),
-        }
+    pub fn check_part(&self, table: &str, checked: Result<(), OutOfRange>) -> Result<(), Failure> {
+        checked.map_err(|error| self.out_of_range(&error.under(table)))
+    }
+
+    /// Gives a value outside its range its place in the file.
+    pub fn out_of_range(&self, error: &OutOfRange) -> Failure {
+        toml_file::out_of_range(&self.file, &self.text, error).into()
     }
 
     /// The failure of a value at a path of the scenario.
     pub fn refuse(&self, path: &str, message: String) -> Failure {
         toml_file::refuse(&self.file, &self.text, path, message).into()
-    }
-}
-
-/// Gives a value that the simulator refuses its place in the file that has it.
-pub(crate) fn explain(file: &Path, text: &str, error: SimError) -> Failure {
-    let refuse = |path: &str, value: &dyn Display, expected: &str| {
-        toml_file::refuse(file, text, path, format!("is {value}, expected {expected}")).into()
-    };
-    match &error {
-        SimError::Parameter { field, value, expected } => refuse(field, value, expected),
-        SimError::Entry { path, value, expected } => refuse(path, value, expected),
-        SimError::Contract(ContractError::OutOfRange { field, value, expected }) => {
-            refuse(field, value, expected)
-        }
-        _ => error.into(),
     }
 }

@@ -91,6 +91,7 @@ fn off() -> Switch {
 #[serde(deny_unknown_fields)]
 pub struct StarListConfig {
     /// Faintest star of the list, V magnitude, −2 to 15.
+    #[schemars(range(min = -2, max = 15))]
     pub magnitude_limit: f64,
 }
 

@@ -2,6 +2,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use contract::bounds;
 use files::sha256::hex;
 use files::{Failure, toml_file};
 use indexmap::IndexMap;
@@ -16,9 +17,6 @@ use super::design::DesignKind;
 use super::file::StudyFile;
 use super::law::{Drawable, Law, boresight, euler_123};
 use super::overlay::ValuePath;
-
-/// Most cases of a study.
-const MOST_CASES: u64 = 1 << 40;
 
 /// What is no parameter.
 const NOT_VARIED: [&str; 3] = ["title", "world", "seed"];
@@ -102,9 +100,8 @@ impl Study {
         let mut taken: Vec<ValuePath> = Vec::new();
         for (i, dispersion) in file.vary.iter().enumerate() {
             let at = |field: &str| format!("vary[{i}].{field}");
-            dispersion.law.check().map_err(|(field, value, expected)| {
-                refuse(&at(&format!("law.{field}")), format!("is {value}, expected {expected}"))
-            })?;
+            let checked = dispersion.law.check(&at("law"));
+            checked.map_err(|error| toml_file::out_of_range(path, &text, &error))?;
             let varied = Varied::new(&dispersion.path, &dispersion.law, &folder, &base_values)
                 .map_err(|(field, message)| refuse(&at(field), message))?;
             check_free(&mut taken, &varied.path).map_err(|message| refuse(&at("path"), message))?;
@@ -131,22 +128,18 @@ impl Study {
             ));
         };
         let cases = file.stop.cases;
-        if !(1..=MOST_CASES).contains(&cases) || !cases.is_multiple_of(cells) {
-            let expected = format!("is {cases}, expected 1 to 2^40, a multiple of the sweep's {cells}");
+        bounds::check(&file.stop, "stop").map_err(|error| toml_file::out_of_range(path, &text, &error))?;
+        if !cases.is_multiple_of(cells) {
+            let expected = format!("is {cases}, expected a multiple of the sweep's {cells}");
             return Err(refuse("stop.cases", expected));
         }
         if file.design == DesignKind::Saltelli && !sweep.is_empty() {
             return Err(refuse("design", "is saltelli, expected without a sweep".to_owned()));
         }
-        if let Some(until) = &file.stop.until {
-            if file.design != DesignKind::Random {
-                let message = "is given, expected with the random design alone: of another one, all cases belong together";
-                return Err(refuse("stop.until", message.to_owned()));
-            }
-            if !(until.half_width > 0.0 && until.half_width.is_finite()) {
-                let message = format!("is {}, expected a number > 0", until.half_width);
-                return Err(refuse("stop.until.half_width", message));
-            }
+        if file.stop.until.is_some() && file.design != DesignKind::Random {
+            let message =
+                "is given, expected with the random design alone: of another one, all cases belong together";
+            return Err(refuse("stop.until", message.to_owned()));
         }
         let dimensions = file.vary.iter().map(|dispersion| dispersion.law.dimensions()).sum();
         let design = Design::new(file.design, dimensions, cases / cells, file.seed)

@@ -61,6 +61,7 @@ pub struct Sweep {
 #[serde(deny_unknown_fields)]
 pub struct Stop {
     /// Number of cases; with `until`, the most there are. A multiple of the sweep's combinations.
+    #[schemars(range(min = 1, max = 1_u64 << 40))]
     pub cases: u64,
     /// Stop earlier, as soon as a figure is known well enough. With the random design alone, whose first cases are a sample too.
     pub until: Option<Until>,
@@ -74,6 +75,7 @@ pub struct Until {
     pub figure: String,
     /// Half the width of its 95 % interval, in its own unit, > 0. Looked at after 8 cases, 16, 24, from 128 on after a
     /// sixteenth more each time, and after all, however the study is cut.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub half_width: f64,
 }
 

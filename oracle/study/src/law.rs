@@ -1,6 +1,7 @@
 //! Laws of dispersed parameters.
 use std::path::Path;
 
+use contract::{OutOfRange, bounds};
 use files::read_column;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,6 +18,7 @@ pub enum Law {
         /// Mean, before any cutting.
         mean: f64,
         /// Standard deviation, before any cutting, > 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         sigma: f64,
         /// Lower limit.
         min: Option<f64>,
@@ -35,13 +37,16 @@ pub enum Law {
         /// Smallest number, from 0.
         min: u64,
         /// Largest number, to 2⁵³.
+        #[schemars(range(max = 1_u64 << 53))]
         max: u64,
     },
     /// The logarithm is normal.
     LogNormal {
         /// Median, > 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         median: f64,
         /// Standard deviation of the natural logarithm, > 0.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 50))]
         sigma_ln: f64,
     },
     /// Triangular.
@@ -56,8 +61,10 @@ pub enum Law {
     /// One of some values, of any type.
     Choice {
         /// The values.
+        #[schemars(length(min = 1))]
         values: Vec<Value>,
         /// How often each comes, in proportion; absent: equally often.
+        #[schemars(inner(range(min = 0)))]
         weights: Option<Vec<f64>>,
     },
     /// An attitude without a preferred direction. The path is a table with `ra_deg`, `dec_deg`, `roll_deg` (a boresight uniform on
@@ -73,9 +80,6 @@ pub enum Law {
     },
 }
 
-/// A value that is not allowed: field, value, what is expected.
-pub(super) type Refused = (&'static str, String, &'static str);
-
 /// A law that is ready to be drawn from.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Drawable {
@@ -87,60 +91,35 @@ pub(super) enum Drawable {
 
 impl Law {
     /// Checks the parameters.
-    pub(super) fn check(&self) -> Result<(), Refused> {
-        let finite = |field, value: f64| {
-            if value.is_finite() { Ok(()) } else { Err((field, value.to_string(), "a finite number")) }
-        };
-        let require = |is_allowed: bool, field, value: String, expected| {
-            if is_allowed { Ok(()) } else { Err((field, value, expected)) }
+    pub(super) fn check(&self, path: &str) -> Result<(), OutOfRange> {
+        bounds::check(self, path)?;
+        let require = |is_allowed: bool, field: &str, value: &dyn std::fmt::Display, expected| {
+            let refused = || OutOfRange::new(format!("{path}.{field}"), value, expected);
+            if is_allowed { Ok(()) } else { Err(refused()) }
         };
         match self {
             Self::Normal { mean, sigma, min, max } => {
-                finite("mean", *mean)?;
-                require(*sigma > 0.0 && sigma.is_finite(), "sigma", sigma.to_string(), "a number > 0")?;
                 let (low, high) = (min.unwrap_or(f64::MIN), max.unwrap_or(f64::MAX));
-                require(low < high, "max", high.to_string(), "more than min")?;
+                require(low < high, "max", &high, "more than min")?;
                 let inside = standard_normal((high - mean) / sigma) - standard_normal((low - mean) / sigma);
-                require(
-                    inside > 1e-6,
-                    "sigma",
-                    sigma.to_string(),
-                    "limits between which a millionth of the law lies at least",
-                )
+                let expected = "limits between which a millionth of the law lies at least";
+                require(inside > 1e-6, "sigma", sigma, expected)
             }
             Self::Uniform { min, max } => {
-                finite("min", *min)?;
-                finite("max", *max)?;
-                require(min < max && (max - min).is_finite(), "max", max.to_string(), "more than min")
+                require(min < max && (max - min).is_finite(), "max", max, "more than min")
             }
-            Self::Whole { min, max } => {
-                require(*max <= 1 << 53, "max", max.to_string(), "a whole number up to 2^53")?;
-                require(min <= max, "max", max.to_string(), "min or more")
-            }
-            Self::LogNormal { median, sigma_ln } => {
-                require(*median > 0.0 && median.is_finite(), "median", median.to_string(), "a number > 0")?;
-                require(*sigma_ln > 0.0 && *sigma_ln < 50.0, "sigma_ln", sigma_ln.to_string(), "0 to 50")
-            }
+            Self::Whole { min, max } => require(min <= max, "max", max, "min or more"),
+            Self::LogNormal { .. } | Self::IsotropicAttitude | Self::Table { .. } => Ok(()),
             Self::Triangular { min, mode, max } => {
-                finite("min", *min)?;
-                finite("max", *max)?;
-                require(min < max, "max", max.to_string(), "more than min")?;
-                require((*min..=*max).contains(mode), "mode", mode.to_string(), "a number from min to max")
+                require(min < max, "max", max, "more than min")?;
+                require((*min..=*max).contains(mode), "mode", mode, "a number from min to max")
             }
             Self::Choice { values, weights } => {
-                require(!values.is_empty(), "values", "[]".to_owned(), "one value or more")?;
                 let Some(weights) = weights else { return Ok(()) };
-                let is_allowed = weights.len() == values.len()
-                    && weights.iter().all(|w| *w >= 0.0 && w.is_finite())
-                    && weights.iter().sum::<f64>() > 0.0;
-                require(
-                    is_allowed,
-                    "weights",
-                    format!("{weights:?}"),
-                    "a number >= 0 for each value, not all 0",
-                )
+                let is_allowed = weights.len() == values.len() && weights.iter().sum::<f64>() > 0.0;
+                let expected = "a number >= 0 for each value, not all 0";
+                require(is_allowed, "weights", &format!("{weights:?}"), expected)
             }
-            Self::IsotropicAttitude | Self::Table { .. } => Ok(()),
         }
     }
 
@@ -244,7 +223,7 @@ mod tests {
 
     /// Values at the middles of so many equal parts of the unit interval.
     fn values(law: Law, n: usize) -> Vec<f64> {
-        assert_eq!(law.check(), Ok(()));
+        assert_eq!(law.check("law"), Ok(()));
         let law = Drawable::Law(law);
         (0..n).map(|i| law.value((i as f64 + 0.5) / n as f64).as_f64().unwrap()).collect()
     }
@@ -326,7 +305,7 @@ mod tests {
             u in 1e-12..1.0f64, mean in -5.0..5.0f64, sigma in 0.1..10.0f64, min in -5.0..0.0f64, width in 0.5..5.0f64,
         ) {
             let law = Law::Normal { mean, sigma, min: Some(min), max: Some(min + width) };
-            prop_assume!(law.check().is_ok());
+            prop_assume!(law.check("law").is_ok());
             let value = Drawable::Law(law).value(u).as_f64().unwrap();
             prop_assert!((min..=min + width).contains(&value), "{value}");
         }

@@ -82,7 +82,7 @@ impl Requirements {
     pub fn parse(name: String, folder: &Path, path: &Path, text: &str) -> Result<Self, Failure> {
         let source = Source { path, text };
         let file: RequirementFile = toml_file::parse(path, text)?;
-        file.check().map_err(|(at, message)| source.refuse(&at, message))?;
+        file.check().map_err(|error| toml_file::out_of_range(path, text, &error))?;
         if let SkyTime::Epoch { utc } = &file.sky.when {
             sim::truth::clock::parse_utc(utc)
                 .map_err(|error| source.refuse("sky.when.utc", error.to_string()))?;
@@ -113,7 +113,7 @@ impl Requirements {
             }
         };
         if let Some(body) = &target {
-            body.check().map_err(|error| source.explain(error))?;
+            body.check().map_err(|error| source.explain(error.into()))?;
         }
         if let (Some(TargetLight::Orbit { .. }), None) = (file.target.as_ref().map(|t| &t.light), &scenario) {
             let message = "is \"orbit\", expected camera.scenario beside it, whose orbit it is".to_owned();
@@ -130,14 +130,8 @@ impl Source<'_> {
 
     /// Gives a value that the simulator refuses its place in the file, or in the table that it replaces.
     fn explain(&self, error: SimError) -> Failure {
-        let (field, value, expected) = match &error {
-            SimError::Parameter { field, value, expected } => ((*field).to_owned(), value.clone(), *expected),
-            SimError::Entry { path, value, expected } => (path.clone(), value.clone(), *expected),
-            SimError::Contract(contract::ContractError::OutOfRange { field, value, expected }) => {
-                ((*field).to_owned(), value.to_string(), *expected)
-            }
-            _ => return error.into(),
-        };
+        let SimError::OutOfRange(error) = error else { return error.into() };
+        let field = &error.path;
         let at = match field.as_str() {
             "camera.focal_length_mm" => field.clone(),
             "radiometry.aperture_diameter_mm" => "camera.aperture_diameter_mm".to_owned(),
@@ -146,7 +140,7 @@ impl Source<'_> {
                 None => format!("camera.{field}"),
             },
         };
-        self.refuse(&at, format!("{field} is {value}, expected {expected}"))
+        self.refuse(&at, error.to_string())
     }
 
     fn scenario(&self, word: &str, folder: &Path) -> Result<FarRangeScenario, Failure> {

@@ -1,6 +1,7 @@
 //! One camera design, and the probability with which it meets a demand, by the analytic law.
 use std::cell::OnceCell;
 
+use contract::OutOfRange;
 use files::Failure;
 use sim::SimError;
 
@@ -131,11 +132,7 @@ impl<'a> Design<'a> {
             // Another thread cannot have set it: the design is not shared.
             let _ = self.sky.set(sky);
         }
-        self.sky.get().ok_or_else(|| SimError::Parameter {
-            field: "sky",
-            value: "none".to_owned(),
-            expected: "a sky",
-        })
+        self.sky.get().ok_or_else(|| OutOfRange::new("sky", "none", "a sky").into())
     }
 
     /// The median light of the background over the boresights that count, electrons a second and pixel.

@@ -1,5 +1,7 @@
 //! The file of requirements: a camera, what its frames are looked at with, what is demanded of it.
 
+use contract::OutOfRange;
+use contract::bounds::{self, require};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
@@ -22,8 +24,10 @@ pub struct RequirementFile {
     /// The exposures that the camera can command.
     pub exposure: ExposureTable,
     /// Stars that are needed in a frame, where a requirement says nothing else, 1 to 1000.
+    #[schemars(range(min = 1, max = 1000))]
     pub n_min: u32,
     /// Probability that is asked for, where a requirement says nothing else, in (0, 1).
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
     pub probability: f64,
     /// How the camera is carried through the sky.
     pub motion: MotionTable,
@@ -50,8 +54,10 @@ pub struct CameraTable {
     /// A built-in camera (`boresight scenario camera`): geometry and detector. Without a scenario it needs `psf` and `radiometry`.
     pub preset: Option<String>,
     /// Focal length, mm, 0.01 to 1e6.
+    #[schemars(range(min = 0.01, max = 1e6))]
     pub focal_length_mm: Option<f64>,
     /// Diameter of the aperture, mm, greater than 0, at most 10000; of a spectral radiometry alone.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 10000))]
     pub aperture_diameter_mm: Option<f64>,
     /// Point-spread function, in pixels.
     pub psf: Option<PsfConfig>,
@@ -80,8 +86,10 @@ pub enum DetectionRule {
     /// Thresholds above the background in standard deviations of its noise, a signal-to-noise ratio of the brightest pixel.
     Sigmas {
         /// I1, standard deviations, 0 to `high`.
+        #[schemars(range(min = 0, max = 1000))]
         low: f64,
         /// I2, standard deviations, up to 1000.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
         high: f64,
     },
 }
@@ -91,13 +99,17 @@ pub enum DetectionRule {
 #[serde(deny_unknown_fields)]
 pub struct ExposureTable {
     /// Exposure for which curves and requirements hold that name none, s, `min_s` to `max_s`.
+    #[schemars(range(min = 1e-6, max = 1000))]
     pub nominal_s: f64,
     /// Shortest, s, 1e-6 to `max_s`.
+    #[schemars(range(min = 1e-6, max = 1000))]
     pub min_s: f64,
     /// Longest, s, at most 1000.
+    #[schemars(range(min = 1e-6, max = 1000))]
     pub max_s: f64,
     /// Level that the target's brightest pixel may expect, as a fraction of saturation, above 0, at most 1000: 1 is just not over-exposed.
     #[serde(default = "one")]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub target_level: f64,
 }
 
@@ -112,6 +124,7 @@ pub struct MotionTable {
     /// What is at rest in the image.
     pub guidance: MotionGuidance,
     /// Semi-major axis of the orbit, km, 6500 to 100000; its mean motion smears what is not at rest.
+    #[schemars(range(min = 6500, max = 100000))]
     pub semi_major_axis_km: f64,
 }
 
@@ -130,15 +143,19 @@ pub enum MotionGuidance {
 #[serde(deny_unknown_fields, default)]
 pub struct SkyTable {
     /// Boresights over the whole sky, each for an equal area, 100 to 1000000.
+    #[schemars(range(min = 100, max = 1000000))]
     pub pointings: u32,
     /// When.
     pub when: SkyTime,
     /// Pointings nearer than this to the Sun do not count, degrees, 0 to 180.
+    #[schemars(range(min = 0, max = 180))]
     pub sun_exclusion_deg: f64,
     /// Pointings nearer than this to the Moon do not count, degrees, 0 to 180.
+    #[schemars(range(min = 0, max = 180))]
     pub moon_exclusion_deg: f64,
     /// Pointings nearer than this to the limb of the Earth do not count, degrees, 0 to 180. With inertial guidance the camera waits
     /// until the Earth is behind it.
+    #[schemars(range(min = 0, max = 180))]
     pub earth_exclusion_deg: f64,
 }
 
@@ -166,6 +183,7 @@ pub enum SkyTime {
     /// All through a year: each pointing at a moment of its own, evenly spread.
     Year {
         /// The year, 1980 to 2040.
+        #[schemars(range(min = 1980, max = 2040))]
         year: i32,
     },
 }
@@ -179,6 +197,7 @@ pub struct TargetTable {
     /// How the Sun shines on it.
     pub light: TargetLight,
     /// Nearest and farthest range of the curves, km, growing, 0.01 to 1e5.
+    #[schemars(inner(range(min = 0.01, max = 1e5)))]
     pub ranges_km: [f64; 2],
 }
 
@@ -189,15 +208,18 @@ pub enum TargetLight {
     /// At given phase angles, at 1 au, in no shadow; a body of plates in any attitude, all equally likely.
     Phases {
         /// Angles Sun–target–camera, degrees, growing, 0 to 170.
+        #[schemars(length(min = 1, max = 50), inner(range(min = 0, max = 170)))]
         phases_deg: Vec<f64>,
         /// Attitudes of a body of plates, 1 to 1000.
         #[serde(default = "attitudes")]
+        #[schemars(range(min = 1, max = 1000))]
         attitudes: u32,
     },
     /// As along the orbit of the scenario, at moments spread over its schedule, with the attitude that it gives the body; the camera
     /// purely along the track, behind or ahead as in the scenario. Moments in the Earth's shadow do not count.
     Orbit {
         /// Moments, 1 to 1000.
+        #[schemars(range(min = 1, max = 1000))]
         moments: u32,
     },
 }
@@ -211,8 +233,10 @@ fn attitudes() -> u32 {
 #[serde(deny_unknown_fields, default)]
 pub struct ConfirmTable {
     /// Frames that are simulated for each result, 0 to 100000; 0: no simulation.
+    #[schemars(range(min = 0, max = 100000))]
     pub frames: u32,
     /// Confidence of the one-sided bounds of simulated rates, 0.5 to 0.9999.
+    #[schemars(range(min = 0.5, max = 0.9999))]
     pub confidence: f64,
 }
 
@@ -243,10 +267,13 @@ pub enum Demand {
     /// So many stars or more are detected, with a probability, wherever the camera looks.
     Stars {
         /// Stars, 1 to 1000; absent: that of the file.
+        #[schemars(range(min = 1, max = 1000))]
         n_min: Option<u32>,
         /// Probability; absent: that of the file.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
         probability: Option<f64>,
         /// Exposure, s; absent: the nominal one.
+        #[schemars(range(min = 1e-6, max = 1000))]
         exposure_s: Option<f64>,
         /// Whether the probability is that of all the sky together, or of each pointing.
         #[serde(default)]
@@ -255,37 +282,48 @@ pub enum Demand {
     /// A star of a magnitude, of the mean colour of the catalogue, is detected with a probability.
     LimitingMagnitude {
         /// Johnson V, −2 to 15.
+        #[schemars(range(min = -2, max = 15))]
         magnitude: f64,
         /// Probability; absent: that of the file.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
         probability: Option<f64>,
         /// Exposure, s; absent: the nominal one.
+        #[schemars(range(min = 1e-6, max = 1000))]
         exposure_s: Option<f64>,
     },
     /// The target is detected with a probability at every range and phase angle of an interval.
     TargetDetected {
         /// Nearest range, km.
+        #[schemars(range(min = 0.01, max = 1e5))]
         from_km: f64,
         /// Farthest range, km.
+        #[schemars(range(min = 0.01, max = 1e5))]
         to_km: f64,
         /// Largest phase angle, degrees; absent: any of those of the target's light.
         phase_max_deg: Option<f64>,
         /// Probability; absent: that of the file.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
         probability: Option<f64>,
         /// Exposure, s; absent: the nominal one.
+        #[schemars(range(min = 1e-6, max = 1000))]
         exposure_s: Option<f64>,
     },
     /// At every range of an interval there is an exposure that leaves the target not over-exposed and enough stars, each with a
     /// probability.
     ExposureWindow {
         /// Nearest range, km.
+        #[schemars(range(min = 0.01, max = 1e5))]
         from_km: f64,
         /// Farthest range, km.
+        #[schemars(range(min = 0.01, max = 1e5))]
         to_km: f64,
         /// Largest phase angle, degrees; absent: any of those of the target's light.
         phase_max_deg: Option<f64>,
         /// Stars; absent: that of the file.
+        #[schemars(range(min = 1, max = 1000))]
         n_min: Option<u32>,
         /// Probability; absent: that of the file.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
         probability: Option<f64>,
     },
 }
@@ -312,8 +350,10 @@ pub struct Find {
     #[serde(default)]
     pub want: Want,
     /// Smallest value that is looked at, in the parameter's unit.
+    #[schemars(range(min = 1e-6, max = 1e6))]
     pub from: f64,
     /// Largest value that is looked at.
+    #[schemars(range(min = 1e-6, max = 1e6))]
     pub to: f64,
 }
 
@@ -351,54 +391,26 @@ pub enum Want {
     Largest,
 }
 
-/// What is wrong with a value: its path, and why.
-pub(super) type Problem = (String, String);
-
 impl RequirementFile {
-    /// Checks every number that no type of the simulator checks.
+    /// Checks every number, and what several of them must be together.
     ///
     /// # Errors
-    /// The path of the first value that is not allowed, and what was expected.
-    pub(super) fn check(&self) -> Result<(), Problem> {
-        let ExposureTable { nominal_s, min_s, max_s, target_level } = self.exposure;
-        require("exposure.max_s", max_s, "1e-6 to 1000", |v| (1e-6..=1000.0).contains(&v))?;
-        require("exposure.min_s", min_s, "1e-6 to exposure.max_s", |v| (1e-6..=max_s).contains(&v))?;
+    /// The first value that is not allowed.
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "")?;
+        let ExposureTable { nominal_s, min_s, max_s, .. } = self.exposure;
+        require("exposure.min_s", min_s, "1e-6 to exposure.max_s", |v| v <= max_s)?;
         self.check_exposure("exposure.nominal_s", Some(nominal_s))?;
-        require("exposure.target_level", target_level, "greater than 0, at most 1000", |v| {
-            v > 0.0 && v <= 1000.0
-        })?;
-        check_n_min("n_min", Some(self.n_min))?;
-        check_probability("probability", Some(self.probability))?;
-        require("motion.semi_major_axis_km", self.motion.semi_major_axis_km, "6500 to 100000", |v| {
-            (6500.0..=1e5).contains(&v)
-        })?;
-        let sky = &self.sky;
-        require("sky.pointings", f64::from(sky.pointings), "100 to 1000000", |v| (100.0..=1e6).contains(&v))?;
-        for (name, angle) in [
-            ("sky.sun_exclusion_deg", sky.sun_exclusion_deg),
-            ("sky.moon_exclusion_deg", sky.moon_exclusion_deg),
-            ("sky.earth_exclusion_deg", sky.earth_exclusion_deg),
-        ] {
-            require(name, angle, "0 to 180", |v| (0.0..=180.0).contains(&v))?;
-        }
-        if let SkyTime::Year { year } = sky.when {
-            require("sky.when.year", f64::from(year), "1980 to 2040", |v| (1980.0..=2040.0).contains(&v))?;
-        }
-        require("confirm.frames", f64::from(self.confirm.frames), "0 to 100000", |v| v <= 1e5)?;
-        require("confirm.confidence", self.confirm.confidence, "0.5 to 0.9999", |v| {
-            (0.5..=0.9999).contains(&v)
-        })?;
         if let DetectionRule::Sigmas { low, high } = self.detection {
-            require("detection.high", high, "above 0, at most 1000", |v| v > 0.0 && v <= 1000.0)?;
-            require("detection.low", low, "0 to detection.high", |v| (0.0..=high).contains(&v))?;
+            require("detection.low", low, "0 to detection.high", |v| v <= high)?;
         }
-        self.check_target()?;
+        self.target.as_ref().map_or(Ok(()), TargetTable::check)?;
         let mut ids: Vec<&str> = Vec::new();
         for (i, requirement) in self.requirements.iter().enumerate() {
             let at = format!("requirements[{i}]");
             if requirement.id.trim().is_empty() || ids.contains(&requirement.id.as_str()) {
-                let message = format!("is `{}`, expected a name that no other has", requirement.id);
-                return Err((format!("{at}.id"), message));
+                let value = format!("`{}`", requirement.id);
+                return Err(OutOfRange::new(format!("{at}.id"), value, "a name that no other has"));
             }
             ids.push(&requirement.id);
             self.check_demand(requirement, &at)?;
@@ -406,60 +418,16 @@ impl RequirementFile {
         Ok(())
     }
 
-    fn check_target(&self) -> Result<(), Problem> {
-        let Some(target) = &self.target else { return Ok(()) };
-        let [near, far] = target.ranges_km;
-        require("target.ranges_km", near, "a first number of 0.01 to 1e5", |v| (0.01..=1e5).contains(&v))?;
-        require("target.ranges_km", far, "a second number beyond the first, to 1e5", |v| {
-            v > near && v <= 1e5
-        })?;
-        match &target.light {
-            TargetLight::Phases { phases_deg, attitudes } => {
-                let path = "target.light.phases_deg";
-                require(path, phases_deg.len() as f64, "1 to 50 phase angles", |n| {
-                    (1.0..=50.0).contains(&n)
-                })?;
-                for phase in phases_deg {
-                    require(path, *phase, "angles of 0 to 170", |v| (0.0..=170.0).contains(&v))?;
-                }
-                if !phases_deg.is_sorted_by(|a, b| a < b) {
-                    return Err((path.to_owned(), "is not growing, expected growing angles".to_owned()));
-                }
-                require("target.light.attitudes", f64::from(*attitudes), "1 to 1000", |v| {
-                    (1.0..=1000.0).contains(&v)
-                })
+    fn check_demand(&self, requirement: &Requirement, at: &str) -> Result<(), OutOfRange> {
+        match requirement.demand {
+            Demand::Stars { exposure_s, .. } | Demand::LimitingMagnitude { exposure_s, .. } => {
+                self.check_exposure(&format!("{at}.demand.exposure_s"), exposure_s)?;
             }
-            TargetLight::Orbit { moments } => {
-                require("target.light.moments", f64::from(*moments), "1 to 1000", |v| {
-                    (1.0..=1000.0).contains(&v)
-                })
+            Demand::TargetDetected { from_km, to_km, exposure_s, .. } => {
+                self.check_ranges(at, from_km, to_km)?;
+                self.check_exposure(&format!("{at}.demand.exposure_s"), exposure_s)?;
             }
-        }
-    }
-
-    fn check_demand(&self, requirement: &Requirement, at: &str) -> Result<(), Problem> {
-        let path = |field: &str| format!("{at}.demand.{field}");
-        match &requirement.demand {
-            Demand::Stars { n_min, probability, exposure_s, over: _ } => {
-                check_n_min(&path("n_min"), *n_min)?;
-                check_probability(&path("probability"), *probability)?;
-                self.check_exposure(&path("exposure_s"), *exposure_s)?;
-            }
-            Demand::LimitingMagnitude { magnitude, probability, exposure_s } => {
-                require(&path("magnitude"), *magnitude, "-2 to 15", |v| (-2.0..=15.0).contains(&v))?;
-                check_probability(&path("probability"), *probability)?;
-                self.check_exposure(&path("exposure_s"), *exposure_s)?;
-            }
-            Demand::TargetDetected { from_km, to_km, phase_max_deg: _, probability, exposure_s } => {
-                self.check_ranges(at, *from_km, *to_km)?;
-                check_probability(&path("probability"), *probability)?;
-                self.check_exposure(&path("exposure_s"), *exposure_s)?;
-            }
-            Demand::ExposureWindow { from_km, to_km, phase_max_deg: _, n_min, probability } => {
-                self.check_ranges(at, *from_km, *to_km)?;
-                check_n_min(&path("n_min"), *n_min)?;
-                check_probability(&path("probability"), *probability)?;
-            }
+            Demand::ExposureWindow { from_km, to_km, .. } => self.check_ranges(at, from_km, to_km)?,
         }
         let Some(Find { parameter, from, to, want: _ }) = requirement.find else { return Ok(()) };
         let path = |field: &str| format!("{at}.find.{field}");
@@ -468,48 +436,43 @@ impl RequirementFile {
             Parameter::ApertureDiameterMm => ([0.01, 10_000.0], "0.01 to 10000 mm"),
             Parameter::FocalLengthMm => ([0.01, 1e6], "0.01 to 1e6 mm"),
         };
-        require(&path("from"), from, expected, |v| (limit[0]..=limit[1]).contains(&v))?;
-        require(&path("to"), to, "more than `from`, within the parameter's range", |v| {
+        require(path("from"), from, expected, |v| (limit[0]..=limit[1]).contains(&v))?;
+        require(path("to"), to, "more than `from`, within the parameter's range", |v| {
             v > from && v <= limit[1]
         })?;
         let by_exposure = parameter == Parameter::ExposureS;
         if by_exposure && matches!(requirement.demand, Demand::ExposureWindow { .. }) {
-            let message =
-                "is \"exposure_s\", expected another one: the window is one of exposures".to_owned();
-            return Err((path("parameter"), message));
+            let expected = "another one: the window is one of exposures";
+            return Err(OutOfRange::new(path("parameter"), "\"exposure_s\"", expected));
         }
         Ok(())
     }
 
-    fn check_exposure(&self, path: &str, exposure_s: Option<f64>) -> Result<(), Problem> {
+    fn check_exposure(&self, path: &str, exposure_s: Option<f64>) -> Result<(), OutOfRange> {
         let ExposureTable { min_s, max_s, .. } = self.exposure;
         exposure_s.map_or(Ok(()), |exposure_s| {
             require(path, exposure_s, "exposure.min_s to exposure.max_s", |v| (min_s..=max_s).contains(&v))
         })
     }
 
-    fn check_ranges(&self, at: &str, from_km: f64, to_km: f64) -> Result<(), Problem> {
+    fn check_ranges(&self, at: &str, from_km: f64, to_km: f64) -> Result<(), OutOfRange> {
         if self.target.is_none() {
-            let message = "is about a target, expected the table [target] in the file".to_owned();
-            return Err((format!("{at}.demand.kind"), message));
+            let expected = "the table [target] in the file";
+            return Err(OutOfRange::new(format!("{at}.demand.kind"), "about a target", expected));
         }
-        require(&format!("{at}.demand.from_km"), from_km, "0.01 to 1e5", |v| (0.01..=1e5).contains(&v))?;
-        require(&format!("{at}.demand.to_km"), to_km, "demand.from_km to 1e5", |v| v >= from_km && v <= 1e5)
+        require(format!("{at}.demand.to_km"), to_km, "demand.from_km to 1e5", |v| v >= from_km)
     }
 }
 
-fn check_n_min(path: &str, n_min: Option<u32>) -> Result<(), Problem> {
-    n_min.map_or(Ok(()), |n| require(path, f64::from(n), "1 to 1000", |v| (1.0..=1000.0).contains(&v)))
-}
-
-fn check_probability(path: &str, probability: Option<f64>) -> Result<(), Problem> {
-    probability.map_or(Ok(()), |p| require(path, p, "more than 0, less than 1", |v| v > 0.0 && v < 1.0))
-}
-
-fn require(path: &str, value: f64, expected: &str, holds: impl Fn(f64) -> bool) -> Result<(), Problem> {
-    if value.is_finite() && holds(value) {
-        Ok(())
-    } else {
-        Err((path.to_owned(), format!("is {value}, expected {expected}")))
+impl TargetTable {
+    fn check(&self) -> Result<(), OutOfRange> {
+        let [near, far] = self.ranges_km;
+        require("target.ranges_km[1]", far, "a second number beyond the first, to 1e5", |v| v > near)?;
+        match &self.light {
+            TargetLight::Phases { phases_deg, .. } if !phases_deg.is_sorted_by(|a, b| a < b) => {
+                Err(OutOfRange::new("target.light.phases_deg", "not growing", "growing angles"))
+            }
+            TargetLight::Phases { .. } | TargetLight::Orbit { .. } => Ok(()),
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Boresights over the whole sky, and the stars that the camera has in its field at each.
 
-use contract::{CameraFrame, Direction, Icrs, Rotation};
+use contract::{CameraFrame, Direction, Icrs, OutOfRange, Rotation};
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -105,7 +105,7 @@ impl Pointing {
     }
 
     /// Whoever looks from there.
-    pub fn observer(&self, motion: &MotionTable) -> Result<Observer, SimError> {
+    pub fn observer(&self, motion: &MotionTable) -> Result<Observer, OutOfRange> {
         let speed_km_s = mean_motion_rad_s(motion.semi_major_axis_km) * motion.semi_major_axis_km;
         let along = match motion.guidance {
             MotionGuidance::LocalOrbital => *self.boresight.vector(),
@@ -140,7 +140,7 @@ impl Pointing {
 }
 
 /// A moment of the time that is looked at, `share` of the way through it.
-fn moment(when: &SkyTime, share: f64) -> Result<Epoch, SimError> {
+fn moment(when: &SkyTime, share: f64) -> Result<Epoch, OutOfRange> {
     match when {
         SkyTime::Epoch { utc } => clock::parse_utc(utc),
         SkyTime::Year { year } => {

@@ -1,5 +1,5 @@
 //! The target as the camera sees it: how bright, how large, how likely detected, and which exposure just does not over-expose it.
-use contract::{CameraFrame, Direction, Icrs, PixelPoint, Rotation, Target};
+use contract::{CameraFrame, Direction, Icrs, OutOfRange, PixelPoint, Rotation, Target};
 use hifitime::{Epoch, Unit};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -78,11 +78,8 @@ impl TargetModel {
             (TargetLight::Orbit { .. }, None) => Vec::new(),
         };
         if aspects.is_empty() {
-            return Err(SimError::Parameter {
-                field: "target.light",
-                value: "without a sunlit moment".to_owned(),
-                expected: "an orbit on which the target is lit",
-            });
+            let expected = "an orbit on which the target is lit";
+            return Err(OutOfRange::new("target.light", "without a sunlit moment", expected).into());
         }
         Ok(Self { body: prepared, aspects })
     }

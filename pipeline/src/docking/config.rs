@@ -1,5 +1,6 @@
 //! All parameters of the docking method.
 
+use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -7,8 +8,6 @@ use super::portions::{ExactPortionConfig, PaperPortionConfig};
 use super::preprocessing::edges::EdgeConfig;
 use super::preprocessing::histogram::AutoContrastConfig;
 use super::preprocessing::region::RegionConfig;
-use crate::PipelineError;
-use crate::error::require;
 
 /// Parameters of the docking method; every one has a default.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -21,10 +20,13 @@ pub struct DockingConfig {
     /// Thresholds of the edge-based method.
     pub edges: EdgeConfig,
     /// Least difference between cross and plate, in 255ths of full scale, 2 to 200.
+    #[schemars(range(min = 2, max = 200))]
     pub min_contrast: f64,
     /// Most candidates for the cross that are examined in a field, 1 to 200.
+    #[schemars(range(min = 1, max = 200))]
     pub max_candidates: u32,
     /// Fields of a portion, measured or not, 3 to 1000; ten in the paper.
+    #[schemars(range(min = 3, max = 1000))]
     pub portion_fields: u32,
     /// Motion by portions of the best estimator.
     pub portions: ExactPortionConfig,
@@ -51,20 +53,11 @@ impl DockingConfig {
     /// Checks every parameter.
     ///
     /// # Errors
-    /// [`PipelineError::Parameter`] for the first one outside its range, by its path.
-    pub fn check(&self) -> Result<(), PipelineError> {
+    /// [`OutOfRange`] for the first one outside its range, by its path.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "")?;
         self.region.check()?;
-        self.auto_contrast.check()?;
-        self.edges.check()?;
-        require("min_contrast", self.min_contrast, "2 to 200", |v| (2.0..=200.0).contains(&v))?;
-        require("max_candidates", f64::from(self.max_candidates), "1 to 200", |v| {
-            (1.0..=200.0).contains(&v)
-        })?;
-        require("portion_fields", f64::from(self.portion_fields), "3 to 1000", |v| {
-            (3.0..=1000.0).contains(&v)
-        })?;
-        self.portions.check()?;
-        self.paper_portions.check()
+        self.edges.check()
     }
 }
 

@@ -1,5 +1,6 @@
 //! One field: recognised, measured, checked.
 
+use contract::bounds::require;
 use contract::docking::{
     DockingSetup, DockingSolution, Features, Field, FieldMeasurement, FieldTelemetry, NoPose, Pose,
     TargetModel,
@@ -23,7 +24,6 @@ use super::preprocessing::histogram::Histogram;
 use super::preprocessing::region::{Prediction, Rectangle, Sighting, Track};
 use super::preprocessing::view::{Lens, View};
 use crate::PipelineError;
-use crate::error::require;
 
 /// Recognises and measures field after field; remembers where the target was.
 #[derive(Debug)]

@@ -5,22 +5,22 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, SymmetricEigen, UnitQuaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::PipelineError;
-use crate::error::require;
-
 /// When and how the mounting of the camera is calibrated with stars.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct AttitudeConfig {
     /// n_min: least number of identified stars for a solution, 2 to 1000000; the paper takes 10.
+    #[schemars(range(min = 2, max = 1000000))]
     pub min_stars: u32,
     /// λ of Eq. 16, the weight of the old estimate, 0 to below 1. Near 1 it smooths over about 1/(1 − λ) solutions;
     /// 0 takes each solution as it is. (The paper's text says the opposite of its equation.)
+    #[schemars(range(min = 0), extend("exclusiveMaximum" = 1))]
     pub filter_lambda: f64,
     /// The weights ω of the stars in Eq. 14.
     pub weights: StarWeights,
     /// Error of a star's place that its fitted centre does not know of (star list, distortion, what the correction of
     /// aberration leaves), px, 0 to 10: added in square to σ of inverse-variance weights, so that no bright star takes all.
+    #[schemars(range(min = 0, max = 10))]
     pub weight_floor_px: f64,
 }
 
@@ -42,18 +42,6 @@ impl Default for AttitudeConfig {
 }
 
 impl AttitudeConfig {
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`PipelineError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), PipelineError> {
-        require("attitude.min_stars", f64::from(self.min_stars), "2 to 1000000", |v| {
-            (2.0..=1e6).contains(&v)
-        })?;
-        require("attitude.filter_lambda", self.filter_lambda, "0 to below 1", |v| (0.0..1.0).contains(&v))?;
-        require("attitude.weight_floor_px", self.weight_floor_px, "0 to 10", |v| (0.0..=10.0).contains(&v))
-    }
-
     /// The weight ω of a star whose centre has the standard deviation `sigma_px`; `None` for a brightness centre.
     pub(super) fn weight(&self, sigma_px: Option<f64>) -> f64 {
         match self.weights {
@@ -188,14 +176,17 @@ mod tests {
     #[test]
     fn numbers_out_of_range_are_refused_by_name() {
         let good = AttitudeConfig::default();
-        assert!(good.check().is_ok());
+        assert!(contract::bounds::check(&good, "attitude").is_ok());
         for (field, bad) in [
             ("min_stars", AttitudeConfig { min_stars: 1, ..good.clone() }),
             ("filter_lambda", AttitudeConfig { filter_lambda: 1.0, ..good.clone() }),
             ("filter_lambda", AttitudeConfig { filter_lambda: -0.1, ..good.clone() }),
             ("weight_floor_px", AttitudeConfig { weight_floor_px: f64::NAN, ..good.clone() }),
         ] {
-            assert!(bad.check().unwrap_err().to_string().contains(field), "{field}");
+            assert!(
+                contract::bounds::check(&bad, "attitude").unwrap_err().to_string().contains(field),
+                "{field}"
+            );
         }
     }
 

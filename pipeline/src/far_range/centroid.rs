@@ -6,8 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::detect::{Blob, Detector, FittedCentre};
 use super::profile_fit::{MAX_COMPONENTS, ProfileFit, Sample, Shape, Start};
-use crate::PipelineError;
-use crate::error::require;
 
 /// How the centre of a cluster is measured.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -24,24 +22,12 @@ pub enum CentroidConfig {
         /// Width of the image of a point, standard deviation, px, 0.3 to 10; without it the width of every cluster is fitted
         /// with it, which costs faint stars some accuracy.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.3, max = 10))]
         psf_sigma_px: Option<f64>,
     },
 }
 
-impl CentroidConfig {
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`PipelineError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), PipelineError> {
-        match self {
-            Self::Fit { psf_sigma_px: Some(sigma) } => {
-                require("centroid.psf_sigma_px", *sigma, "0.3 to 10", |v| (0.3..=10.0).contains(&v))
-            }
-            Self::Fit { psf_sigma_px: None } | Self::Brightness => Ok(()),
-        }
-    }
-}
+impl CentroidConfig {}
 
 /// Width that a fit of the width starts from, px: a sharp star tracker lens.
 const TYPICAL_SIGMA_PX: f64 = 0.8;

@@ -1,5 +1,6 @@
 //! All parameters of the far-range method.
 
+use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +11,6 @@ use super::hotspots::HotspotConfig;
 use super::identify::IdentificationConfig;
 use super::threshold::ThresholdConfig;
 use super::track::TrackingConfig;
-use crate::PipelineError;
-use crate::error::require;
 
 /// Parameters of the far-range method; every one has a default.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -25,6 +24,7 @@ pub struct FarRangeConfig {
     pub centroid: CentroidConfig,
     /// Most clusters kept in a frame, those of the largest weighted size, 1 to 2000. Bounds the time of linking, which
     /// grows with the cube of the clusters that could all be linked with each other.
+    #[schemars(range(min = 1, max = 2000))]
     pub max_clusters: u32,
     /// Identification of stars.
     pub identification: IdentificationConfig,
@@ -38,6 +38,7 @@ pub struct FarRangeConfig {
     pub aberration: AberrationConfig,
     /// Longest time between two frames that are linked, s, above 0 to 1e9. After a longer gap, or when time does
     /// not advance, tracking starts anew.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e9))]
     pub max_gap_s: f64,
 }
 
@@ -73,59 +74,52 @@ impl FarRangeConfig {
     /// Checks every parameter.
     ///
     /// # Errors
-    /// [`PipelineError::Parameter`] for the first one outside its range, by its path.
-    pub fn check(&self) -> Result<(), PipelineError> {
+    /// [`OutOfRange`] for the first one outside its range, by its path.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "")?;
         self.thresholds.check()?;
-        self.centroid.check()?;
-        require("max_clusters", f64::from(self.max_clusters), "1 to 2000", |v| (1.0..=2000.0).contains(&v))?;
-        self.identification.check()?;
         self.tracking.check()?;
         self.hotspots.check()?;
-        self.attitude.check()?;
         if self.attitude.weights == StarWeights::InverseVariance
             && self.centroid == CentroidConfig::Brightness
         {
-            return Err(PipelineError::Parameter {
-                field: "attitude.weights",
-                value: "inverse_variance".to_owned(),
-                expected: "equal, unless centroid.mode is fit: a brightness centre does not know its error",
-            });
+            let expected = "equal, unless centroid.mode is fit: a brightness centre does not know its error";
+            return Err(OutOfRange::new("attitude.weights", "inverse_variance", expected));
         }
-        require("max_gap_s", self.max_gap_s, "above 0 to 1e9", |v| v > 0.0 && v <= 1e9)
+        Ok(())
     }
 
     /// Checks that a camera whose pixels up to `zero_suppression_dn` arrive as 0 hides none that the pipeline looks at.
     ///
     /// # Errors
-    /// [`PipelineError::Parameter`] for the parameter by which it would.
+    /// [`OutOfRange`] for the parameter by which it would.
     pub fn check_suppression(
         &self,
         zero_suppression_dn: Option<u16>,
         bit_depth: u8,
-    ) -> Result<(), PipelineError> {
+    ) -> Result<(), OutOfRange> {
         let Some(floor_dn) = zero_suppression_dn else { return Ok(()) };
-        let refused =
-            |field, value: String, expected| Err(PipelineError::Parameter { field, value, expected });
+        let refused = |path, value: &str, expected| Err(OutOfRange::new(path, value, expected));
         if self.weights == Weights::AboveBackground {
             let expected = "intensity, with zero_suppression_dn: the background does not arrive";
-            return refused("weights", "above_background".to_owned(), expected);
+            return refused("weights", "above_background", expected);
         }
         if self.centroid != CentroidConfig::Brightness {
             let expected =
                 "brightness, with zero_suppression_dn: a fit takes the faint pixels of an image too";
-            return refused("centroid.mode", "fit".to_owned(), expected);
+            return refused("centroid.mode", "fit", expected);
         }
         match self.thresholds {
             ThresholdConfig::Automatic { .. } => {
                 let expected = "constant, with zero_suppression_dn: the background does not arrive";
-                refused("thresholds.mode", "automatic".to_owned(), expected)
+                refused("thresholds.mode", "automatic", expected)
             }
             ThresholdConfig::Constant { low, .. } => {
                 let full_scale = f64::from(u32::MAX >> (32 - u32::from(bit_depth.clamp(1, 16))));
                 if (low * full_scale).floor() < f64::from(floor_dn) {
                     let value = format!("{low}, {} DN", (low * full_scale).floor());
                     let expected = "zero_suppression_dn or more: below it pixels arrive as 0";
-                    return refused("thresholds.low", value, expected);
+                    return refused("thresholds.low", &value, expected);
                 }
                 Ok(())
             }

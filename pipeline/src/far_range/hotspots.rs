@@ -2,14 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use contract::PixelPoint;
+use contract::bounds::require;
+use contract::{OutOfRange, PixelPoint};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::detect::Blob;
 use super::track::Track;
-use crate::PipelineError;
-use crate::error::require;
 
 /// How hotspots are told from a target that hardly moves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -22,14 +21,17 @@ pub enum HotspotConfig {
     Automatic {
         /// N_min: frames that a cluster must be tracked back, 0 to 1000000.
         #[serde(default = "default_n_min")]
+        #[schemars(range(min = 0, max = 1000000))]
         n_min: u32,
         /// v_min: mean velocity below which a cluster is a hotspot, px/s, 0 to 1000; the paper's typical value
         /// is 0.001.
         #[serde(default = "default_v_min")]
+        #[schemars(range(min = 0, max = 1000))]
         v_min_px_per_s: f64,
         /// Steps that the mean velocity is taken over, the last ones, above `n_min`, at most 10000; `null`: Eq. 10 as
         /// printed, the mean over the whole track.
         #[serde(default = "default_n_max")]
+        #[schemars(range(min = 1, max = 10000))]
         n_max: Option<u32>,
         /// Whether the pixel of a hotspot stays marked for the rest of the sequence. If not, a hot pixel that
         /// drops below the threshold once is a candidate again until it has been tracked for `n_min` frames.
@@ -76,16 +78,11 @@ impl HotspotConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`PipelineError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), PipelineError> {
-        if let Self::Automatic { n_min, v_min_px_per_s, n_max, .. } = *self {
-            require("hotspots.n_min", f64::from(n_min), "0 to 1000000", |v| v <= 1e6)?;
-            let speed = |v: f64| (0.0..=1000.0).contains(&v);
-            require("hotspots.v_min_px_per_s", v_min_px_per_s, "0 to 1000", speed)?;
-            if let Some(n_max) = n_max {
-                let expected = "greater than hotspots.n_min, at most 10000";
-                require("hotspots.n_max", f64::from(n_max), expected, |_| n_max > n_min && n_max <= 10_000)?;
-            }
+    /// [`OutOfRange`] for the first one outside its range.
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
+        if let Self::Automatic { n_min, n_max: Some(n_max), .. } = *self {
+            let expected = "greater than hotspots.n_min, at most 10000";
+            require("hotspots.n_max", f64::from(n_max), expected, |_| n_max > n_min)?;
         }
         Ok(())
     }

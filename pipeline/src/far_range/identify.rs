@@ -5,8 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::detect::Blob;
-use crate::error::require;
-use crate::{CameraModel, PipelineError};
+use crate::CameraModel;
 
 /// Which clusters count as which stars.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -14,8 +13,10 @@ use crate::{CameraModel, PipelineError};
 pub struct IdentificationConfig {
     /// Greatest distance between a predicted star and its cluster, px, 0 to 1000. Too small loses stars to the
     /// errors of attitude, mounting and aberration (0.3 px); too large takes the target for a star near it.
+    #[schemars(range(min = 0, max = 1000))]
     pub radius_px: f64,
     /// Faintest star of the list that is looked for, visual magnitude, −30 to 30.
+    #[schemars(range(min = -30, max = 30))]
     pub max_magnitude: f64,
 }
 
@@ -25,18 +26,7 @@ impl Default for IdentificationConfig {
     }
 }
 
-impl IdentificationConfig {
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`PipelineError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), PipelineError> {
-        let radius = |v: f64| (0.0..=1000.0).contains(&v);
-        require("identification.radius_px", self.radius_px, "0 to 1000", radius)?;
-        let magnitude = |v: f64| (-30.0..=30.0).contains(&v);
-        require("identification.max_magnitude", self.max_magnitude, "-30 to 30", magnitude)
-    }
-}
+impl IdentificationConfig {}
 
 /// A listed star and where it should be in the frame.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,8 @@
 
 use contract::{
     AttitudeSource, Body, CameraFrame, Cluster, ContractError, FarRange, Frame, Icrs, Label, ListedStar,
-    Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution, Telemetry,
+    Measurement, NoSolution, OutOfRange, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution,
+    Telemetry,
 };
 use hifitime::Epoch;
 
@@ -53,7 +54,7 @@ impl FarRangePipeline {
     ///
     /// # Errors
     /// Those of [`FarRangeConfig::check`], of the camera's check and of [`contract::Readout::check`];
-    /// [`PipelineError::Parameter`] for fitted centres with a camera whose readout is not known, and for thresholds below the zero
+    /// [`OutOfRange`] for fitted centres with a camera whose readout is not known, and for thresholds below the zero
     /// suppression of the camera.
     pub fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
         config.check()?;
@@ -62,15 +63,12 @@ impl FarRangePipeline {
         let fitter = match (&config.centroid, setup.readout) {
             (CentroidConfig::Brightness, _) => None,
             (CentroidConfig::Fit { psf_sigma_px }, Some(readout)) => {
-                readout.check()?;
+                readout.check().map_err(ContractError::from)?;
                 Some(CentroidFitter::new(*psf_sigma_px, readout))
             }
             (CentroidConfig::Fit { .. }, None) => {
-                return Err(PipelineError::Parameter {
-                    field: "centroid.mode",
-                    value: "fit".to_owned(),
-                    expected: "brightness, for a camera whose readout (gain, bias, read noise, saturation) is not known",
-                });
+                let expected = "brightness, for a camera whose readout (gain, bias, read noise, saturation) is not known";
+                return Err(OutOfRange::new("centroid.mode", "fit", expected).into());
             }
         };
         Ok(Self {

@@ -1,12 +1,11 @@
 //! The thresholds I1 and I2 of detection (section 2.1).
 
-use contract::Frame;
+use contract::bounds::require;
+use contract::{Frame, OutOfRange};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::background::Background;
-use crate::PipelineError;
-use crate::error::require;
 
 /// Where the thresholds I1 (every pixel of a cluster) and I2 (at least one pixel of it) come from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -15,8 +14,10 @@ pub enum ThresholdConfig {
     /// Constants, as fractions of full scale.
     Constant {
         /// I1, fraction of full scale, 0 to 1.
+        #[schemars(range(min = 0, max = 1))]
         low: f64,
         /// I2, fraction of full scale, `low` to 1.
+        #[schemars(range(min = 0, max = 1))]
         high: f64,
     },
     /// From the frame: I1 = b + low_sigmas · σ and I2 = b + max(high_sigmas · σ, star_fraction · (p − b)), with
@@ -26,14 +27,17 @@ pub enum ThresholdConfig {
     Automatic {
         /// I1 above the background, in standard deviations of its noise, 0 to 1000.
         #[serde(default = "default_low_sigmas")]
+        #[schemars(range(min = 0, max = 1000))]
         low_sigmas: f64,
         /// I2 above the background, in standard deviations of its noise, `low_sigmas` to 1000. At 6, a frame of
         /// half a million pixels of normal noise has no false cluster.
         #[serde(default = "default_high_sigmas")]
+        #[schemars(range(min = 0, max = 1000))]
         high_sigmas: f64,
         /// Least I2 above the background as a fraction of the brightest pixel's height above it, 0 to 1. Above 0
         /// it hides what is much fainter than the brightest object: fewer ghosts, fewer stars.
         #[serde(default)]
+        #[schemars(range(min = 0, max = 1))]
         star_fraction: f64,
     },
 }
@@ -72,23 +76,15 @@ impl ThresholdConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`PipelineError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), PipelineError> {
+    /// [`OutOfRange`] for the first one outside its range.
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
         match *self {
             Self::Constant { low, high } => {
-                require("thresholds.low", low, "0 to 1", |v| (0.0..=1.0).contains(&v))?;
-                require("thresholds.high", high, "thresholds.low to 1", |v| (low..=1.0).contains(&v))
+                require("thresholds.high", high, "thresholds.low to 1", |v| v >= low)
             }
-            Self::Automatic { low_sigmas, high_sigmas, star_fraction } => {
-                let sigmas = |from: f64| move |v: f64| (from..=1000.0).contains(&v);
-                require("thresholds.low_sigmas", low_sigmas, "0 to 1000", sigmas(0.0))?;
-                require(
-                    "thresholds.high_sigmas",
-                    high_sigmas,
-                    "thresholds.low_sigmas to 1000",
-                    sigmas(low_sigmas),
-                )?;
-                require("thresholds.star_fraction", star_fraction, "0 to 1", |v| (0.0..=1.0).contains(&v))
+            Self::Automatic { low_sigmas, high_sigmas, .. } => {
+                let expected = "thresholds.low_sigmas to 1000";
+                require("thresholds.high_sigmas", high_sigmas, expected, |v| v >= low_sigmas)
             }
         }
     }

@@ -2,14 +2,14 @@
 
 use std::collections::VecDeque;
 
-use contract::{CameraFrame, Icrs, PixelPoint, Rotation};
+use contract::bounds::require;
+use contract::{CameraFrame, Icrs, OutOfRange, PixelPoint, Rotation};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::assignment::{AllowedPair, assign};
 use super::detect::Blob;
-use crate::error::require;
-use crate::{CameraModel, PipelineError};
+use crate::CameraModel;
 
 /// How alike two clusters of successive frames must be to be linked.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -17,12 +17,16 @@ use crate::{CameraModel, PipelineError};
 pub struct TrackingConfig {
     /// Δp_max: greatest distance between where a cluster is expected and where it is, px, above 0 to 20000.
     /// Must cover the motion of the target between two frames; what is larger links unlisted stars as well.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 20000))]
     pub max_displacement_px: f64,
     /// Δs_max: greatest change of the weighted size, in units of full scale, above 0 to 1e9.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e9))]
     pub max_size_change: f64,
     /// ω_p: weight of the displacement in the similarity, 0 to 1e6; not both weights are 0.
+    #[schemars(range(min = 0, max = 1e6))]
     pub weight_displacement: f64,
     /// ω_s: weight of the change of size in the similarity, 0 to 1e6.
+    #[schemars(range(min = 0, max = 1e6))]
     pub weight_size: f64,
 }
 
@@ -36,17 +40,10 @@ impl TrackingConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`PipelineError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), PipelineError> {
-        require("tracking.max_displacement_px", self.max_displacement_px, "above 0 to 20000", |v| {
-            v > 0.0 && v <= 20_000.0
-        })?;
-        require("tracking.max_size_change", self.max_size_change, "above 0 to 1e9", |v| v > 0.0 && v <= 1e9)?;
-        let weight = |v: f64| (0.0..=1e6).contains(&v);
-        require("tracking.weight_displacement", self.weight_displacement, "0 to 1e6", weight)?;
-        require("tracking.weight_size", self.weight_size, "0 to 1e6, and not 0 with the other weight", |v| {
-            weight(v) && v + self.weight_displacement > 0.0
-        })
+    /// [`OutOfRange`] for the first one outside its range.
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
+        let expected = "0 to 1e6, and not 0 with the other weight";
+        require("tracking.weight_size", self.weight_size, expected, |v| v + self.weight_displacement > 0.0)
     }
 }
 

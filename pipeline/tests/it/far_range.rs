@@ -362,7 +362,7 @@ fn fitted_centres_need_a_readout_and_weights_need_fitted_centres() {
     );
     let wrong = Setup { readout: Some(Readout { gain_e_per_dn: 0.0, ..READOUT }), ..setup() };
     let error = FarRangePipeline::new(best(), &wrong).unwrap_err().to_string();
-    assert_eq!(error, "readout.gain_e_per_dn is 0, expected 1e-3 to 1e6");
+    assert_eq!(error, "readout.gain_e_per_dn is 0, expected 0.001 to 1e6");
     let no_fit = FarRangeConfig { centroid: CentroidConfig::Brightness, ..best() };
     let error = no_fit.check().unwrap_err().to_string();
     assert!(error.starts_with("attitude.weights is inverse_variance, expected equal"), "{error}");

@@ -16,7 +16,7 @@ fn main() -> Result<(), MitsubaError> {
     let folder = PathBuf::from(arguments.next().expect("usage: golden_docking FOLDER"));
     let only = arguments.next();
     let (cases, target) = docking_cases::load();
-    target.check()?;
+    target.check().map_err(sim::SimError::from)?;
     let scene = target.scene();
     for case in &cases.case {
         if only.as_ref().is_some_and(|only| *only != case.name) {

@@ -181,11 +181,11 @@ pub fn fly(plan: &Plan, number: u64) -> Result<Flown, Box<dyn Error + Send + Syn
 /// Course and Sun of an approach, drawn again until marks and cross are in the field from beginning to end.
 fn draw(plan: &Plan, lens: &Lens, number: u64) -> Result<(ApproachConfig, SunConfig), SimError> {
     let mut stream = Seed { seed: plan.seed, case: 0 }.stream(number, Effect::AttitudeControl, 0);
-    let target = sim::scene::docking::TargetFile::built_in(TARGET).ok_or(SimError::Parameter {
-        field: "target",
-        value: TARGET.to_owned(),
-        expected: "a built-in one",
-    })?;
+    let target = sim::scene::docking::TargetFile::built_in(TARGET).ok_or(contract::OutOfRange::new(
+        "target",
+        TARGET,
+        "a built-in one",
+    ))?;
     let corners = corners(&target.model());
     let camera = camera(lens.focal_px);
     let approach = loop {

@@ -1,10 +1,8 @@
 //! What a scenario says about its catalogue.
 
+use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::SimError;
-use crate::error::require;
 
 /// Which stars a scenario draws.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -16,6 +14,7 @@ pub struct CatalogConfig {
     pub source: CatalogSource,
     /// Faintest star drawn, Johnson V, mag, −2 to 30; without it all stars are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -2, max = 30))]
     pub magnitude_limit: Option<f64>,
     /// Only the stars in this cone; without it those of the whole sky.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -27,10 +26,13 @@ pub struct CatalogConfig {
 #[serde(deny_unknown_fields)]
 pub struct ConeConfig {
     /// Right ascension of the centre, ICRS, degrees, 0 to 360.
+    #[schemars(range(min = 0, max = 360))]
     pub ra_deg: f64,
     /// Declination of the centre, ICRS, degrees, −90 to 90.
+    #[schemars(range(min = -90, max = 90))]
     pub dec_deg: f64,
     /// Angular radius, degrees, 0 to 180.
+    #[schemars(range(min = 0, max = 180))]
     pub radius_deg: f64,
 }
 
@@ -81,24 +83,12 @@ impl CatalogConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first field outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
+    /// [`OutOfRange`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
         if self.source == CatalogSource::File(String::new()) {
-            return Err(SimError::Parameter {
-                field: "catalog.source",
-                value: "empty".to_owned(),
-                expected: "`hipparcos2` or the path of a file",
-            });
+            return Err(OutOfRange::new("catalog.source", "empty", "`hipparcos2` or the path of a file"));
         }
-        if let Some(limit) = self.magnitude_limit {
-            require("catalog.magnitude_limit", limit, "-2 to 30", |v| (-2.0..=30.0).contains(&v))?;
-        }
-        if let Some(cone) = &self.cone {
-            require("catalog.cone.ra_deg", cone.ra_deg, "0 to 360", |v| (0.0..=360.0).contains(&v))?;
-            require("catalog.cone.dec_deg", cone.dec_deg, "-90 to 90", |v| (-90.0..=90.0).contains(&v))?;
-            require("catalog.cone.radius_deg", cone.radius_deg, "0 to 180", |v| (0.0..=180.0).contains(&v))?;
-        }
-        Ok(())
+        bounds::check(self, "catalog")
     }
 }
 

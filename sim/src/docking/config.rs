@@ -1,18 +1,15 @@
 //! What the simulator of an approach is told.
 
-use contract::Camera;
+use contract::bounds::{self, require};
+use contract::{Camera, OutOfRange};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::lighting::LightingConfig;
-use crate::SimError;
-use crate::error::require;
 use crate::television::{TelevisionConfig, can_be_written};
 use crate::truth::approach::ApproachConfig;
 use crate::truth::clock::parse_utc_of;
 
-/// Most cameras of a spacecraft.
-const MAX_CAMERAS: usize = 8;
 /// Longest name of a camera.
 const MAX_NAME: usize = 16;
 
@@ -29,6 +26,7 @@ pub struct DockingSimulation {
     /// How the camera moves.
     pub approach: ApproachConfig,
     /// The cameras (lenses), in the order of use, 1 to 8, all with the same columns and rows.
+    #[schemars(length(min = 1, max = 8))]
     pub cameras: Vec<CameraConfig>,
     /// What all lenses do to the image.
     #[serde(default)]
@@ -49,6 +47,7 @@ pub struct CameraConfig {
     pub name: String,
     /// Least range at which it is in use, m; decreasing along the list, and 0 for the last.
     #[serde(default)]
+    #[schemars(range(min = 0))]
     pub until_range_m: f64,
     /// Geometry.
     pub camera: Camera,
@@ -59,6 +58,7 @@ pub struct CameraConfig {
 #[serde(deny_unknown_fields, default)]
 pub struct LensConfig {
     /// Standard deviation of its Gaussian point spread, px, 0 to 10; 0 is a perfect lens.
+    #[schemars(range(min = 0, max = 10))]
     pub blur_sigma_px: f64,
 }
 
@@ -72,60 +72,37 @@ impl DockingSimulation {
     /// Checks every value but the target and what depends on it.
     ///
     /// # Errors
-    /// [`SimError`] for the first one that is not allowed.
-    pub fn check(&self) -> Result<(), SimError> {
+    /// [`OutOfRange`] for the first one that is not allowed.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "")?;
         parse_utc_of("start_utc", &self.start_utc)?;
-        self.check_cameras()?;
-        require("lens.blur_sigma_px", self.lens.blur_sigma_px, "0 to 10", |v| (0.0..=10.0).contains(&v))?;
+        self.cameras.iter().enumerate().try_for_each(|(index, camera)| {
+            let before = index.checked_sub(1).and_then(|before| self.cameras.get(before));
+            let last = index + 1 == self.cameras.len();
+            camera.check(before, last).map_err(|error| error.in_entry(index))
+        })?;
         self.lighting.check()?;
         self.television.check()
-    }
-
-    fn check_cameras(&self) -> Result<(), SimError> {
-        let first = self.cameras.first().filter(|_| self.cameras.len() <= MAX_CAMERAS).ok_or_else(|| {
-            SimError::Parameter {
-                field: "cameras",
-                value: format!("a list of {}", self.cameras.len()),
-                expected: "1 to 8 cameras",
-            }
-        })?;
-        let mut before_m = f64::INFINITY;
-        for (index, camera) in self.cameras.iter().enumerate() {
-            let last = index + 1 == self.cameras.len();
-            camera.check(&first.camera, before_m, last).map_err(|error| error.in_entry(index))?;
-            before_m = camera.until_range_m;
-        }
-        Ok(())
     }
 }
 
 impl CameraConfig {
-    fn check(&self, first: &Camera, before_m: f64, last: bool) -> Result<(), SimError> {
+    /// Checks it against the camera before it in the list.
+    fn check(&self, before: Option<&Self>, last: bool) -> Result<(), OutOfRange> {
         if !(1..=MAX_NAME).contains(&self.name.chars().count()) || !can_be_written(&self.name) {
-            return Err(SimError::Parameter {
-                field: "cameras[].name",
-                value: format!("{:?}", self.name),
-                expected: "1 to 16 of A to Z, 0 to 9, space and . : - + /",
-            });
+            let expected = "1 to 16 of A to Z, 0 to 9, space and . : - + /";
+            return Err(OutOfRange::new("cameras[].name", format!("{:?}", self.name), expected));
         }
         require(
             "cameras[].until_range_m",
             self.until_range_m,
             "0 for the last camera, less than that of the one before, above 0 for the others",
-            |m| if last { m == 0.0 } else { m > 0.0 && m < before_m },
+            |m| if last { m == 0.0 } else { m > 0.0 && before.is_none_or(|before| m < before.until_range_m) },
         )?;
-        self.camera.check().map_err(|error| match error {
-            contract::ContractError::OutOfRange { field, value, expected } => {
-                SimError::Entry { path: format!("cameras[].{field}"), value: value.to_string(), expected }
-            }
-            other => other.into(),
-        })?;
-        if (self.camera.columns, self.camera.rows) != (first.columns, first.rows) {
-            return Err(SimError::Parameter {
-                field: "cameras[].camera",
-                value: format!("{} × {}", self.camera.columns, self.camera.rows),
-                expected: "columns and rows of the first camera: one detector behind all lenses",
-            });
+        let Camera { columns, rows, .. } = self.camera;
+        if before.is_some_and(|Self { camera, .. }| (camera.columns, camera.rows) != (columns, rows)) {
+            let expected = "columns and rows of the first camera: one detector behind all lenses";
+            return Err(OutOfRange::new("cameras[].camera", format!("{columns} × {rows}"), expected));
         }
         Ok(())
     }

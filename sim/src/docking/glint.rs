@@ -2,14 +2,13 @@
 
 use std::f64::consts::PI;
 
-use contract::PixelPoint;
+use contract::bounds::require;
 use contract::docking::Lines;
+use contract::{OutOfRange, PixelPoint};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::scene::docking::Sun;
 
 /// A shiny fitting too small to be resolved. Seen from the distance D it gives the light of (irradiance) × `strength_m2` ×
@@ -19,13 +18,16 @@ use crate::scene::docking::Sun;
 #[serde(deny_unknown_fields)]
 pub struct GlintConfig {
     /// Where it is, target frame, m, each −100 to 100.
+    #[schemars(inner(range(min = -100, max = 100)))]
     pub position_m: [f64; 3],
     /// Its normal, target frame, of any length but 0.
     pub normal: [f64; 3],
     /// Mirroring area × concentration, m², 0 to 1: a flat mirror of area A and reflectance ρ whose waviness fills the lobe
     /// has ρ A/(8π w²), w in radians.
+    #[schemars(range(min = 0, max = 1))]
     pub strength_m2: f64,
     /// w: standard deviation of its normals, degrees, 0.05 to 45.
+    #[schemars(range(min = 0.05, max = 45))]
     pub lobe_deg: f64,
 }
 
@@ -41,14 +43,9 @@ pub struct GlintImage {
 }
 
 impl GlintConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        for m in self.position_m {
-            require("lighting.glints[].position_m", m, "-100 to 100", |m| m.abs() <= 100.0)?;
-        }
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
         let length = Vector3::from(self.normal).norm();
-        require("lighting.glints[].normal (length)", length, "1e-6 to 1e6", |n| (1e-6..=1e6).contains(&n))?;
-        require("lighting.glints[].strength_m2", self.strength_m2, "0 to 1", |s| (0.0..=1.0).contains(&s))?;
-        require("lighting.glints[].lobe_deg", self.lobe_deg, "0.05 to 45", |w| (0.05..=45.0).contains(&w))
+        require("lighting.glints[].normal (length)", length, "1e-6 to 1e6", |n| (1e-6..=1e6).contains(&n))
     }
 
     /// Light that reaches a camera at `camera_m`, per solid angle of a pixel seen at the distance 1: irradiance × m²/m².

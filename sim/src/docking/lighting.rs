@@ -1,18 +1,16 @@
 //! The light on the scene as a function of time and pose.
 
+use contract::OutOfRange;
+use contract::bounds::{self, require};
 use contract::docking::Pose;
 use nalgebra::{Rotation3, Unit, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::glint::GlintConfig;
-use crate::SimError;
-use crate::error::require;
 use crate::scene::docking::{Facet, Floodlight, Lighting, Part, Sun};
 use crate::truth::approach::target_from_camera;
 
-/// Most shades, and most corners of one.
-const MOST: usize = 64;
 /// How far the corners of a shade may lie off its plane, m.
 const FLATNESS_M: f64 = 1e-6;
 
@@ -28,14 +26,18 @@ pub struct LightingConfig {
     pub floodlight: Option<FloodlightConfig>,
     /// Radiance of a white surface by the light of Earth and station, alike from everywhere, in the units of irradiance/π,
     /// 0 to 1e6.
+    #[schemars(range(min = 0, max = 1e6))]
     pub fill_radiance: f64,
     /// Radiance of the sky, same units, 0 to 1e6.
+    #[schemars(range(min = 0, max = 1e6))]
     pub sky_radiance: f64,
     /// What stands outside the picture between the Sun and the target; at most 64.
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 64))]
     pub shades: Vec<ShadeConfig>,
     /// Small shiny fittings that mirror the Sun; at most 64.
     #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 64))]
     pub glints: Vec<GlintConfig>,
 }
 
@@ -44,17 +46,21 @@ pub struct LightingConfig {
 #[serde(deny_unknown_fields)]
 pub struct SunConfig {
     /// Azimuth at the beginning, from y3 towards y1, degrees, −360 to 360: 0 shines on the disk, 180 on its back.
+    #[schemars(range(min = -360, max = 360))]
     pub azimuth_deg: f64,
     /// Elevation at the beginning, towards y2, degrees, −90 to 90.
+    #[schemars(range(min = -90, max = 90))]
     pub elevation_deg: f64,
     /// Rate about the axis, right-handed, degrees per second, −10 to 10; a station in orbit turns by 0.065.
     #[serde(default)]
+    #[schemars(range(min = -10, max = 10))]
     pub rate_deg_s: f64,
     /// Axis of the turn, target frame, of any length but 0.
     #[serde(default = "default_axis")]
     pub rate_axis: [f64; 3],
     /// Irradiance of a surface that faces the Sun, 1e-6 to 1e6; at π a white surface has the radiance 1.
     #[serde(default = "default_irradiance")]
+    #[schemars(range(min = 1e-6, max = 1e6))]
     pub irradiance: f64,
 }
 
@@ -71,12 +77,16 @@ fn default_irradiance() -> f64 {
 #[serde(deny_unknown_fields, default)]
 pub struct FloodlightConfig {
     /// Where it is in the camera frame (along columns, along rows, along the optical axis), m, each −10 to 10.
+    #[schemars(inner(range(min = -10, max = 10)))]
     pub offset_m: [f64; 3],
     /// Radiant intensity on the axis, irradiance × m², 0 to 1e9; white at a distance of √(intensity/π) has the radiance 1.
+    #[schemars(range(min = 0, max = 1e9))]
     pub intensity: f64,
     /// Half angle of the full beam, degrees, 0 to 89.
+    #[schemars(range(min = 0, max = 89))]
     pub inner_half_angle_deg: f64,
     /// Half angle at which there is no light any more, degrees, more than the other and at most 89.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 89))]
     pub outer_half_angle_deg: f64,
 }
 
@@ -95,7 +105,8 @@ impl Default for FloodlightConfig {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShadeConfig {
-    /// Its corners in order, target frame, m: 3 to 64, in one plane within 1 µm, each coordinate −1000 to 1000.
+    /// Its corners in order, target frame, m, each coordinate −1000 to 1000; 3 to 64 of them, in one plane within 1 µm.
+    #[schemars(length(min = 3, max = 64), inner(inner(range(min = -1000, max = 1000))))]
     pub corners_m: Vec<[f64; 3]>,
 }
 
@@ -103,19 +114,12 @@ impl ShadeConfig {
     /// The shade as a part of the scene.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for corners that make no flat polygon.
-    fn part(&self, index: usize) -> Result<Part, SimError> {
-        const PATH: &str = "lighting.shades[].corners_m";
+    /// [`OutOfRange`] for corners that make no flat polygon.
+    fn part(&self, index: usize) -> Result<Part, OutOfRange> {
         let refused = |expected| {
             let value = format!("{:?}", self.corners_m);
-            Err(SimError::Parameter { field: PATH, value, expected })
+            Err(OutOfRange::new("lighting.shades[].corners_m", value, expected))
         };
-        if !(3..=MOST).contains(&self.corners_m.len()) {
-            return refused("3 to 64 corners");
-        }
-        for &coordinate in self.corners_m.iter().flatten() {
-            require(PATH, coordinate, "-1000 to 1000", |c| c.abs() <= 1000.0)?;
-        }
         let outer: Vec<Vector3<f64>> = self.corners_m.iter().map(|corner| Vector3::from(*corner)).collect();
         // Newell's normal: twice the area.
         let area = outer
@@ -141,40 +145,17 @@ impl LightingConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "lighting")?;
         if let Some(sun) = &self.sun {
-            require("lighting.sun.azimuth_deg", sun.azimuth_deg, "-360 to 360", |a| a.abs() <= 360.0)?;
-            require("lighting.sun.elevation_deg", sun.elevation_deg, "-90 to 90", |e| e.abs() <= 90.0)?;
-            require("lighting.sun.rate_deg_s", sun.rate_deg_s, "-10 to 10", |r| r.abs() <= 10.0)?;
             let length = Vector3::from(sun.rate_axis).norm();
             require("lighting.sun.rate_axis (length)", length, "1e-6 to 1e6", |n| (1e-6..=1e6).contains(&n))?;
-            require("lighting.sun.irradiance", sun.irradiance, "1e-6 to 1e6", |e| (1e-6..=1e6).contains(&e))?;
         }
-        if let Some(lamp) = &self.floodlight {
-            for m in lamp.offset_m {
-                require("lighting.floodlight.offset_m", m, "-10 to 10", |m| m.abs() <= 10.0)?;
-            }
-            require("lighting.floodlight.intensity", lamp.intensity, "0 to 1e9", |i| {
-                (0.0..=1e9).contains(&i)
-            })?;
-            require("lighting.floodlight.inner_half_angle_deg", lamp.inner_half_angle_deg, "0 to 89", |a| {
-                (0.0..=89.0).contains(&a)
-            })?;
-            require(
-                "lighting.floodlight.outer_half_angle_deg",
-                lamp.outer_half_angle_deg,
-                "more than the inner one, at most 89",
-                |a| a > lamp.inner_half_angle_deg && a <= 89.0,
-            )?;
-        }
-        let radiance = |r: f64| (0.0..=1e6).contains(&r);
-        require("lighting.fill_radiance", self.fill_radiance, "0 to 1e6", radiance)?;
-        require("lighting.sky_radiance", self.sky_radiance, "0 to 1e6", radiance)?;
-        for (field, length) in
-            [("lighting.shades", self.shades.len()), ("lighting.glints", self.glints.len())]
-        {
-            require(field, length as f64, "a list of at most 64", |n| n <= MOST as f64)?;
+        if let Some(FloodlightConfig { inner_half_angle_deg, outer_half_angle_deg, .. }) = self.floodlight {
+            let (path, expected) =
+                ("lighting.floodlight.outer_half_angle_deg", "more than the inner one, at most 89");
+            require(path, outer_half_angle_deg, expected, |a| a > inner_half_angle_deg)?;
         }
         for (index, glint) in self.glints.iter().enumerate() {
             glint.check().map_err(|error| error.in_entry(index))?;
@@ -185,8 +166,8 @@ impl LightingConfig {
     /// The shades as parts of the scene.
     ///
     /// # Errors
-    /// [`SimError::Entry`] for one that is no flat polygon.
-    pub(super) fn shade_parts(&self) -> Result<Vec<Part>, SimError> {
+    /// [`OutOfRange`] for one that is no flat polygon.
+    pub(super) fn shade_parts(&self) -> Result<Vec<Part>, OutOfRange> {
         self.shades
             .iter()
             .enumerate()

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use contract::docking::{Digitiser, DockingSetup, FieldTelemetry, Lines, TargetModel};
 use hifitime::{Duration, Epoch};
 
@@ -12,7 +14,6 @@ use super::glint;
 use super::lighting::LightingConfig;
 use super::truth::FieldTruth;
 use crate::SimError;
-use crate::error::require;
 use crate::optics::ImageBlur;
 use crate::randomness::Seed;
 use crate::regular_file;
@@ -184,14 +185,10 @@ impl DockingSimulator {
     /// What there is to be drawn in a field.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when there is no such field.
+    /// [`SimError::OutOfRange`] when there is no such field.
     pub fn moment(&self, field: u64) -> Result<FieldMoment, SimError> {
         if field >= self.field_count {
-            return Err(SimError::Parameter {
-                field: "field",
-                value: field.to_string(),
-                expected: "a field of the approach",
-            });
+            return Err(OutOfRange::new("field", field, "a field of the approach").into());
         }
         let time_s = field as f64 / self.television.field_rate_hz();
         let state = self.approach.at(time_s);
@@ -213,7 +210,7 @@ impl DockingSimulator {
     /// Draws a field and makes its video signal: the same bits whatever was made before.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when there is no such field.
+    /// [`SimError::OutOfRange`] when there is no such field.
     pub fn expose(&self, workspace: &mut DockingWorkspace, field: u64) -> Result<FieldExposure, SimError> {
         let moment = self.moment(field)?;
         workspace.drawers[moment.camera].draw(
@@ -228,7 +225,7 @@ impl DockingSimulator {
     /// Makes the video signal of a field from an image that somebody else drew, as of [`DockingSimulator::moment`].
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when there is no such field; [`SimError::Contract`] when the image has not the camera's size.
+    /// [`SimError::OutOfRange`] when there is no such field; [`SimError::Contract`] when the image has not the camera's size.
     pub fn expose_image(
         &self,
         workspace: &mut DockingWorkspace,

@@ -1,10 +1,10 @@
 //! The light of a scene, one kind an image.
 
+use contract::bounds::require;
 use nalgebra::{Rotation3, Unit, Vector3};
 
 use super::matrix::matrix;
 use crate::SimError;
-use crate::error::require;
 use crate::scene::docking::{Floodlight, Lighting, Sun};
 
 /// One kind of light. The radiance of a scene is the sum of its layers.
@@ -28,7 +28,7 @@ impl Layer {
     /// The layers of a lighting, those without light left out.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for a number that is not finite or negative, a direction without length, and a cone
+    /// [`SimError::OutOfRange`] for a number that is not finite or negative, a direction without length, and a cone
     /// whose angles are not 0 ≤ inner < outer < π/2.
     pub fn of(lighting: &Lighting) -> Result<Vec<Self>, SimError> {
         let light = |v: f64| v >= 0.0;

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use contract::bounds::require;
 use contract::docking::Pose;
 use earcut::Earcut;
 use nalgebra::Vector3;
 
 use super::Layer;
 use crate::SimError;
-use crate::error::require;
 use crate::scene::docking::{DockingScene, Facet, Part, Sun};
 
 /// How far behind the camera a shade is put, m.

@@ -1,7 +1,8 @@
 //! The scene file of Mitsuba 3.
 
-use contract::Camera;
+use contract::bounds::require;
 use contract::docking::Pose;
+use contract::{Camera, OutOfRange};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::matrix::matrix;
@@ -64,25 +65,25 @@ impl SceneFiles {
 
 /// The camera. Mitsuba's camera frame is x left, y up, z forward, and its first pixel covers 0 to 1: its principal
 /// point is this project's plus half a pixel, and its offset counts from the centre to the left and up.
-fn sensor(pose: &Pose, camera: &Camera, settings: &Settings, crop: &Crop) -> Result<String, SimError> {
+fn sensor(pose: &Pose, camera: &Camera, settings: &Settings, crop: &Crop) -> Result<String, OutOfRange> {
     let (fx, fy) = camera.focal_length_px();
     if camera.radial != [0.0; 3] || camera.tangential != [0.0; 2] {
-        return Err(SimError::Parameter {
-            field: "camera.radial, camera.tangential",
-            value: format!("{:?}, {:?}", camera.radial, camera.tangential),
-            expected: "zeros: the renderer mitsuba has no distortion; set them to 0, or use the renderer fast",
-        });
+        return Err(OutOfRange::new(
+            "camera.radial, camera.tangential",
+            format!("{:?}, {:?}", camera.radial, camera.tangential),
+            "zeros: the renderer mitsuba has no distortion; set them to 0, or use the renderer fast",
+        ));
     }
     // A part in 10⁹ is a thousandth of a thousandth of a pixel at the border of the largest detector.
     if (fx / fy - 1.0).abs() > 1e-9 {
-        return Err(SimError::Parameter {
-            field: "camera.pixel_width_um, camera.pixel_height_um",
-            value: format!("{}, {}", camera.pixel_width_um, camera.pixel_height_um),
-            expected: "equal numbers: the renderer mitsuba has square pixels only; use the renderer fast",
-        });
+        return Err(OutOfRange::new(
+            "camera.pixel_width_um, camera.pixel_height_um",
+            format!("{}, {}", camera.pixel_width_um, camera.pixel_height_um),
+            "equal numbers: the renderer mitsuba has square pixels only; use the renderer fast",
+        ));
     }
     let numbers = pose.position_m.sum() + pose.phi_rad.sum();
-    crate::error::require("pose", numbers, "finite numbers", |_| true)?;
+    require("pose", numbers, "finite numbers", |_| true)?;
 
     let (columns, rows) = (camera.columns as f64, camera.rows as f64);
     let fov_deg = (2.0 * libm::atan(columns / (2.0 * fx))).to_degrees();

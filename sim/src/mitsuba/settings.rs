@@ -1,8 +1,6 @@
 //! How finely a scene is rendered, and which part of its image.
 
-use contract::Camera;
-
-use crate::SimError;
+use contract::{Camera, OutOfRange};
 
 /// A part of the image, px.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,11 +43,11 @@ impl Settings {
     /// Checks them for a camera, and gives the part that is rendered.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for a number of samples that is no square, and a crop that is empty or leaves the image.
-    pub fn check(&self, camera: &Camera) -> Result<Crop, SimError> {
+    /// [`OutOfRange`] for a number of samples that is no square, and a crop that is empty or leaves the image.
+    pub fn check(&self, camera: &Camera) -> Result<Crop, OutOfRange> {
         if !(1..=64).any(|side| side * side == self.samples) {
             let expected = "the square of a number from 1 to 64: 16, 64, 256, …";
-            return Err(SimError::Parameter { field: "samples", value: self.samples.to_string(), expected });
+            return Err(OutOfRange::new("samples", self.samples, expected));
         }
         let crop = self.crop.unwrap_or_else(|| Crop::whole(camera));
         let fits = |from: usize, length: usize, side: usize| {
@@ -59,7 +57,7 @@ impl Settings {
             Ok(crop)
         } else {
             let value = format!("{}×{} px at ({}, {})", crop.columns, crop.rows, crop.x, crop.y);
-            Err(SimError::Parameter { field: "crop", value, expected: "a part of the camera's image" })
+            Err(OutOfRange::new("crop", value, "a part of the camera's image"))
         }
     }
 }

@@ -4,14 +4,13 @@
 //! object at its topmost bright row, so the region's place hangs on the top of the object: one taller than the region
 //! keeps its top and loses its bottom. That cuts in y, not in x, and spoils the declination. A scan by columns cuts in x.
 
-use contract::Window;
+use contract::bounds::{self, require};
+use contract::{OutOfRange, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::downlink::region_bytes;
-use crate::SimError;
 use crate::draw::PIECE;
-use crate::error::require;
 use crate::sensor::RawImage;
 
 /// The order in which the camera looks at its pixels. It decides which pixel of an object is met first, and is laid at
@@ -41,10 +40,13 @@ impl ScanOrder {
 #[serde(deny_unknown_fields)]
 pub struct RoiConfig {
     /// Regions in a frame at most, 1 to 10000. Of more objects, those with the brightest pixel are kept.
+    #[schemars(range(min = 1, max = 10000))]
     pub count: usize,
     /// Columns of a region, 1 to the columns of the detector.
+    #[schemars(range(min = 1))]
     pub columns: usize,
     /// Rows of a region, 1 to the rows of the detector.
+    #[schemars(range(min = 1))]
     pub rows: usize,
     /// Column of the region in which the first bright pixel of an object lies, from 0, below `columns`.
     pub anchor_column: usize,
@@ -61,16 +63,18 @@ impl RoiConfig {
     /// Checks every number against a detector of `columns` × `rows`.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first field outside its range.
-    pub fn check(&self, columns: usize, rows: usize) -> Result<(), SimError> {
-        let side = |limit: usize| move |v: f64| v >= 1.0 && v <= limit as f64;
-        require("roi.count", self.count as f64, "1 to 10000", side(10_000))?;
-        require("roi.columns", self.columns as f64, "1 to the detector's columns", side(columns))?;
-        require("roi.rows", self.rows as f64, "1 to the detector's rows", side(rows))?;
-        require("roi.anchor_column", self.anchor_column as f64, "0 to roi.columns − 1", |v| {
-            v < self.columns as f64
-        })?;
-        require("roi.anchor_row", self.anchor_row as f64, "0 to roi.rows − 1", |v| v < self.rows as f64)
+    /// [`OutOfRange`] for the first field outside its range.
+    pub fn check(&self, columns: usize, rows: usize) -> Result<(), OutOfRange> {
+        bounds::check(self, "roi")?;
+        for (path, side, limit, expected) in [
+            ("roi.columns", self.columns, columns, "1 to the detector's columns"),
+            ("roi.rows", self.rows, rows, "1 to the detector's rows"),
+            ("roi.anchor_column", self.anchor_column, self.columns - 1, "0 to roi.columns − 1"),
+            ("roi.anchor_row", self.anchor_row, self.rows - 1, "0 to roi.rows − 1"),
+        ] {
+            require(path, side as f64, expected, |_| side <= limit)?;
+        }
+        Ok(())
     }
 
     /// The most that a frame takes in telemetry, bytes, with a converter of `bit_depth` bits: `count` regions as
@@ -104,7 +108,7 @@ impl RoiExtractor {
     ///
     /// # Errors
     /// Those of [`RoiConfig::check`].
-    pub fn new(config: &RoiConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
+    pub fn new(config: &RoiConfig, columns: usize, rows: usize) -> Result<Self, OutOfRange> {
         config.check(columns, rows)?;
         Ok(Self {
             config: config.clone(),

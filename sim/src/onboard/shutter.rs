@@ -1,10 +1,9 @@
 //! Shutter control: the exposure as a function of the brightest object, without memory.
 
+use contract::OutOfRange;
+use contract::bounds::{self, require};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::SimError;
-use crate::error::require;
 
 /// How the exposure is chosen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -13,20 +12,26 @@ pub enum ShutterConfig {
     /// Always the same.
     Fixed {
         /// Exposure, s, 1e-6 to 1000.
+        #[schemars(range(min = 1e-6, max = 1000))]
         exposure_s: f64,
     },
     /// Shortened as the brightest object grows, so that it is not over-exposed by more than a level.
     Automatic {
         /// Shortest exposure, s, 1e-6 to `max_s`.
+        #[schemars(range(min = 1e-6, max = 1000))]
         min_s: f64,
         /// Longest exposure, s, up to 1000.
+        #[schemars(range(min = 1e-6, max = 1000))]
         max_s: f64,
         /// Level that the brightest object's peak pixel may reach, as a fraction of saturation, above 0, at most 1000. Above 1
         /// the control lets the object be over-exposed by that factor before it shortens the exposure.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
         target_level: f64,
         /// Ratio of neighbouring exposures of the ladder that the camera can command, 1.001 to 100.
+        #[schemars(range(min = 1.001, max = 100))]
         step_factor: f64,
         /// Age of the brightness that the control acts on, s, 0 to 1e5.
+        #[schemars(range(min = 0, max = 1e5))]
         lag_s: f64,
     },
 }
@@ -35,21 +40,13 @@ impl ShutterConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first field outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        let exposure = |v: f64| (1e-6..=1000.0).contains(&v);
+    /// [`OutOfRange`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "shutter")?;
         match *self {
-            Self::Fixed { exposure_s } => require("shutter.exposure_s", exposure_s, "1e-6 to 1000", exposure),
-            Self::Automatic { min_s, max_s, target_level, step_factor, lag_s } => {
-                require("shutter.max_s", max_s, "1e-6 to 1000", exposure)?;
-                require("shutter.min_s", min_s, "1e-6 to shutter.max_s", |v| exposure(v) && v <= max_s)?;
-                require("shutter.target_level", target_level, "greater than 0, at most 1000", |v| {
-                    v > 0.0 && v <= 1e3
-                })?;
-                require("shutter.step_factor", step_factor, "1.001 to 100", |v| {
-                    (1.001..=100.0).contains(&v)
-                })?;
-                require("shutter.lag_s", lag_s, "0 to 1e5", |v| (0.0..=1e5).contains(&v))
+            Self::Fixed { .. } => Ok(()),
+            Self::Automatic { min_s, max_s, .. } => {
+                require("shutter.min_s", min_s, "1e-6 to shutter.max_s", |v| v <= max_s)
             }
         }
     }
@@ -67,8 +64,8 @@ impl Shutter {
     /// The control of a camera whose pixels saturate at `saturation_e` electrons.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for a number out of range.
-    pub fn new(config: &ShutterConfig, saturation_e: f64) -> Result<Self, SimError> {
+    /// [`OutOfRange`] for a number out of range.
+    pub fn new(config: &ShutterConfig, saturation_e: f64) -> Result<Self, OutOfRange> {
         config.check()?;
         require("sensor.bias_dn", saturation_e, "below full scale (value: electrons at saturation)", |v| {
             v > 0.0

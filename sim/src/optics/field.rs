@@ -1,11 +1,9 @@
 //! What of the optics changes over the field of view.
 
-use contract::{Camera, PixelPoint};
+use contract::{Camera, OutOfRange, PixelPoint, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::switch::Switch;
 
 /// How transmission and sharpness fall towards the corners. Without it the optics are the same everywhere.
@@ -21,6 +19,7 @@ pub struct OpticsConfig {
     /// 1 up to ρ = 1.
     pub vignetting: [f64; 3],
     /// Growth a of the point-spread function: at ρ it is 1 + aρ² times as wide as at the principal point; −0.5 to 5.
+    #[schemars(range(min = -0.5, max = 5))]
     pub psf_growth: f64,
 }
 
@@ -37,20 +36,18 @@ impl OpticsConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        for i in 0..=Self::STEPS {
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "optics")?;
+        let transmission = |i: u32| {
             let rho = f64::from(i) / f64::from(Self::STEPS);
-            let transmission = self.mechanical(rho * rho);
-            if !(transmission > 0.0 && transmission <= 1.0) {
-                return Err(SimError::Parameter {
-                    field: "optics.vignetting",
-                    value: format!("{:?}", self.vignetting),
-                    expected: "a transmission above 0 and at most 1 from the principal point to the corner",
-                });
-            }
+            self.mechanical(rho * rho)
+        };
+        if (0..=Self::STEPS).map(transmission).all(|transmission| transmission > 0.0 && transmission <= 1.0) {
+            return Ok(());
         }
-        require("optics.psf_growth", self.psf_growth, "-0.5 to 5", |v| (-0.5..=5.0).contains(&v))
+        let expected = "a transmission above 0 and at most 1 from the principal point to the corner";
+        Err(OutOfRange::new("optics.vignetting", format!("{:?}", self.vignetting), expected))
     }
 
     /// The transmission that mechanical vignetting leaves at ρ².

@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use contract::{Angle, Camera, CameraFrame, Direction, PixelPoint};
+use contract::{Angle, Camera, CameraFrame, Direction, OutOfRange, PixelPoint};
 use nalgebra::Vector3;
 
 use crate::SimError;
@@ -49,8 +49,8 @@ impl Projection {
     /// The model of a camera.
     ///
     /// # Errors
-    /// [`SimError::Contract`] for a number out of range; [`SimError::Parameter`] when the distortion folds inside
-    /// the detector, so that a pixel has no direction or more than one.
+    /// [`SimError::OutOfRange`] for a number out of range, and when the distortion folds inside the detector, so that a
+    /// pixel has no direction or more than one.
     pub fn new(camera: &Camera) -> Result<Self, SimError> {
         camera.check()?;
         let (focal_x_px, focal_y_px) = camera.focal_length_px();
@@ -71,10 +71,12 @@ impl Projection {
             domain_px: distortion.one_to_one_radius(Self::DOMAIN_FACTOR * corner_px),
             half_diagonal: Angle::ZERO,
         };
-        projection.half_diagonal = projection.border_angle().ok_or_else(|| SimError::Parameter {
-            field: "camera.radial, camera.tangential",
-            value: format!("{:?}, {:?}", camera.radial, camera.tangential),
-            expected: "a distortion that does not fold inside the detector",
+        projection.half_diagonal = projection.border_angle().ok_or_else(|| {
+            OutOfRange::new(
+                "camera.radial, camera.tangential",
+                format!("{:?}, {:?}", camera.radial, camera.tangential),
+                "a distortion that does not fold inside the detector",
+            )
         })?;
         Ok(projection)
     }

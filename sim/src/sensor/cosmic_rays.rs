@@ -1,14 +1,13 @@
 //! Cosmic rays: straight tracks of charge through the sensitive layer.
 
-use contract::{Camera, PixelPoint};
+use contract::bounds::require;
+use contract::{Camera, OutOfRange, PixelPoint};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::poisson::poisson;
-use crate::SimError;
-use crate::error::require;
 use crate::optics::Stamp;
 use crate::randomness::{Effect, Seed, Stream, normal, uniform};
 use crate::truth::geographic;
@@ -19,19 +18,24 @@ use crate::truth::geographic;
 pub struct CosmicRayConfig {
     /// Particles through the detector's face outside the South Atlantic Anomaly, a second and cm², 0 to 1e4. The Hubble
     /// Space Telescope's CCDs see about 1 (Miles et al., ApJ 918, 86, 2021).
+    #[schemars(range(min = 0, max = 1e4))]
     pub rate_per_cm2_s: f64,
     /// Thickness of the layer from which charge is collected, µm, 0.1 to 1000.
+    #[schemars(range(min = 0.1, max = 1000))]
     pub thickness_um: f64,
     /// Time besides the exposure in which the detector collects hits, s, 0 to 1000: storage and readout.
     #[serde(default)]
+    #[schemars(range(min = 0, max = 1000))]
     pub readout_s: f64,
     /// Mean charge along a track, electrons a µm, 1 to 1e5. A minimum ionising particle leaves about 80 in silicon; slow
     /// protons leave more.
     #[serde(default = "minimum_ionising")]
+    #[schemars(range(min = 1, max = 1e5))]
     pub mean_e_per_um: f64,
     /// Scale of the fluctuation of that charge, electrons a µm, 0 to 1e4: the width ξ of Landau's law. In silicon 4.9
     /// (ξ of 17.8 eV/µm, and 3.65 eV a pair; Particle Data Group, Passage of particles through matter, Sec. 34.2.9).
     #[serde(default = "landau_width")]
+    #[schemars(range(min = 0, max = 1e4))]
     pub landau_e_per_um: f64,
     /// The South Atlantic Anomaly; without the table the rate is the same all along the orbit.
     #[serde(default)]
@@ -56,14 +60,19 @@ fn landau_width() -> f64 {
 #[serde(deny_unknown_fields, default)]
 pub struct SouthAtlanticConfig {
     /// Rate at the centre over the rate outside, 1 to 1e5.
+    #[schemars(range(min = 1, max = 1e5))]
     pub peak_factor: f64,
     /// Latitude of the centre, degrees, −90 to 90.
+    #[schemars(range(min = -90, max = 90))]
     pub latitude_deg: f64,
     /// Longitude of the centre, degrees east, −180 to 180.
+    #[schemars(range(min = -180, max = 180))]
     pub longitude_deg: f64,
     /// Standard deviation in latitude, degrees, 1 to 90.
+    #[schemars(range(min = 1, max = 90))]
     pub latitude_sigma_deg: f64,
     /// Standard deviation in longitude, degrees, 1 to 180.
+    #[schemars(range(min = 1, max = 180))]
     pub longitude_sigma_deg: f64,
 }
 
@@ -91,28 +100,12 @@ impl SouthAtlanticConfig {
 }
 
 impl CosmicRayConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        let within = |low: f64, high: f64| move |v: f64| (low..=high).contains(&v);
-        let field = "sensor.cosmic_rays.rate_per_cm2_s";
-        require(field, self.rate_per_cm2_s, "0 to 1e4", within(0.0, 1e4))?;
-        require("sensor.cosmic_rays.thickness_um", self.thickness_um, "0.1 to 1000", within(0.1, 1000.0))?;
-        require("sensor.cosmic_rays.readout_s", self.readout_s, "0 to 1000", within(0.0, 1000.0))?;
-        require("sensor.cosmic_rays.mean_e_per_um", self.mean_e_per_um, "1 to 1e5", within(1.0, 1e5))?;
-        require("sensor.cosmic_rays.landau_e_per_um", self.landau_e_per_um, "0 to 1e4", within(0.0, 1e4))?;
+    /// Bounds the number of tracks in a frame.
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
         let Some(bump) = &self.south_atlantic else { return Ok(()) };
-        let field = "sensor.cosmic_rays.south_atlantic.peak_factor";
-        require(field, bump.peak_factor, "1 to 1e5", within(1.0, 1e5))?;
-        // Bounds the number of tracks in a frame.
+        let expected = "at most 1e5 particles a second and cm², times the rate";
         let peak = self.rate_per_cm2_s * bump.peak_factor;
-        require(field, peak, "at most 1e5 particles a second and cm², times the rate", |v| v <= 1e5)?;
-        let field = "sensor.cosmic_rays.south_atlantic.latitude_deg";
-        require(field, bump.latitude_deg, "-90 to 90", within(-90.0, 90.0))?;
-        let field = "sensor.cosmic_rays.south_atlantic.longitude_deg";
-        require(field, bump.longitude_deg, "-180 to 180", within(-180.0, 180.0))?;
-        let field = "sensor.cosmic_rays.south_atlantic.latitude_sigma_deg";
-        require(field, bump.latitude_sigma_deg, "1 to 90", within(1.0, 90.0))?;
-        let field = "sensor.cosmic_rays.south_atlantic.longitude_sigma_deg";
-        require(field, bump.longitude_sigma_deg, "1 to 180", within(1.0, 180.0))
+        require("sensor.cosmic_rays.south_atlantic.peak_factor", peak, expected, |v| v <= 1e5)
     }
 }
 
@@ -138,15 +131,15 @@ pub(crate) struct Track {
 }
 
 impl CosmicRays {
-    pub(crate) fn new(config: &CosmicRayConfig, camera: &Camera) -> Result<Self, SimError> {
-        config.check()?;
-        Ok(Self {
+    /// Of a configuration that was checked with its sensor.
+    pub(crate) fn new(config: &CosmicRayConfig, camera: &Camera) -> Self {
+        Self {
             config: config.clone(),
             columns: camera.columns,
             rows: camera.rows,
             pixel_width_um: camera.pixel_width_um,
             pixel_height_um: camera.pixel_height_um,
-        })
+        }
     }
 
     /// Particles a second and cm² at a place: `position_km` from the centre of the Earth in ICRS axes.

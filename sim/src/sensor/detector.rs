@@ -25,7 +25,7 @@ impl Sensor {
     /// A sensor of `columns` × `rows` pixels.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for a number out of range.
+    /// [`SimError::OutOfRange`] for a number out of range.
     pub fn new(config: &SensorConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
         config.check()?;
         let warmth = config.temperature.factor();

@@ -2,12 +2,11 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use contract::OutOfRange;
 use rand::Rng;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::pixel_factors::PixelFactors;
 use crate::randomness::{Effect, Seed, Streams, normal};
 
@@ -31,26 +30,20 @@ pub struct FixedPatternConfig {
     pub seed: u64,
     /// Photo-response non-uniformity (PRNU): standard deviation of the pixels' sensitivity to light as a fraction of its
     /// mean, 0 to 0.3. Normal, cut at 0.
+    #[schemars(range(min = 0, max = 0.3))]
     pub prnu_fraction: f64,
     /// Dark-signal non-uniformity (DSNU): standard deviation of the pixels' dark current as a fraction of its mean, 0 to 5.
+    #[schemars(range(min = 0, max = 5))]
     pub dsnu_fraction: f64,
     /// Law of the dark currents.
     pub dsnu_law: DarkLaw,
     /// Standard deviation of the columns' offsets, which are added to every frame, electrons, 0 to 500. Normal.
+    #[schemars(range(min = 0, max = 500))]
     pub column_offset_e: f64,
     /// Number of dead pixels, at most a tenth of all; they collect nothing, neither light nor dark current.
     pub dead_pixels: usize,
     /// Number of dead columns, at most a tenth of all.
     pub dead_columns: usize,
-}
-
-impl FixedPatternConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        let within = |low: f64, high: f64| move |v: f64| (low..=high).contains(&v);
-        require("sensor.fixed_pattern.prnu_fraction", self.prnu_fraction, "0 to 0.3", within(0.0, 0.3))?;
-        require("sensor.fixed_pattern.dsnu_fraction", self.dsnu_fraction, "0 to 5", within(0.0, 5.0))?;
-        require("sensor.fixed_pattern.column_offset_e", self.column_offset_e, "0 to 500", within(0.0, 500.0))
-    }
 }
 
 /// The fixed pattern of a detector, made once; empty where an effect is off.
@@ -77,7 +70,7 @@ impl FixedPattern {
     ///
     /// # Errors
     /// As [`FixedPattern::new`].
-    pub(super) fn of(config: &FixedPatternConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
+    pub(super) fn of(config: &FixedPatternConfig, columns: usize, rows: usize) -> Result<Self, OutOfRange> {
         // A thread that panicked while it held the pattern cannot have left half of one.
         let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
         let size = [columns, rows];
@@ -92,8 +85,8 @@ impl FixedPattern {
     }
 
     /// # Errors
-    /// [`SimError::Parameter`] when more than a tenth of all pixels or columns would be dead.
-    pub(super) fn new(config: &FixedPatternConfig, columns: usize, rows: usize) -> Result<Self, SimError> {
+    /// [`OutOfRange`] when more than a tenth of all pixels or columns would be dead.
+    pub(super) fn new(config: &FixedPatternConfig, columns: usize, rows: usize) -> Result<Self, OutOfRange> {
         let seed = Seed { seed: config.seed, case: 0 };
         let standard = |effect: Effect, number: usize| normal(&mut seed.stream(0, effect, number as u64));
         let pixels = |on: bool| 0..if on { columns * rows } else { 0 };
@@ -131,7 +124,7 @@ fn dead(
     seed: Seed,
     columns: usize,
     rows: usize,
-) -> Result<Vec<(usize, usize)>, SimError> {
+) -> Result<Vec<(usize, usize)>, OutOfRange> {
     for (field, count, of, expected) in [
         (
             "sensor.fixed_pattern.dead_pixels",
@@ -142,7 +135,7 @@ fn dead(
         ("sensor.fixed_pattern.dead_columns", config.dead_columns, columns, "at most a tenth of all columns"),
     ] {
         if count > of / 10 {
-            return Err(SimError::Parameter { field, value: count.to_string(), expected });
+            return Err(OutOfRange::new(field, count, expected));
         }
     }
     let pixels = distinct(config.dead_pixels, columns * rows, seed.streams(0, Effect::DeadPixels));

@@ -1,10 +1,10 @@
 //! Hot pixels: a fixed pattern of high dark currents.
 
+use contract::OutOfRange;
 use rand::Rng;
 
 use super::config::{HotLaw, HotPixelConfig};
 use super::telegraph::switches;
-use crate::SimError;
 use crate::randomness::{Effect, Seed, Stream, normal, uniform};
 
 /// A pixel with a high dark current.
@@ -24,21 +24,21 @@ pub struct HotPixel {
 /// adds pixels and keeps the ones there were. `warmth` multiplies the currents.
 ///
 /// # Errors
-/// [`SimError::Parameter`] when more than a tenth of all pixels would be hot.
+/// [`OutOfRange`] when more than a tenth of all pixels would be hot.
 pub(super) fn hot_pixels(
     config: &HotPixelConfig,
     columns: usize,
     rows: usize,
     warmth: f64,
-) -> Result<Vec<HotPixel>, SimError> {
+) -> Result<Vec<HotPixel>, OutOfRange> {
     let pixels = columns * rows;
     // So few that a place drawn at random is free nine times in ten.
     if config.count > pixels / 10 {
-        return Err(SimError::Parameter {
-            field: "sensor.hot_pixels.count",
-            value: config.count.to_string(),
-            expected: "at most a tenth of all pixels",
-        });
+        return Err(OutOfRange::new(
+            "sensor.hot_pixels.count",
+            config.count,
+            "at most a tenth of all pixels",
+        ));
     }
     let streams = Seed { seed: config.seed, case: 0 }.streams(0, Effect::HotPixels);
     let mut taken = vec![false; if config.count > 0 { pixels } else { 0 }];

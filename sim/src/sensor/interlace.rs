@@ -3,9 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
-
 /// Rows of one field, counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -25,18 +22,13 @@ pub enum RowParity {
 pub struct InterlaceConfig {
     /// Time from the middle of the first field's exposure to that of the second's, s, 0 to 10; 0.02 in a 50-field (PAL)
     /// and 1.001/60 in a 60-field (NTSC) camera.
+    #[schemars(range(min = 0, max = 10))]
     pub field_interval_s: f64,
     /// Rows of the field that is exposed first, counted from 0.
     pub first_field: RowParity,
 }
 
 impl InterlaceConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("sensor.interlace.field_interval_s", self.field_interval_s, "0 to 10", |v| {
-            (0.0..=10.0).contains(&v)
-        })
-    }
-
     /// Middle of the exposure of the first and of the second field, s from the time of the frame.
     pub fn offsets_s(&self) -> [f64; 2] {
         [-0.5 * self.field_interval_s, 0.5 * self.field_interval_s]
@@ -94,7 +86,8 @@ mod tests {
     #[test]
     fn an_interval_out_of_range_is_named() {
         for field_interval_s in [-0.02, 10.5, f64::NAN] {
-            let message = InterlaceConfig { field_interval_s, ..PAL }.check().unwrap_err().to_string();
+            let config = InterlaceConfig { field_interval_s, ..PAL };
+            let message = contract::bounds::check(&config, "sensor.interlace").unwrap_err().to_string();
             assert!(message.starts_with("sensor.interlace.field_interval_s"), "{message}");
         }
     }

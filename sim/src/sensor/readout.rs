@@ -1,5 +1,7 @@
 //! From expected photo-electrons to digital numbers.
 
+use contract::OutOfRange;
+
 use super::blooming::Overflow;
 use super::charge::Charge;
 use super::detector::Sensor;
@@ -19,7 +21,7 @@ impl Sensor {
     /// never changes the draw of another.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when the image is not of the sensor's size.
+    /// [`SimError::OutOfRange`] when the image is not of the sensor's size.
     pub fn read_out(
         &self,
         charge: &Charge<'_>,
@@ -47,15 +49,15 @@ impl Sensor {
     }
 
     /// Refuses an image that is not of the sensor's size.
-    pub(super) fn check_size(&self, expected: &ExpectedImage) -> Result<(), SimError> {
+    pub(super) fn check_size(&self, expected: &ExpectedImage) -> Result<(), OutOfRange> {
         if expected.size() == (self.columns, self.rows) {
             return Ok(());
         }
-        Err(SimError::Parameter {
-            field: "size of the expected image",
-            value: format!("{:?}", expected.size()),
-            expected: "the columns and rows of the sensor",
-        })
+        Err(OutOfRange::new(
+            "size of the expected image",
+            format!("{:?}", expected.size()),
+            "the columns and rows of the sensor",
+        ))
     }
 
     /// What the readout adds to rows and columns: noise of this frame, and the fixed offsets. `None` when there is none of

@@ -3,9 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
-
 /// Blooming of a CCD: charge above the full well spills to the neighbours up and down the column. Columns are parted
 /// by channel stops, so that nothing goes sideways.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -13,14 +10,11 @@ use crate::error::require;
 pub struct BloomingConfig {
     /// Part of the charge above the full well that spills, 0 to 1; anti-blooming drains take the rest at once. 1: a
     /// detector without drains; 0: all the excess is lost.
+    #[schemars(range(min = 0, max = 1))]
     pub spill_fraction: f64,
 }
 
 impl BloomingConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("sensor.blooming.spill_fraction", self.spill_fraction, "0 to 1", |v| (0.0..=1.0).contains(&v))
-    }
-
     /// Lets the charge of one column spill until no pixel holds more than `full_well_e`. `column` has the electrons of
     /// its pixels, top to bottom; whole numbers stay whole. What leaves at either end is lost.
     ///

@@ -4,8 +4,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::poisson::poisson;
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::{Effect, Seed, Stream, uniform};
 
 /// Random telegraph switching of a part of the hot pixels, as protons leave it in silicon (Hopkins & Hopkinson, "Random
@@ -14,24 +12,20 @@ use crate::randomness::{Effect, Seed, Stream, uniform};
 #[serde(deny_unknown_fields)]
 pub struct TelegraphConfig {
     /// Part of the hot pixels that switch, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub fraction: f64,
     /// Dark current in the low state as a part of that in the high one, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub low_level: f64,
     /// Mean time in the high state, s, 0.1 to 1e7.
+    #[schemars(range(min = 0.1, max = 1e7))]
     pub high_s: f64,
     /// Mean time in the low state, s, 0.1 to 1e7.
+    #[schemars(range(min = 0.1, max = 1e7))]
     pub low_s: f64,
 }
 
 impl TelegraphConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        let within = |low: f64, high: f64| move |v: f64| (low..=high).contains(&v);
-        require("sensor.hot_pixels.telegraph.fraction", self.fraction, "0 to 1", within(0.0, 1.0))?;
-        require("sensor.hot_pixels.telegraph.low_level", self.low_level, "0 to 1", within(0.0, 1.0))?;
-        require("sensor.hot_pixels.telegraph.high_s", self.high_s, "0.1 to 1e7", within(0.1, 1e7))?;
-        require("sensor.hot_pixels.telegraph.low_s", self.low_s, "0.1 to 1e7", within(0.1, 1e7))
-    }
-
     /// Mean dark current of a switching pixel from `from_s` to `to_s`, as a part of that in the high state.
     ///
     /// The process has a memory, yet any time can be had alone. At the events of a Poisson process of the rate

@@ -3,9 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
-
 /// Gain that brings the mean of the picture towards a set value.
 ///
 /// It looks at the noise-free light of the field itself, so that any field can be made alone: a real loop looks back over
@@ -15,12 +12,16 @@ use crate::error::require;
 #[serde(deny_unknown_fields, default)]
 pub struct AutoGainConfig {
     /// Mean of the picture that is steered to, in units of the white level, 0.01 to 1.
+    #[schemars(range(min = 0.01, max = 1))]
     pub mean: f64,
     /// Share of the (logarithmic) difference that is taken away, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub strength: f64,
     /// Least gain, 0.01 to 1.
+    #[schemars(range(min = 0.01, max = 1))]
     pub least: f64,
     /// Greatest gain, 1 to 100.
+    #[schemars(range(min = 1, max = 100))]
     pub greatest: f64,
 }
 
@@ -31,13 +32,6 @@ impl Default for AutoGainConfig {
 }
 
 impl AutoGainConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("television.auto_gain.mean", self.mean, "0.01 to 1", |v| (0.01..=1.0).contains(&v))?;
-        require("television.auto_gain.strength", self.strength, "0 to 1", |v| (0.0..=1.0).contains(&v))?;
-        require("television.auto_gain.least", self.least, "0.01 to 1", |v| (0.01..=1.0).contains(&v))?;
-        require("television.auto_gain.greatest", self.greatest, "1 to 100", |v| (1.0..=100.0).contains(&v))
-    }
-
     /// The gain for a picture of this mean, in units of the white level.
     pub(super) fn gain(&self, mean: f64) -> f64 {
         // A dark picture would ask for any gain.

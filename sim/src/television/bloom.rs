@@ -3,8 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::optics::{correlate, gaussian_kernel, pad};
 
 /// Side of the cells on which the halo is computed, px of the camera.
@@ -18,21 +16,16 @@ const MOST_EXCESS: f32 = 30.0;
 #[serde(deny_unknown_fields, default)]
 pub struct BloomConfig {
     /// Share of the light above white that goes into the halo, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub share: f64,
     /// Standard deviation of the halo, px of the camera, 4 to 200.
+    #[schemars(range(min = 4, max = 200))]
     pub sigma_px: f64,
 }
 
 impl Default for BloomConfig {
     fn default() -> Self {
         Self { share: 0.1, sigma_px: 14.0 }
-    }
-}
-
-impl BloomConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("television.bloom.share", self.share, "0 to 1", |v| (0.0..=1.0).contains(&v))?;
-        require("television.bloom.sigma_px", self.sigma_px, "4 to 200", |v| (4.0..=200.0).contains(&v))
     }
 }
 

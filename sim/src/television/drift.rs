@@ -2,15 +2,12 @@
 
 use std::f64::consts::PI;
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::{Effect, Seed, uniform};
-
-/// Most sinusoids.
-const MAX_PERIODS: usize = 16;
 
 /// Contrast and brightness of the camera as sums of sinusoids of equal strength whose phases are drawn from the seed: a
 /// function of time, with no memory.
@@ -18,10 +15,13 @@ const MAX_PERIODS: usize = 16;
 #[serde(deny_unknown_fields, default)]
 pub struct DriftConfig {
     /// Root mean square of the relative change of contrast, 0 to 0.3.
+    #[schemars(range(min = 0, max = 0.3))]
     pub contrast_rms: f64,
     /// Root mean square of the change of brightness, in units of the white level, 0 to 0.3.
+    #[schemars(range(min = 0, max = 0.3))]
     pub brightness_rms: f64,
     /// Periods, s, 0.1 to 1e5, 1 to 16 of them.
+    #[schemars(length(min = 1, max = 16), inner(range(min = 0.1, max = 1e5)))]
     pub periods_s: Vec<f64>,
 }
 
@@ -32,23 +32,14 @@ impl Default for DriftConfig {
 }
 
 impl DriftConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        let share = |v: f64| (0.0..=0.3).contains(&v);
-        require("television.drift.contrast_rms", self.contrast_rms, "0 to 0.3", share)?;
-        require("television.drift.brightness_rms", self.brightness_rms, "0 to 0.3", share)?;
-        require("television.drift.periods_s (how many)", self.periods_s.len() as f64, "1 to 16", |n| {
-            (1.0..=MAX_PERIODS as f64).contains(&n)
-        })?;
-        // The sinusoids may meet: then they change contrast by √(2 n) times the root mean square.
+    /// The sinusoids may meet: then they change contrast by √(2 n) times the root mean square.
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
         require(
             "television.drift.contrast_rms",
             self.contrast_rms,
             "less than 1/√(2 × number of periods), so that contrast stays positive",
             |rms| rms * libm::sqrt(2.0 * self.periods_s.len() as f64) < 1.0,
-        )?;
-        self.periods_s.iter().try_for_each(|&period| {
-            require("television.drift.periods_s", period, "0.1 to 1e5", |p| (0.1..=1e5).contains(&p))
-        })
+        )
     }
 
     /// Contrast (about 1) and brightness (about 0) at a time.

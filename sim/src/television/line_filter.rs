@@ -5,8 +5,6 @@ use std::f64::consts::PI;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::optics::{correlate, pad};
 
 /// Limited bandwidth of the video channel: the discrete Gaussian along the line, weights exp(−σ²) I_n(σ²) of the modified
@@ -18,6 +16,7 @@ use crate::optics::{correlate, pad};
 #[serde(deny_unknown_fields, default)]
 pub struct BandwidthConfig {
     /// Standard deviation along the line, px, 0 to 10.
+    #[schemars(range(min = 0, max = 10))]
     pub sigma_px: f64,
 }
 
@@ -27,21 +26,18 @@ impl Default for BandwidthConfig {
     }
 }
 
-impl BandwidthConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("television.bandwidth.sigma_px", self.sigma_px, "0 to 10", |v| (0.0..=10.0).contains(&v))
-    }
-}
-
 /// Ringing: an edge of the height 1 is followed by amplitude × exp(−x/decay) sin(2π x/period), x pixels after it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RingingConfig {
     /// Amplitude, in units of the edge, 0 to 0.5.
+    #[schemars(range(min = 0, max = 0.5))]
     pub amplitude: f64,
     /// Period, px, 2 to 50.
+    #[schemars(range(min = 2, max = 50))]
     pub period_px: f64,
     /// Decay to 1/e, px, 0.5 to 20.
+    #[schemars(range(min = 0.5, max = 20))]
     pub decay_px: f64,
 }
 
@@ -52,12 +48,6 @@ impl Default for RingingConfig {
 }
 
 impl RingingConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("television.ringing.amplitude", self.amplitude, "0 to 0.5", |v| (0.0..=0.5).contains(&v))?;
-        require("television.ringing.period_px", self.period_px, "2 to 50", |v| (2.0..=50.0).contains(&v))?;
-        require("television.ringing.decay_px", self.decay_px, "0.5 to 20", |v| (0.5..=20.0).contains(&v))
-    }
-
     /// The impulse response from the edge on: differences of the response to an edge, of unit sum.
     fn impulse(&self) -> Vec<f64> {
         let edge = |i: i32| {

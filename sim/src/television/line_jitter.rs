@@ -4,8 +4,6 @@ use contract::docking::Lines;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::optics::pad;
 use crate::randomness::{Effect, Seed, normal};
 use crate::widest::arch;
@@ -19,6 +17,7 @@ const MOST_PX: f64 = 8.0;
 #[serde(deny_unknown_fields, default)]
 pub struct LineJitterConfig {
     /// Standard deviation of the shift, px, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub sigma_px: f64,
 }
 
@@ -29,10 +28,6 @@ impl Default for LineJitterConfig {
 }
 
 impl LineJitterConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("television.line_jitter.sigma_px", self.sigma_px, "0 to 1", |v| (0.0..=1.0).contains(&v))
-    }
-
     /// Shift of a row of the camera in a field, px, to the right.
     pub(super) fn shift_px(&self, seed: &Seed, field: u64, row: usize) -> f64 {
         let mut stream = seed.stream(field, Effect::LineJitter, row as u64);

@@ -6,8 +6,6 @@ use contract::docking::Lines;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::{Effect, Seed, normal};
 
 /// Added to every pixel of a line: a band that wanders over the picture, and a normal number of the line.
@@ -15,12 +13,16 @@ use crate::randomness::{Effect, Seed, normal};
 #[serde(deny_unknown_fields, default)]
 pub struct LineLevelConfig {
     /// Amplitude of the hum, in units of the white level, 0 to 0.5.
+    #[schemars(range(min = 0, max = 0.5))]
     pub hum_amplitude: f64,
     /// Rows of the camera from one band of the hum to the next, 2 to 10000.
+    #[schemars(range(min = 2, max = 10000))]
     pub hum_period_rows: f64,
     /// Bands of the hum that pass a row in a second, −25 to 25, Hz.
+    #[schemars(range(min = -25, max = 25))]
     pub hum_beat_hz: f64,
     /// Standard deviation of a line's own level, in units of the white level, 0 to 0.5.
+    #[schemars(range(min = 0, max = 0.5))]
     pub line_sigma: f64,
 }
 
@@ -31,16 +33,6 @@ impl Default for LineLevelConfig {
 }
 
 impl LineLevelConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        let level = |v: f64| (0.0..=0.5).contains(&v);
-        require("television.line_level.hum_amplitude", self.hum_amplitude, "0 to 0.5", level)?;
-        require("television.line_level.hum_period_rows", self.hum_period_rows, "2 to 10000", |v| {
-            (2.0..=1e4).contains(&v)
-        })?;
-        require("television.line_level.hum_beat_hz", self.hum_beat_hz, "-25 to 25", |v| v.abs() <= 25.0)?;
-        require("television.line_level.line_sigma", self.line_sigma, "0 to 0.5", level)
-    }
-
     /// Level of a row of the camera in a field exposed at a time.
     pub(super) fn level(&self, seed: &Seed, field: u64, row: usize, time_s: f64) -> f64 {
         let turns = row as f64 / self.hum_period_rows - self.hum_beat_hz * time_s;

@@ -4,8 +4,6 @@ use contract::docking::Lines;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::{Effect, Seed, uniform};
 
 /// Some lines are lost; one half of them shows snow, the other the line before.
@@ -13,6 +11,7 @@ use crate::randomness::{Effect, Seed, uniform};
 #[serde(deny_unknown_fields, default)]
 pub struct LostLinesConfig {
     /// Probability of a line to be lost, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub probability: f64,
 }
 
@@ -23,10 +22,6 @@ impl Default for LostLinesConfig {
 }
 
 impl LostLinesConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("television.lost_lines.probability", self.probability, "0 to 1", |p| (0.0..=1.0).contains(&p))
-    }
-
     /// Replaces the lost lines of a field; how many there were.
     pub(super) fn apply(
         &self,

@@ -18,11 +18,10 @@ mod sun_glare;
 mod video;
 
 use contract::docking::Lines;
+use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::Seed;
 use crate::sensor::Ziggurat;
 pub use auto_gain::AutoGainConfig;
@@ -85,13 +84,17 @@ pub struct TelevisionConfig {
     /// Which rows are exposed together: top_first, bottom_first, off.
     pub interlace: Interlace,
     /// Frames a second, Hz, 1 to 1000; twice as many fields when interlaced.
+    #[schemars(range(min = 1, max = 1000))]
     pub frame_rate_hz: f64,
     /// Radiance of the white level at a gain of 1, in the units of the lighting (a white surface that faces the Sun has
     /// irradiance/π), 1e-6 to 1e6.
+    #[schemars(range(min = 1e-6, max = 1e6))]
     pub white_radiance: f64,
     /// Signal of a black scene, in units of the white level, −0.5 to 0.5: above 0, so that noise is not clipped.
+    #[schemars(range(min = -0.5, max = 0.5))]
     pub pedestal: f64,
     /// Signal at which the camera clips, in units of the white level, 1 to 10.
+    #[schemars(range(min = 1, max = 10))]
     pub clip_level: f64,
     /// Noise.
     pub noise: VideoNoiseConfig,
@@ -172,25 +175,10 @@ impl TelevisionConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        require("television.frame_rate_hz", self.frame_rate_hz, "1 to 1000", |v| (1.0..=1e3).contains(&v))?;
-        require("television.white_radiance", self.white_radiance, "1e-6 to 1e6", |v| {
-            (1e-6..=1e6).contains(&v)
-        })?;
-        require("television.pedestal", self.pedestal, "-0.5 to 0.5", |v| v.abs() <= 0.5)?;
-        require("television.clip_level", self.clip_level, "1 to 10", |v| (1.0..=10.0).contains(&v))?;
-        self.noise.check()?;
-        self.drift.as_ref().map_or(Ok(()), DriftConfig::check)?;
-        self.auto_gain.as_ref().map_or(Ok(()), AutoGainConfig::check)?;
-        self.bloom.as_ref().map_or(Ok(()), BloomConfig::check)?;
-        self.sun_glare.as_ref().map_or(Ok(()), SunGlareConfig::check)?;
-        self.bandwidth.as_ref().map_or(Ok(()), BandwidthConfig::check)?;
-        self.ringing.as_ref().map_or(Ok(()), RingingConfig::check)?;
-        self.line_jitter.as_ref().map_or(Ok(()), LineJitterConfig::check)?;
-        self.lost_lines.as_ref().map_or(Ok(()), LostLinesConfig::check)?;
-        self.line_level.as_ref().map_or(Ok(()), LineLevelConfig::check)?;
-        self.overlay.as_ref().map_or(Ok(()), OverlayConfig::check)
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "television")?;
+        self.drift.as_ref().map_or(Ok(()), DriftConfig::check)
     }
 
     /// Fields (or progressive frames) a second.

@@ -5,8 +5,6 @@ use rand::Rng;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::{Effect, Seed};
 use crate::sensor::Ziggurat;
 
@@ -15,6 +13,7 @@ use crate::sensor::Ziggurat;
 #[serde(deny_unknown_fields, default)]
 pub struct VideoNoiseConfig {
     /// Standard deviation, in 1/255 of the white level (8-bit digital numbers at a contrast of 1), 0 to 100; 0 is without.
+    #[schemars(range(min = 0, max = 100))]
     pub sigma_dn8: f64,
 }
 
@@ -25,10 +24,6 @@ impl Default for VideoNoiseConfig {
 }
 
 impl VideoNoiseConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("television.noise.sigma_dn8", self.sigma_dn8, "0 to 100", |v| (0.0..=100.0).contains(&v))
-    }
-
     /// Adds noise to the lines of a field. A row of the camera has one stream, at place = row, of which every two pixels take one
     /// word, the left one its lower half; one whose half does not decide goes on at an address of its own.
     pub(super) fn apply(

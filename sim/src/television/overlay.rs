@@ -5,8 +5,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::glyphs::{Glyphs, field_row};
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::{Effect, Seed, normal};
 
 /// Rows of the camera for which the sizes below hold; they go with its rows.
@@ -28,28 +26,19 @@ const RETICLE_PX: (f64, f64, f64) = (40.0, 30.0, 1.4);
 #[serde(deny_unknown_fields, default)]
 pub struct OverlayConfig {
     /// Level of lines and text, in units of the white level, 0 to 2.
+    #[schemars(range(min = 0, max = 2))]
     pub level: f64,
     /// Standard deviation of the range that the text says, as a part of it, 0 to 0.5; drawn anew each second.
+    #[schemars(range(min = 0, max = 0.5))]
     pub range_error: f64,
     /// Standard deviation of the range rate that the text says, m/s, 0 to 10; drawn anew each second.
+    #[schemars(range(min = 0, max = 10))]
     pub range_rate_error_m_s: f64,
 }
 
 impl Default for OverlayConfig {
     fn default() -> Self {
         Self { level: 0.95, range_error: 0.01, range_rate_error_m_s: 0.02 }
-    }
-}
-
-impl OverlayConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        require("television.overlay.level", self.level, "0 to 2", |v| (0.0..=2.0).contains(&v))?;
-        require("television.overlay.range_error", self.range_error, "0 to 0.5", |v| {
-            (0.0..=0.5).contains(&v)
-        })?;
-        require("television.overlay.range_rate_error_m_s", self.range_rate_error_m_s, "0 to 10", |v| {
-            (0.0..=10.0).contains(&v)
-        })
     }
 }
 

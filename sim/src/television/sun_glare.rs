@@ -5,23 +5,25 @@ use contract::docking::Lines;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
-
 /// What the Sun does to the picture when it is in the field of view, in units of the white level; the part of it that the
 /// scene hides is taken off all of it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct SunGlareConfig {
     /// Level of the disk, 0 to 1e4.
+    #[schemars(range(min = 0, max = 1e4))]
     pub disk_level: f64,
     /// Veiling glare: level at the edge of the disk, 0 to 10. It falls as 1/(1 + (θ/θ0)²).
+    #[schemars(range(min = 0, max = 10))]
     pub veil_level: f64,
     /// θ0 of the veiling glare, degrees, 0.1 to 90.
+    #[schemars(range(min = 0.1, max = 90))]
     pub veil_half_angle_deg: f64,
     /// Level of a streak along the column through the Sun, 0 to 10.
+    #[schemars(range(min = 0, max = 10))]
     pub streak_level: f64,
     /// Level of the ghost, a disk three times the Sun's opposite to it about the principal point, 0 to 10.
+    #[schemars(range(min = 0, max = 10))]
     pub ghost_level: f64,
 }
 
@@ -34,21 +36,6 @@ impl Default for SunGlareConfig {
             streak_level: 0.25,
             ghost_level: 0.08,
         }
-    }
-}
-
-impl SunGlareConfig {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        let level = |v: f64| (0.0..=10.0).contains(&v);
-        require("television.sun_glare.disk_level", self.disk_level, "0 to 1e4", |v| {
-            (0.0..=1e4).contains(&v)
-        })?;
-        require("television.sun_glare.veil_level", self.veil_level, "0 to 10", level)?;
-        require("television.sun_glare.veil_half_angle_deg", self.veil_half_angle_deg, "0.1 to 90", |v| {
-            (0.1..=90.0).contains(&v)
-        })?;
-        require("television.sun_glare.streak_level", self.streak_level, "0 to 10", level)?;
-        require("television.sun_glare.ghost_level", self.ghost_level, "0 to 10", level)
     }
 }
 

@@ -5,12 +5,12 @@
 //! Written from the papers and held against ERFA (`golden/apparent`). Neglected: deflection by planets (16 mas at
 //! Jupiter's limb, under 1 mas from 6′ on) and by the Earth (0.4 mas at its limb from a low orbit).
 
-use contract::{Direction, Icrs};
+use contract::bounds::require;
+use contract::{Direction, Icrs, OutOfRange};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
 use super::{clock, ephemeris};
-use crate::SimError;
 use crate::catalog::CatalogStar;
 use crate::constants::{AU_KM, LIGHT_SPEED_KM_S};
 
@@ -80,7 +80,7 @@ impl Observer {
     /// `velocity_km_s`, ICRS axes.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when the time is outside [`ephemeris::COVERAGE`], or the observer farther from the
+    /// [`OutOfRange`] when the time is outside [`ephemeris::COVERAGE`], or the observer farther from the
     /// Earth than 10⁷ km or faster than 1000 km/s, or a number is not finite.
     ///
     /// ```
@@ -97,22 +97,14 @@ impl Observer {
         time: Epoch,
         position_km: Vector3<f64>,
         velocity_km_s: Vector3<f64>,
-    ) -> Result<Self, SimError> {
-        crate::error::require("observer.position_km", position_km.norm(), "a length of at most 1e7", |d| {
-            d <= FARTHEST_KM
+    ) -> Result<Self, OutOfRange> {
+        require("observer.position_km", position_km.norm(), "a length of at most 1e7", |d| d <= FARTHEST_KM)?;
+        require("observer.velocity_km_s", velocity_km_s.norm(), "a length of at most 1000", |v| {
+            v <= FASTEST_KM_S
         })?;
-        crate::error::require(
-            "observer.velocity_km_s",
-            velocity_km_s.norm(),
-            "a length of at most 1000",
-            |v| v <= FASTEST_KM_S,
-        )?;
         let tdb_s = clock::tdb_j2000_s(time);
-        let earth = ephemeris::earth(tdb_s).ok_or_else(|| SimError::Parameter {
-            field: "time",
-            value: clock::format_utc(time),
-            expected: ephemeris::COVERAGE_TEXT,
-        })?;
+        let earth = ephemeris::earth(tdb_s)
+            .ok_or_else(|| OutOfRange::new("time", clock::format_utc(time), ephemeris::COVERAGE_TEXT))?;
 
         let from_sun_km = earth.position_km + position_km - earth.sun_position_km;
         let sun_distance_km = from_sun_km.norm();

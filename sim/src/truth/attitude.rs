@@ -1,16 +1,15 @@
 //! The true attitude of the chaser: guidance through the nominal mounting, plus what control does not achieve.
 
-use contract::{Body, CameraFrame, Icrs, Rotation};
+use contract::bounds::{self, require};
+use contract::{Body, CameraFrame, Icrs, OutOfRange, Rotation};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::drift::{Drift, DriftConfig, check_axes, radians, turned_by, white};
+use super::drift::{Drift, DriftConfig, radians, turned_by, white};
 use super::guidance::Guidance;
 use super::mounting::MountingConfig;
 use super::trajectory::States;
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::{Effect, Seed};
 use crate::switch::Switch;
 
@@ -39,6 +38,7 @@ pub struct ControlConfig {
     pub drift: DriftConfig,
     /// Jitter about x, y, z, new in every frame: standard deviation, arcsec, 0 to 36000.
     #[serde(default)]
+    #[schemars(inner(range(min = 0, max = 36000)))]
     pub jitter_arcsec: [f64; 3],
 }
 
@@ -46,17 +46,14 @@ impl AttitudeConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        self.guidance.check()?;
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "attitude")?;
         let drift = &self.control.drift;
-        drift.check("attitude.control.drift")?;
         let count = drift.periods_s.len();
-        let still = drift.rms_arcsec == [0.0; 3];
         require("attitude.control.drift.periods_s", count as f64, "3 to 16 periods", |_| {
-            still || count >= 3
-        })?;
-        check_axes("attitude.control.jitter_arcsec", self.control.jitter_arcsec)
+            drift.is_still() || count >= 3
+        })
     }
 }
 
@@ -77,7 +74,7 @@ impl Attitude {
     ///
     /// # Errors
     /// As [`AttitudeConfig::check`] and [`MountingConfig::check`].
-    pub fn new(config: &AttitudeConfig, mounting: &MountingConfig, seed: Seed) -> Result<Self, SimError> {
+    pub fn new(config: &AttitudeConfig, mounting: &MountingConfig, seed: Seed) -> Result<Self, OutOfRange> {
         config.check()?;
         mounting.check()?;
         Ok(Self {

@@ -8,10 +8,9 @@
 //! Every `Epoch` made here is in TAI, so that adding a duration to it adds SI seconds, over a leap second too;
 //! hifitime adds to an epoch in UTC without counting leap seconds.
 
+use contract::OutOfRange;
 use hifitime::leap_seconds::{LatestLeapSeconds, LeapSecond};
 use hifitime::{Duration, Epoch, TimeScale};
-
-use crate::SimError;
 
 const NS_PER_S: i128 = 1_000_000_000;
 /// TT − TAI, by definition.
@@ -31,10 +30,10 @@ const CENTURY_S: f64 = 36_525.0 * 86_400.0;
 /// second was inserted, and refused elsewhere. After the last known leap second (2016-12-31) none is assumed.
 ///
 /// # Errors
-/// [`SimError::Parameter`] when the text has another form, the date does not exist, or the year lies before 1972
+/// [`OutOfRange`] when the text has another form, the date does not exist, or the year lies before 1972
 /// (UTC had no whole seconds to TAI then).
-pub fn parse_utc(text: &str) -> Result<Epoch, SimError> {
-    let refuse = |expected| SimError::Parameter { field: "time", value: text.to_string(), expected };
+pub fn parse_utc(text: &str) -> Result<Epoch, OutOfRange> {
+    let refuse = |expected| OutOfRange::new("time", text, expected);
     let civil = Civil::parse(text)
         .ok_or_else(|| refuse("a UTC time such as 2012-04-25T12:18:54.5Z, from 1972 on"))?;
     let label_ns = civil.label_ns().ok_or_else(|| refuse("a date and time that exist"))?;
@@ -54,11 +53,8 @@ pub fn parse_utc(text: &str) -> Result<Epoch, SimError> {
 ///
 /// # Errors
 /// Those of [`parse_utc`].
-pub(crate) fn parse_utc_of(field: &'static str, text: &str) -> Result<Epoch, SimError> {
-    parse_utc(text).map_err(|error| match error {
-        SimError::Parameter { value, expected, .. } => SimError::Parameter { field, value, expected },
-        other => other,
-    })
+pub(crate) fn parse_utc_of(path: &str, text: &str) -> Result<Epoch, OutOfRange> {
+    parse_utc(text).map_err(|error| OutOfRange { path: path.to_owned(), ..error })
 }
 
 /// Writes an instant as UTC in ISO 8601 with nine decimals and `Z`; inside a leap second the second is 60.

@@ -2,20 +2,16 @@
 
 use std::f64::consts::PI;
 
-use contract::{Angle, Body, Rotation};
+use contract::bounds::require;
+use contract::{Angle, Body, OutOfRange, Rotation};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::{Effect, Seed, normal};
 
 /// The place of a frame's number in the address of draws that belong to the whole run; no frame has it.
 const WHOLE_RUN: u64 = u64::MAX;
-
-/// Most sinusoids of a drift.
-const MAX_PERIODS: usize = 16;
 
 /// A slow error: about each body axis a sum of sinusoids whose amplitudes and phases are drawn from the seed.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -23,9 +19,11 @@ const MAX_PERIODS: usize = 16;
 pub struct DriftConfig {
     /// Root mean square about the body's x, y, z axes over many seeds, arcsec, 0 to 36000.
     #[serde(default)]
+    #[schemars(inner(range(min = 0, max = 36000)))]
     pub rms_arcsec: [f64; 3],
     /// Periods of the sinusoids, s, each 1 to 1e7, at most 16; none only where the rms is 0.
     #[serde(default)]
+    #[schemars(length(max = 16), inner(range(min = 1, max = 1e7)))]
     pub periods_s: Vec<f64>,
 }
 
@@ -33,27 +31,18 @@ impl DriftConfig {
     /// Checks every number; `field` is where this stands in the scenario.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self, field: &'static str) -> Result<(), SimError> {
-        check_axes(field, self.rms_arcsec)?;
-        for &period in &self.periods_s {
-            require(field, period, "periods_s from 1 to 1e7", |p| (1.0..=1e7).contains(&p))?;
-        }
-        let count = self.periods_s.len();
-        require(field, count as f64, "at most 16 periods_s", |_| count <= MAX_PERIODS)?;
-        let still = self.rms_arcsec == [0.0; 3];
-        require(field, count as f64, "at least one of periods_s where the rms is not 0", |_| {
-            still || count > 0
+    /// [`OutOfRange`] for the first one outside its range.
+    pub(super) fn check(&self, path: &str) -> Result<(), OutOfRange> {
+        let count = self.periods_s.len() as f64;
+        require(path, count, "at least one of periods_s where the rms is not 0", |n| {
+            self.is_still() || n > 0.0
         })
     }
-}
 
-/// Checks amplitudes about three axes, arcsec.
-pub(crate) fn check_axes(field: &'static str, arcsec: [f64; 3]) -> Result<(), SimError> {
-    for value in arcsec {
-        require(field, value, "arcsec from 0 to 36000", |v| (0.0..=36_000.0).contains(&v))?;
+    /// Whether it never moves.
+    pub(super) fn is_still(&self) -> bool {
+        self.rms_arcsec == [0.0; 3]
     }
-    Ok(())
 }
 
 /// A realisation of a [`DriftConfig`].
@@ -172,7 +161,7 @@ mod tests {
         assert!(none.check("attitude.control.drift").is_err());
         assert!(DriftConfig::default().check("attitude.control.drift").is_ok());
         let zero = DriftConfig { periods_s: vec![0.0], ..config() };
-        assert!(zero.check("attitude.control.drift").is_err());
+        assert!(contract::bounds::check(&zero, "attitude.control.drift").is_err());
     }
 
     #[test]

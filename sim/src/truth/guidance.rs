@@ -8,8 +8,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::trajectory::States;
-use crate::SimError;
-use crate::error::require;
 
 /// Guidance mode of the chaser's attitude.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -18,11 +16,14 @@ pub enum Guidance {
     /// A fixed place in the sky. At roll 0 north is up in the image (−y) and east is to the left (−x).
     Inertial {
         /// Right ascension of the boresight, degrees, −360 to 360.
+        #[schemars(range(min = -360, max = 360))]
         ra_deg: f64,
         /// Declination of the boresight, degrees, −90 to 90.
+        #[schemars(range(min = -90, max = 90))]
         dec_deg: f64,
         /// Turn of the camera about its boresight from x towards y, degrees, −360 to 360.
         #[serde(default)]
+        #[schemars(range(min = -360, max = 360))]
         roll_deg: f64,
     },
     /// Fixed in the chaser's local orbital frame: boresight along T (the velocity, on a circular orbit), columns
@@ -31,12 +32,15 @@ pub enum Guidance {
     LocalOrbital {
         /// Offset φ, degrees, −180 to 180: Euler angles 123 from the axes above to the camera.
         #[serde(default)]
+        #[schemars(range(min = -180, max = 180))]
         phi_deg: f64,
         /// Offset θ, degrees, −180 to 180.
         #[serde(default)]
+        #[schemars(range(min = -180, max = 180))]
         theta_deg: f64,
         /// Offset ψ, degrees, −180 to 180.
         #[serde(default)]
+        #[schemars(range(min = -180, max = 180))]
         psi_deg: f64,
     },
     /// Boresight at the target; y as near to −N (against the orbit's normal) as that allows.
@@ -44,28 +48,6 @@ pub enum Guidance {
 }
 
 impl Guidance {
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        let turn = |angle: f64| angle.abs() <= 360.0;
-        let half_turn = |angle: f64| angle.abs() <= 180.0;
-        match *self {
-            Self::Inertial { ra_deg, dec_deg, roll_deg } => {
-                require("attitude.guidance.ra_deg", ra_deg, "-360 to 360", turn)?;
-                require("attitude.guidance.dec_deg", dec_deg, "-90 to 90", |d| d.abs() <= 90.0)?;
-                require("attitude.guidance.roll_deg", roll_deg, "-360 to 360", turn)
-            }
-            Self::LocalOrbital { phi_deg, theta_deg, psi_deg } => {
-                require("attitude.guidance.phi_deg", phi_deg, "-180 to 180", half_turn)?;
-                require("attitude.guidance.theta_deg", theta_deg, "-180 to 180", half_turn)?;
-                require("attitude.guidance.psi_deg", psi_deg, "-180 to 180", half_turn)
-            }
-            Self::TargetPointing {} => Ok(()),
-        }
-    }
-
     /// The camera's attitude that guidance asks for.
     pub fn camera_from_icrs(&self, states: &States) -> Rotation<CameraFrame, Icrs> {
         match *self {
@@ -233,6 +215,11 @@ mod tests {
     #[test]
     fn a_declination_past_the_pole_is_refused() {
         let guidance = Guidance::Inertial { ra_deg: 0.0, dec_deg: 91.0, roll_deg: 0.0 };
-        assert!(guidance.check().unwrap_err().to_string().contains("dec_deg"));
+        assert!(
+            contract::bounds::check(&guidance, "attitude.guidance")
+                .unwrap_err()
+                .to_string()
+                .contains("dec_deg")
+        );
     }
 }

@@ -1,16 +1,14 @@
 //! What the chaser knows, or believes, about its own attitude and velocity.
 
-use contract::Telemetry;
+use contract::{OutOfRange, Telemetry, bounds};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::attitude::Attitude;
-use super::drift::{Drift, DriftConfig, check_axes, radians, turned_by, white};
+use super::drift::{Drift, DriftConfig, radians, turned_by, white};
 use super::trajectory::Trajectory;
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::{Effect, Seed};
 
 /// First place of the velocity's noise in an address; the attitude's noise has places 0 to 2.
@@ -23,18 +21,22 @@ const VELOCITY_PLACE: u64 = 3;
 pub struct KnowledgeConfig {
     /// Constant error about the body's x, y, z axes, arcsec, each −36000 to 36000.
     #[serde(default)]
+    #[schemars(inner(range(min = -36000, max = 36000)))]
     pub bias_arcsec: [f64; 3],
     /// Slow error, with the orbital period for instance.
     #[serde(default)]
     pub drift: DriftConfig,
     /// Noise about x, y, z, new in every frame: standard deviation, arcsec, 0 to 36000.
     #[serde(default)]
+    #[schemars(inner(range(min = 0, max = 36000)))]
     pub noise_arcsec: [f64; 3],
     /// Error of the time tag, s, −60 to 60: the attitude told for t is that of t − latency.
     #[serde(default)]
+    #[schemars(range(min = -60, max = 60))]
     pub latency_s: f64,
     /// Noise of each component of the velocity, new in every frame: standard deviation, m/s, 0 to 1000.
     #[serde(default)]
+    #[schemars(range(min = 0, max = 1000))]
     pub velocity_noise_m_s: f64,
 }
 
@@ -42,15 +44,10 @@ impl KnowledgeConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        check_axes("knowledge.bias_arcsec", self.bias_arcsec.map(f64::abs))?;
-        self.drift.check("knowledge.drift")?;
-        check_axes("knowledge.noise_arcsec", self.noise_arcsec)?;
-        require("knowledge.latency_s", self.latency_s, "-60 to 60", |l| l.abs() <= 60.0)?;
-        require("knowledge.velocity_noise_m_s", self.velocity_noise_m_s, "0 to 1000", |v| {
-            (0.0..=1000.0).contains(&v)
-        })
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "knowledge")?;
+        self.drift.check("knowledge.drift")
     }
 }
 
@@ -70,7 +67,7 @@ impl Knowledge {
     ///
     /// # Errors
     /// As [`KnowledgeConfig::check`].
-    pub fn new(config: &KnowledgeConfig, seed: Seed) -> Result<Self, SimError> {
+    pub fn new(config: &KnowledgeConfig, seed: Seed) -> Result<Self, OutOfRange> {
         config.check()?;
         Ok(Self {
             bias_rad: radians(config.bias_arcsec),

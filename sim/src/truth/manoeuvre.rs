@@ -1,5 +1,6 @@
 //! Impulsive manoeuvres of the chaser.
 
+use contract::{OutOfRange, bounds};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -7,7 +8,6 @@ use serde::{Deserialize, Serialize};
 
 use super::clock::parse_utc_of;
 use super::orbit::{Elements, State};
-use crate::SimError;
 
 /// An impulse given to the chaser.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -16,6 +16,7 @@ pub struct ManoeuvreConfig {
     /// When, UTC, as in 2012-04-24T00:31:07; after the orbit's epoch and after the manoeuvre listed before.
     pub time_utc: String,
     /// Change of velocity along the chaser's own radial, transverse and normal axes, m/s, each −100 to 100.
+    #[schemars(inner(range(min = -100, max = 100)))]
     pub dv_rtn_m_s: [f64; 3],
 }
 
@@ -23,18 +24,14 @@ impl ManoeuvreConfig {
     /// Checks text and numbers; `index` is the place in the list, counted from 0, for the message.
     ///
     /// # Errors
-    /// [`SimError::Entry`] for a time that is none or a change of velocity outside its range.
-    pub fn check(&self, index: usize) -> Result<(), SimError> {
+    /// [`OutOfRange`] for a time that is none or a change of velocity outside its range.
+    pub fn check(&self, index: usize) -> Result<(), OutOfRange> {
         self.time().map_err(|error| error.in_entry(index))?;
-        if self.dv_rtn_m_s.iter().all(|dv| dv.abs() <= 100.0) {
-            Ok(())
-        } else {
-            Err(self.refused_impulse(index, "three numbers from -100 to 100"))
-        }
+        bounds::check(self, &format!("orbit.manoeuvres[{index}]"))
     }
 
     /// When.
-    pub(crate) fn time(&self) -> Result<Epoch, SimError> {
+    pub(crate) fn time(&self) -> Result<Epoch, OutOfRange> {
         parse_utc_of("orbit.manoeuvres[].time_utc", &self.time_utc)
     }
 
@@ -48,19 +45,14 @@ impl ManoeuvreConfig {
     }
 
     /// The error of an impulse, naming its place in the list.
-    pub(crate) fn refused_impulse(&self, index: usize, expected: &'static str) -> SimError {
-        SimError::Parameter {
-            field: "orbit.manoeuvres[].dv_rtn_m_s",
-            value: format!("{:?}", self.dv_rtn_m_s),
-            expected,
-        }
-        .in_entry(index)
+    pub(crate) fn refused_impulse(&self, index: usize, expected: &'static str) -> OutOfRange {
+        OutOfRange::new("orbit.manoeuvres[].dv_rtn_m_s", format!("{:?}", self.dv_rtn_m_s), expected)
+            .in_entry(index)
     }
 
     /// The error of a time, naming its place in the list.
-    pub(crate) fn refused_time(&self, index: usize, expected: &'static str) -> SimError {
-        SimError::Parameter { field: "orbit.manoeuvres[].time_utc", value: self.time_utc.clone(), expected }
-            .in_entry(index)
+    pub(crate) fn refused_time(&self, index: usize, expected: &'static str) -> OutOfRange {
+        OutOfRange::new("orbit.manoeuvres[].time_utc", self.time_utc.clone(), expected).in_entry(index)
     }
 }
 
@@ -131,8 +123,7 @@ mod tests {
     fn an_impulse_that_is_not_a_number_is_refused_by_its_index() {
         let manoeuvre =
             ManoeuvreConfig { time_utc: "2012-04-23T00:00:00Z".into(), dv_rtn_m_s: [f64::NAN, 0.0, 0.0] };
-        assert!(
-            manoeuvre.check(3).unwrap_err().to_string().contains("orbit.manoeuvres[3].dv_rtn_m_s is [NaN")
-        );
+        let message = manoeuvre.check(3).unwrap_err().to_string();
+        assert!(message.contains("orbit.manoeuvres[3].dv_rtn_m_s[0] is NaN"), "{message}");
     }
 }

@@ -1,10 +1,8 @@
 //! How the camera really sits on the spacecraft, and how everybody believes it does.
 
-use contract::Mounting;
+use contract::{Mounting, OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::SimError;
 
 /// The camera's mounting, real and believed. Their difference is what a pipeline can calibrate from stars.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -20,10 +18,9 @@ impl MountingConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Contract`] for an angle that is not finite.
-    pub fn check(&self) -> Result<(), SimError> {
-        self.actual.check()?;
-        Ok(self.nominal.check()?)
+    /// [`OutOfRange`] for an angle that is not finite.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "mounting")
     }
 }
 

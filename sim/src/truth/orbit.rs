@@ -8,14 +8,13 @@
 //! - the velocity is the Keplerian one of the elements at that instant. It differs from the derivative of the
 //!   position by the drift rates, about 1e-3 of the orbital velocity: 0.005″ of aberration.
 
-use contract::{Icrs, Rotation};
+use contract::bounds::{self, require};
+use contract::{Icrs, OutOfRange, Rotation};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::kepler::{MAX_ECCENTRICITY, eccentric_anomaly, wrap};
-use crate::SimError;
-use crate::error::require;
 
 /// Gravitational parameter of the Earth, km³/s² (EGM96: Lemoine et al., NASA/TP-1998-206861).
 pub const EARTH_GM_KM3_S2: f64 = 398_600.441_5;
@@ -46,16 +45,22 @@ pub enum Rtn {}
 #[serde(deny_unknown_fields)]
 pub struct ElementsConfig {
     /// Semi-major axis, km; at most 100000, perigee radius at least 6478.1363.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100000))]
     pub semi_major_axis_km: f64,
     /// Eccentricity, 0 to 0.9.
+    #[schemars(range(min = 0, max = MAX_ECCENTRICITY))]
     pub eccentricity: f64,
     /// Inclination, degrees, 0.01 to 179.99.
+    #[schemars(range(min = 0.01, max = 179.99))]
     pub inclination_deg: f64,
     /// Right ascension of the ascending node, degrees, −360 to 360.
+    #[schemars(range(min = -360, max = 360))]
     pub raan_deg: f64,
     /// Argument of perigee, degrees, −360 to 360.
+    #[schemars(range(min = -360, max = 360))]
     pub argument_of_perigee_deg: f64,
     /// Mean anomaly at the epoch, degrees, −360 to 360.
+    #[schemars(range(min = -360, max = 360))]
     pub mean_anomaly_deg: f64,
 }
 
@@ -63,32 +68,19 @@ impl ElementsConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        require("orbit.target.semi_major_axis_km", self.semi_major_axis_km, "at most 100000", |a| {
-            a > 0.0 && a <= MAX_SEMI_MAJOR_AXIS_KM
-        })?;
-        require("orbit.target.eccentricity", self.eccentricity, "0 to 0.9", |e| {
-            (0.0..=MAX_ECCENTRICITY).contains(&e)
-        })?;
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "orbit.target")?;
         let perigee_km = self.semi_major_axis_km * (1.0 - self.eccentricity);
-        require("perigee radius of orbit.target (km)", perigee_km, "at least 6478.1363", |p| {
-            p >= MIN_PERIGEE_KM
-        })?;
-        require("orbit.target.inclination_deg", self.inclination_deg, "0.01 to 179.99", |i| {
-            (0.01..=179.99).contains(&i)
-        })?;
-        let turn = |angle: f64| angle.abs() <= 360.0;
-        require("orbit.target.raan_deg", self.raan_deg, "-360 to 360", turn)?;
-        require("orbit.target.argument_of_perigee_deg", self.argument_of_perigee_deg, "-360 to 360", turn)?;
-        require("orbit.target.mean_anomaly_deg", self.mean_anomaly_deg, "-360 to 360", turn)
+        let path = "perigee radius of orbit.target (km)";
+        require(path, perigee_km, "at least 6478.1363", |p| p >= MIN_PERIGEE_KM)
     }
 
     /// The same elements in radians.
     ///
     /// # Errors
     /// As [`ElementsConfig::check`].
-    pub fn elements(&self) -> Result<Elements, SimError> {
+    pub fn elements(&self) -> Result<Elements, OutOfRange> {
         self.check()?;
         Ok(Elements {
             semi_major_axis_km: self.semi_major_axis_km,

@@ -6,29 +6,34 @@
 //! the target's. All are multiplied by the target's a and given in metres. The map to the chaser's own elements
 //! is exact: nothing is linearised.
 
+use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::kepler::wrap;
 use super::orbit::Elements;
-use crate::SimError;
-use crate::error::require;
 
 /// Relative orbital elements, metres (D'Amico 2010): of the chaser with respect to the target.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RelativeElements {
     /// aδa: difference of the semi-major axes, m, −1e6 to 1e6; negative: the chaser is lower and catches up.
+    #[schemars(range(min = -1e6, max = 1e6))]
     pub a_da_m: f64,
     /// aδλ: mean along-track separation, m, −1e6 to 1e6; negative: the chaser is behind.
+    #[schemars(range(min = -1e6, max = 1e6))]
     pub a_dlambda_m: f64,
     /// aδex: relative eccentricity vector towards the node, m, −1e6 to 1e6.
+    #[schemars(range(min = -1e6, max = 1e6))]
     pub a_dex_m: f64,
     /// aδey: relative eccentricity vector a quarter turn from the node, m, −1e6 to 1e6.
+    #[schemars(range(min = -1e6, max = 1e6))]
     pub a_dey_m: f64,
     /// aδix: relative inclination vector, difference of the inclinations, m, −1e6 to 1e6.
+    #[schemars(range(min = -1e6, max = 1e6))]
     pub a_dix_m: f64,
     /// aδiy: relative inclination vector, difference of the nodes times sin i, m, −1e6 to 1e6.
+    #[schemars(range(min = -1e6, max = 1e6))]
     pub a_diy_m: f64,
 }
 
@@ -36,19 +41,9 @@ impl RelativeElements {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        for (field, value) in [
-            ("orbit.relative.a_da_m", self.a_da_m),
-            ("orbit.relative.a_dlambda_m", self.a_dlambda_m),
-            ("orbit.relative.a_dex_m", self.a_dex_m),
-            ("orbit.relative.a_dey_m", self.a_dey_m),
-            ("orbit.relative.a_dix_m", self.a_dix_m),
-            ("orbit.relative.a_diy_m", self.a_diy_m),
-        ] {
-            require(field, value, "-1e6 to 1e6", |v| v.abs() <= 1e6)?;
-        }
-        Ok(())
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "orbit.relative")
     }
 
     /// The relative elements of `chaser` with respect to `target`. Differences of angles are taken in [−π, π].

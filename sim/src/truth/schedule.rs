@@ -3,13 +3,12 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use contract::{OutOfRange, bounds};
 use hifitime::{Duration, Epoch, TimeScale};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::clock::parse_utc_of;
-use crate::SimError;
-use crate::error::require;
 
 /// Most frames that a scenario may have.
 pub const MAX_FRAMES: u64 = 100_000_000;
@@ -23,8 +22,10 @@ pub struct GroupConfig {
     /// Middle of the exposure of the first frame, UTC, as in 2012-04-23T09:00:00Z.
     pub start_utc: String,
     /// Time from one frame to the next, s, 0.001 to 1e6; rounded to the nanosecond.
+    #[schemars(range(min = 0.001, max = 1e6))]
     pub cadence_s: f64,
     /// Number of frames, at least 1; all groups together at most 100000000.
+    #[schemars(range(min = 1, max = MAX_FRAMES))]
     pub count: u64,
 }
 
@@ -32,17 +33,13 @@ impl GroupConfig {
     /// Checks this group by itself.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first field outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
+    /// [`OutOfRange`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
         if self.name.trim().is_empty() {
-            return Err(refused("schedule[].name", "empty".into(), "a name"));
+            return Err(OutOfRange::new("schedule[].name", "empty", "a name"));
         }
         parse_utc_of("schedule[].start_utc", &self.start_utc)?;
-        require("schedule[].cadence_s", self.cadence_s, "0.001 to 1e6", |c| (1e-3..=1e6).contains(&c))?;
-        if !(1..=MAX_FRAMES).contains(&self.count) {
-            return Err(refused("schedule[].count", self.count.to_string(), "1 to 100000000"));
-        }
-        Ok(())
+        bounds::check(self, "schedule[]")
     }
 }
 
@@ -80,17 +77,17 @@ impl Schedule {
     /// Checks the groups and numbers their frames.
     ///
     /// # Errors
-    /// [`SimError::Entry`] when a group is wrong by itself, a name comes twice, a group does not begin after the last
-    /// frame of the one before, or there are too many frames; [`SimError::Parameter`] when there is no group.
-    pub fn new(configs: &[GroupConfig]) -> Result<Self, SimError> {
+    /// [`OutOfRange`] when a group is wrong by itself, a name comes twice, a group does not begin after the last
+    /// frame of the one before, or there are too many frames, or there is no group.
+    pub fn new(configs: &[GroupConfig]) -> Result<Self, OutOfRange> {
         let mut names = BTreeSet::new();
         let mut groups: Vec<Group> = Vec::with_capacity(configs.len());
         let mut first_frame = 0;
         for (index, config) in configs.iter().enumerate() {
-            let refused = |field, value, expected| refused(field, value, expected).in_entry(index);
             config.check().map_err(|error| error.in_entry(index))?;
             if !names.insert(config.name.as_str()) {
-                return Err(refused("schedule[].name", config.name.clone(), "a name used once"));
+                return Err(OutOfRange::new("schedule[].name", config.name.clone(), "a name used once")
+                    .in_entry(index));
             }
             // Counted in TAI: in UTC, adding seconds across a leap second would lose one.
             let start =
@@ -100,19 +97,21 @@ impl Schedule {
             {
                 let value = format!("{} (group `{}`)", config.start_utc, config.name);
                 let expected = "after the last frame of the group before it";
-                return Err(refused("schedule[].start_utc", value, expected));
+                return Err(OutOfRange::new("schedule[].start_utc", value, expected).in_entry(index));
             }
             let frames = first_frame..first_frame + config.count;
             first_frame = frames.end;
             if first_frame > MAX_FRAMES {
                 let value = format!("{first_frame} in total");
-                return Err(refused("schedule[].count", value, "at most 100000000 in total"));
+                return Err(
+                    OutOfRange::new("schedule[].count", value, "at most 100000000 in total").in_entry(index)
+                );
             }
             let cadence_ns = (config.cadence_s * 1e9).round() as i128;
             groups.push(Group { name: config.name.clone(), frames, start, cadence_ns });
         }
         if groups.is_empty() {
-            return Err(refused("schedule", "empty".into(), "at least one group"));
+            return Err(OutOfRange::new("schedule", "empty", "at least one group"));
         }
         Ok(Self { groups })
     }
@@ -138,10 +137,6 @@ impl Schedule {
     pub fn sequences(&self) -> impl ExactSizeIterator<Item = Sequence<'_>> {
         self.groups.iter().map(|group| Sequence { name: &group.name, frames: group.frames.clone() })
     }
-}
-
-fn refused(field: &'static str, value: String, expected: &'static str) -> SimError {
-    SimError::Parameter { field, value, expected }
 }
 
 #[cfg(test)]

@@ -1,14 +1,13 @@
 //! How the target is turned.
 
-use contract::{Angle, Icrs, Rotation, Target};
+use contract::bounds::require;
+use contract::{Angle, Icrs, OutOfRange, Rotation, Target};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::Rtn;
 use super::trajectory::States;
-use crate::SimError;
-use crate::error::require;
 
 /// Attitude of the target's body frame, a function of time. Angles are Euler angles 123 from the axes named to the body
 /// axes, degrees, −360 to 360.
@@ -19,40 +18,50 @@ pub enum TargetAttitudeConfig {
     Inertial {
         /// φ from the axes of ICRS, degrees.
         #[serde(default)]
+        #[schemars(range(min = -360, max = 360))]
         phi_deg: f64,
         /// θ, degrees.
         #[serde(default)]
+        #[schemars(range(min = -360, max = 360))]
         theta_deg: f64,
         /// ψ, degrees.
         #[serde(default)]
+        #[schemars(range(min = -360, max = 360))]
         psi_deg: f64,
     },
     /// Fixed in the target's own orbital frame.
     Orbital {
         /// φ from the axes R, T, N of the target's orbit, degrees.
         #[serde(default)]
+        #[schemars(range(min = -360, max = 360))]
         phi_deg: f64,
         /// θ, degrees.
         #[serde(default)]
+        #[schemars(range(min = -360, max = 360))]
         theta_deg: f64,
         /// ψ, degrees.
         #[serde(default)]
+        #[schemars(range(min = -360, max = 360))]
         psi_deg: f64,
     },
     /// Turning at a constant rate about an axis that is fixed in the body and in the sky.
     Tumbling {
         /// φ at the orbit's epoch, from the axes of ICRS, degrees.
         #[serde(default)]
+        #[schemars(range(min = -360, max = 360))]
         phi_deg: f64,
         /// θ at the orbit's epoch, degrees.
         #[serde(default)]
+        #[schemars(range(min = -360, max = 360))]
         theta_deg: f64,
         /// ψ at the orbit's epoch, degrees.
         #[serde(default)]
+        #[schemars(range(min = -360, max = 360))]
         psi_deg: f64,
         /// The axis in the body frame, of any length but 0.
         axis: [f64; 3],
         /// Rate, by the right-hand rule about the axis, degrees a second, −360 to 360.
+        #[schemars(range(min = -360, max = 360))]
         rate_deg_per_s: f64,
     },
 }
@@ -67,23 +76,11 @@ impl TargetAttitudeConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        let turn = |v: f64| v.abs() <= 360.0;
-        let (Self::Inertial { phi_deg, theta_deg, psi_deg }
-        | Self::Orbital { phi_deg, theta_deg, psi_deg }
-        | Self::Tumbling { phi_deg, theta_deg, psi_deg, .. }) = *self;
-        require("target.attitude.phi_deg", phi_deg, "-360 to 360", turn)?;
-        require("target.attitude.theta_deg", theta_deg, "-360 to 360", turn)?;
-        require("target.attitude.psi_deg", psi_deg, "-360 to 360", turn)?;
-        if let Self::Tumbling { axis, rate_deg_per_s, .. } = *self {
-            let length = Vector3::from(axis).norm();
-            require("target.attitude.axis", length, "a length from 1e-9 to 1e9", |n| {
-                (1e-9..=1e9).contains(&n)
-            })?;
-            require("target.attitude.rate_deg_per_s", rate_deg_per_s, "-360 to 360", turn)?;
-        }
-        Ok(())
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        let Self::Tumbling { axis, .. } = *self else { return Ok(()) };
+        let length = Vector3::from(axis).norm();
+        require("target.attitude.axis", length, "a length from 1e-9 to 1e9", |n| (1e-9..=1e9).contains(&n))
     }
 
     /// The attitude at the time of `states`. Checked angles are taken for granted.

@@ -4,7 +4,7 @@
 //! manoeuvre to the next, so that any instant can be computed alone. Time inside is seconds (SI, as TT and TAI
 //! count them) since the orbit's epoch, exact to 0.1 ns within months of it.
 
-use contract::{Icrs, Rotation};
+use contract::{Icrs, OutOfRange, Rotation};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -14,7 +14,6 @@ use super::clock::parse_utc_of;
 use super::manoeuvre::ManoeuvreConfig;
 use super::orbit::{Elements, ElementsConfig, Rtn, State};
 use super::relative::RelativeElements;
-use crate::SimError;
 
 /// Orbits of target and chaser.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -35,8 +34,8 @@ impl OrbitConfig {
     /// Checks everything, the order of the manoeuvres included.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first thing that is wrong.
-    pub fn check(&self) -> Result<(), SimError> {
+    /// [`OutOfRange`] for the first thing that is wrong.
+    pub fn check(&self) -> Result<(), OutOfRange> {
         Trajectory::new(self).map(|_| ())
     }
 }
@@ -96,19 +95,19 @@ impl Trajectory {
     /// Computes the arcs.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for an epoch that is none or an orbit outside what is supported; [`SimError::Entry`] for
+    /// [`OutOfRange`] for an epoch that is none or an orbit outside what is supported; [`OutOfRange`] for
     /// a manoeuvre that is out of order, not after the epoch, or leaves no supported orbit.
-    pub fn new(config: &OrbitConfig) -> Result<Self, SimError> {
+    pub fn new(config: &OrbitConfig) -> Result<Self, OutOfRange> {
         let epoch = parse_utc_of("orbit.epoch_utc", &config.epoch_utc)?;
         let target = config.target.elements()?;
         config.relative.check()?;
         let chaser = config.relative.chaser(&target);
         if !chaser.is_supported() {
-            return Err(SimError::Parameter {
-                field: "orbit.relative",
-                value: format!("{:?}", config.relative),
-                expected: "a chaser's orbit with e at most 0.9, perigee above 100 km, not in the equator",
-            });
+            return Err(OutOfRange::new(
+                "orbit.relative",
+                format!("{:?}", config.relative),
+                "a chaser's orbit with e at most 0.9, perigee above 100 km, not in the equator",
+            ));
         }
         let mut last = Arc { start_s: 0.0, chaser };
         let mut arcs = vec![last];

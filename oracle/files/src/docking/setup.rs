@@ -2,23 +2,26 @@
 
 use std::path::Path;
 
-use contract::Camera;
 use contract::docking::{DockingSetup, TargetModel};
+use contract::{Camera, OutOfRange, bounds};
 use pipeline::docking::DockingConfig;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::super::FileError;
-use super::super::toml_table::{self, Refused, TomlTable, check_bit_depth};
+use super::super::toml_table::{self, TomlTable};
 
 /// The cameras, the target's dimensions, and parameters of the built-in pipeline.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SetupFile {
     /// Bits of the digitiser, 1 to 16.
+    #[schemars(range(min = 1, max = 16))]
     pub bit_depth: u8,
     /// The target's dimensions.
     pub target: TargetModel,
     /// Nominal cameras (lenses), at least one, all with the same columns and rows.
+    #[schemars(length(min = 1))]
     pub cameras: Vec<Camera>,
     /// Parameters of the built-in pipeline; without it, its defaults.
     #[serde(default)]
@@ -60,23 +63,19 @@ impl SetupFile {
 }
 
 impl TomlTable for SetupFile {
-    fn check(&self) -> Result<(), Refused> {
-        check_bit_depth(self.bit_depth)?;
-        let Some(first) = self.cameras.first() else {
-            return Err(Refused::new("cameras", "an empty list", "at least one camera"));
-        };
+    fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "")?;
+        let Some(first) = self.cameras.first() else { return Ok(()) };
         for (index, camera) in self.cameras.iter().enumerate() {
-            let table = format!("cameras[{index}]");
-            camera.check().map_err(|error| Refused::by_contract(&table, &error))?;
             if (camera.columns, camera.rows) != (first.columns, first.rows) {
                 let size = format!("{} × {}", camera.columns, camera.rows);
                 let expected =
                     format!("{} × {}, columns and rows of the first camera", first.columns, first.rows);
-                return Err(Refused::new(table, size, expected));
+                return Err(OutOfRange::new(format!("cameras[{index}]"), size, expected));
             }
         }
-        self.target.check().map_err(|error| Refused::by_contract("target", &error))?;
-        self.docking.check().map_err(|error| Refused::by_pipeline("docking", &error))
+        self.target.check()?;
+        self.docking.check().map_err(|error| error.under("docking"))
     }
 }
 

@@ -8,7 +8,7 @@ use sim::docking::DockingSimulator;
 use sim::scene::docking::TargetFile;
 
 use super::renderer::DockingRenderer;
-use crate::any_world::{ScenarioSource, explain};
+use crate::any_world::ScenarioSource;
 
 /// A docking scenario with its simulator, ready to fly.
 pub struct PreparedDocking {
@@ -54,7 +54,7 @@ impl PreparedDocking {
 /// # Errors
 /// A [`Failure`] with the place of the first value that is not allowed.
 pub fn simulator(source: &ScenarioSource, scenario: &DockingScenario) -> Result<DockingSimulator, Failure> {
-    source.check_pipeline("docking", scenario.docking.check())?;
+    source.check_part("docking", scenario.docking.check())?;
     check_target(source, &scenario.target)?;
     DockingSimulator::new(&scenario.simulation(), &source.folder).map_err(|error| source.explain(error))
 }
@@ -76,5 +76,5 @@ fn check_target(source: &ScenarioSource, target: &str) -> Result<(), Failure> {
         source.refuse("target", format!("`{}` {problem}", file.display()))
     })?;
     let parsed: TargetFile = toml_file::parse(&file, &text)?;
-    parsed.check().map_err(|error| explain(&file, &text, error))
+    parsed.check().map_err(|error| toml_file::out_of_range(&file, &text, &error).into())
 }

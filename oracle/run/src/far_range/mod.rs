@@ -109,7 +109,7 @@ impl World for Prepared {
 
     fn check_built_in(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<(), Failure> {
         let (floor_dn, bit_depth) = (scenario.zero_suppression_dn, scenario.sensor.bit_depth);
-        source.check_pipeline(Self::CODE, scenario.far_range.check_suppression(floor_dn, bit_depth))
+        source.check_part(Self::CODE, scenario.far_range.check_suppression(floor_dn, bit_depth))
     }
 
     /// FITS with no more in its header than telemetry says.

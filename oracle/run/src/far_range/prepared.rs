@@ -1,6 +1,6 @@
 //! A scenario of the far range, ready to fly.
 
-use contract::Setup;
+use contract::{Setup, bounds};
 use files::{Failure, StarRow};
 use hifitime::Epoch;
 use scenario::run_file::RunFile;
@@ -72,11 +72,8 @@ impl Prepared {
 /// # Errors
 /// A [`Failure`] with the place of the first value that is not allowed.
 pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<Simulator, Failure> {
-    let limit = scenario.star_list.magnitude_limit;
-    if !(-2.0..=15.0).contains(&limit) {
-        return Err(source.refuse("star_list.magnitude_limit", format!("is {limit}, expected -2 to 15")));
-    }
-    source.check_pipeline("far_range", scenario.far_range.check())?;
+    bounds::check(&scenario.star_list, "star_list").map_err(|error| source.out_of_range(&error))?;
+    source.check_part("far_range", scenario.far_range.check())?;
     Simulator::new(&scenario.simulation(), &source.folder).map_err(|error| source.explain(error))
 }
 

@@ -1,13 +1,14 @@
 //! Portions of poses: position and attitude together, with the covariance that forgetting leaves.
 
 use contract::docking::{Motion, PoseEstimate};
+use contract::{OutOfRange, bounds};
 use nalgebra::{Matrix6, SMatrix, SVector, Vector6};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::inverse;
+use crate::PipelineError;
 use crate::docking::pose::geometry::{to_pose, to_vector};
-use crate::error::{PipelineError, require};
 
 /// (d, φ, d', φ').
 type State = SVector<f64, 12>;
@@ -19,12 +20,15 @@ type Square = SMatrix<f64, 12, 12>;
 pub struct ExactPortionConfig {
     /// What is left of the weight of a portion one portion later, 0 to 1: near 1 gives small standard deviations on a
     /// straight glide, smaller values follow oscillations.
+    #[schemars(range(min = 0, max = 1))]
     pub forgetting: f64,
     /// A field is left out when its pose is off the motion by more than this normalised square (chi-square of 6 degrees of
     /// freedom), greater than 0; where the portion's fields scatter more than they say, by as much more.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub field_gate: f64,
     /// The prior is dropped, and the motion begins anew, when it is off the portion's own motion by more than this normalised
     /// square (chi-square of 12 degrees of freedom), greater than 0: a manoeuvre, not noise.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub prior_gate: f64,
 }
 
@@ -39,11 +43,9 @@ impl ExactPortionConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`PipelineError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), PipelineError> {
-        require("portions.forgetting", self.forgetting, "0 to 1", |q| (0.0..=1.0).contains(&q))?;
-        require("portions.field_gate", self.field_gate, "greater than 0", |gate| gate > 0.0)?;
-        require("portions.prior_gate", self.prior_gate, "greater than 0", |gate| gate > 0.0)
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "portions")
     }
 }
 

@@ -1,23 +1,27 @@
 //! The paper's portions: position by Gauss–Newton on cross and circle, then attitude by three regressions.
 
 use contract::docking::{Motion, Pose};
+use contract::{OutOfRange, bounds};
 use nalgebra::{Matrix2, Matrix3, Matrix6, Vector2, Vector3, Vector6};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::inverse;
+use crate::PipelineError;
 use crate::docking::pose::paper_pose::{PaperMeasurement, PaperTarget};
-use crate::error::{PipelineError, require};
 
 /// Weights and forgetting of the paper's portions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PaperPortionConfig {
     /// w1, w2, w3: weights of the squared differences of Xc − Xo, Yc − Yo and R, each greater than 0.
+    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
     pub weights: [f64; 3],
     /// q: what is left of the weight of a portion's position one portion later, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub forgetting_position: f64,
     /// q': the same for the attitude, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub forgetting_attitude: f64,
 }
 
@@ -32,14 +36,9 @@ impl PaperPortionConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`PipelineError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), PipelineError> {
-        for weight in self.weights {
-            require("paper_portions.weights", weight, "greater than 0", |w| w > 0.0)?;
-        }
-        let fraction = |q: f64| (0.0..=1.0).contains(&q);
-        require("paper_portions.forgetting_position", self.forgetting_position, "0 to 1", fraction)?;
-        require("paper_portions.forgetting_attitude", self.forgetting_attitude, "0 to 1", fraction)
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "paper_portions")
     }
 }
 

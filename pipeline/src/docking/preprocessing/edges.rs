@@ -1,20 +1,21 @@
 //! Edges by Canny's method: what backs up the regions where no threshold divides target and plate.
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use imageproc::edges::canny;
 use imageproc::image::GrayImage;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::PipelineError;
-use crate::error::require;
 
 /// Thresholds of Canny's hysteresis: lengths of the Sobel gradient of the 8-bit image, 0 to 1140.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct EdgeConfig {
     /// Gradient at which an edge goes on, 1 to 1140.
+    #[schemars(range(min = 1, max = 1140))]
     pub low: f64,
     /// Gradient at which an edge begins, `low` to 1140.
+    #[schemars(range(min = 1, max = 1140))]
     pub high: f64,
 }
 
@@ -25,9 +26,8 @@ impl Default for EdgeConfig {
 }
 
 impl EdgeConfig {
-    pub(crate) fn check(&self) -> Result<(), PipelineError> {
-        require("edges.low", self.low, "1 to 1140", |v| (1.0..=1140.0).contains(&v))?;
-        require("edges.high", self.high, "edges.low to 1140", |v| v >= self.low && v <= 1140.0)
+    pub(crate) fn check(&self) -> Result<(), OutOfRange> {
+        require("edges.high", self.high, "edges.low to 1140", |v| v >= self.low)
     }
 
     /// White (255) on edges, else black. Edges only say where to look: places are measured on grey values.

@@ -6,8 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::region::Rectangle;
 use super::view::View;
-use crate::PipelineError;
-use crate::error::require;
 
 /// Grey values of a region, counted by 256 levels.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,12 +66,16 @@ pub struct AutoContrastConfig {
     /// Whether the digitiser is adjusted: `adjust`, or `leave` as it is.
     pub mode: AutoContrastMode,
     /// Where the darkest hundredth of the region shall come to, share of full scale, 0 to 0.4.
+    #[schemars(range(min = 0, max = 0.4))]
     pub dark_level: f64,
     /// Where the brightest fiftieth of the region shall come to, share of full scale, 0.5 to 0.95.
+    #[schemars(range(min = 0.5, max = 0.95))]
     pub bright_level: f64,
     /// Deviation from the two levels that is left alone, share of full scale, 0.01 to 0.3.
+    #[schemars(range(min = 0.01, max = 0.3))]
     pub tolerance: f64,
     /// Largest contrast that is asked for, 0.1 to 20: noise grows with it.
+    #[schemars(range(min = 0.1, max = 20))]
     pub max_contrast: f64,
 }
 
@@ -101,15 +103,6 @@ impl Default for AutoContrastConfig {
 }
 
 impl AutoContrastConfig {
-    pub(crate) fn check(&self) -> Result<(), PipelineError> {
-        require("auto_contrast.dark_level", self.dark_level, "0 to 0.4", |v| (0.0..=0.4).contains(&v))?;
-        require("auto_contrast.bright_level", self.bright_level, "0.5 to 0.95", |v| {
-            (0.5..=0.95).contains(&v)
-        })?;
-        require("auto_contrast.tolerance", self.tolerance, "0.01 to 0.3", |v| (0.01..=0.3).contains(&v))?;
-        require("auto_contrast.max_contrast", self.max_contrast, "0.1 to 20", |v| (0.1..=20.0).contains(&v))
-    }
-
     /// The setting that brings the region's levels to where they are wanted; `None` when the setting is good, or when
     /// there is nothing to see. Each wish goes half of the way, so that the loop stays stable with a lag of a field or
     /// two.

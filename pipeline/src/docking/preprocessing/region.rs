@@ -1,18 +1,17 @@
 //! The region of interest: given from outside, or predicted from the previous fields.
 
+use contract::bounds::require;
+use contract::{OutOfRange, PixelPoint};
 use nalgebra::{Vector2, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use contract::PixelPoint;
 use contract::docking::{Pose, TargetModel};
 
 use super::view::Lens;
-use crate::PipelineError;
 use crate::docking::cross_and_circle::cross::CrossSeed;
 use crate::docking::cross_and_circle::marks::Plane;
 use crate::docking::pose::geometry::project;
-use crate::error::require;
 
 /// A rectangle of the camera's pixels, borders included.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -60,6 +59,7 @@ pub struct RegionConfig {
     /// Window given from outside that the centre of the cross lies in, camera pixels; none: the whole field.
     pub window: Option<Rectangle>,
     /// Longest time between two fields over which the target's place is predicted, s, above 0 to 60.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 60))]
     pub max_gap_s: f64,
 }
 
@@ -70,18 +70,13 @@ impl Default for RegionConfig {
 }
 
 impl RegionConfig {
-    pub(crate) fn check(&self) -> Result<(), PipelineError> {
-        if let Some(window) = &self.window {
-            require("region.window.first_column", window.first_column, "a finite number", |_| true)?;
-            require("region.window.first_row", window.first_row, "a finite number", |_| true)?;
-            require("region.window.last_column", window.last_column, "not before the first column", |v| {
-                v >= window.first_column
-            })?;
-            require("region.window.last_row", window.last_row, "not before the first row", |v| {
-                v >= window.first_row
-            })?;
-        }
-        require("region.max_gap_s", self.max_gap_s, "above 0 to 60", |v| v > 0.0 && v <= 60.0)
+    pub(crate) fn check(&self) -> Result<(), OutOfRange> {
+        let Some(Rectangle { first_column, first_row, last_column, last_row }) = self.window else {
+            return Ok(());
+        };
+        let (column, row) = ("not before the first column", "not before the first row");
+        require("region.window.last_column", last_column, column, |v| v >= first_column)?;
+        require("region.window.last_row", last_row, row, |v| v >= first_row)
     }
 }
 

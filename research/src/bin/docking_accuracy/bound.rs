@@ -94,11 +94,11 @@ fn covariance(pose: &Pose, derivatives: &[Vec<f64>]) -> Result<Matrix6<f64>, Sim
     // In units of their own σ: metres, radians and DN are far apart.
     let scale: Vec<f64> = (0..shown.len()).map(|i| 1.0 / information[(i, i)].sqrt()).collect();
     let scaled = DMatrix::from_fn(shown.len(), shown.len(), |i, j| information[(i, j)] * scale[i] * scale[j]);
-    let inverse = scaled.try_inverse().filter(|_| shown.len() >= 6).ok_or(SimError::Parameter {
-        field: "pose",
-        value: format!("{pose:?}"),
-        expected: "one that the image determines",
-    })?;
+    let inverse = scaled.try_inverse().filter(|_| shown.len() >= 6).ok_or(contract::OutOfRange::new(
+        "pose",
+        format!("{pose:?}"),
+        "one that the image determines",
+    ))?;
     Ok(Matrix6::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]))
 }
 

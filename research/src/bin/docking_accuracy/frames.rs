@@ -51,11 +51,11 @@ impl Case {
     pub(crate) fn random(row: &Row, seed: u64, number: u64, noise_dn: f64) -> Result<Self, SimError> {
         let mut stream = row.seed(seed).stream(number, Effect::AttitudeControl, 0);
         let camera = camera(row.focal_px);
-        let target = TargetFile::built_in(TARGET).ok_or(SimError::Parameter {
-            field: "target",
-            value: TARGET.to_owned(),
-            expected: "a built-in one",
-        })?;
+        let target = TargetFile::built_in(TARGET).ok_or(contract::OutOfRange::new(
+            "target",
+            TARGET,
+            "a built-in one",
+        ))?;
         let corners = corners(&target.model());
         let pose = loop {
             let pose = row.random_pose(OFFSET, ANGLE_DEG, &mut stream);

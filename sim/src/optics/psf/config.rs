@@ -1,10 +1,9 @@
 //! What a scenario says about its point-spread function.
 
+use contract::OutOfRange;
+use contract::bounds::{self, require};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::SimError;
-use crate::error::require;
 
 /// Shape of the image of a point, before the pixels integrate it.
 ///
@@ -15,38 +14,48 @@ pub enum PsfConfig {
     /// A circular Gaussian.
     Gaussian {
         /// Standard deviation, px, 0.05 to 100.
+        #[schemars(range(min = 0.05, max = 100))]
         sigma_px: f64,
     },
     /// A circular Gaussian core in a broad Gaussian halo of scattered light.
     GaussianHalo {
         /// Standard deviation of the core, px, 0.05 to 100.
+        #[schemars(range(min = 0.05, max = 100))]
         sigma_px: f64,
         /// Standard deviation of the halo, px, 0.05 to 100, not below that of the core.
+        #[schemars(range(min = 0.05, max = 100))]
         halo_sigma_px: f64,
         /// Fraction of the light that is in the halo, 0 to 1.
+        #[schemars(range(min = 0, max = 1))]
         halo_fraction: f64,
     },
     /// A Moffat profile: a core with wings that fall as the power −2β of the radius.
     Moffat {
         /// Full width at half maximum, px, 0.1 to 100.
+        #[schemars(range(min = 0.1, max = 100))]
         fwhm_px: f64,
         /// The exponent β, 1.2 to 20: 2.5 to 5 is usual, the smaller the more light in the wings.
+        #[schemars(range(min = 1.2, max = 20))]
         beta: f64,
     },
     /// The diffraction image of a circular aperture, in one colour.
     Airy {
         /// Wavelength times focal ratio over the pixel's width and over its height, px, 0.1 to 20 each: the first dark
         /// ring of an unobscured aperture is at 1.22 of it.
+        #[schemars(inner(range(min = 0.1, max = 20)))]
         lambda_n_px: [f64; 2],
         /// Diameter of the central obscuration over that of the aperture, 0 to 0.9.
         #[serde(default)]
+        #[schemars(range(min = 0, max = 0.9))]
         obscuration: f64,
     },
     /// A lens out of focus: a uniform disk, its edge softened by a Gaussian.
     Defocus {
         /// Radius of the disk, px, 0.1 to 50.
+        #[schemars(range(min = 0.1, max = 50))]
         radius_px: f64,
         /// Standard deviation of the Gaussian, px, 0.05 to 10 and at least a hundredth of the radius.
+        #[schemars(range(min = 0.05, max = 10))]
         sigma_px: f64,
     },
     /// A table of the user's: measured, or from a program of optical design.
@@ -56,6 +65,7 @@ pub enum PsfConfig {
         /// the point is. A relative path starts at the scenario.
         path: String,
         /// Cells per pixel, along columns and along rows, 1 to 100.
+        #[schemars(range(min = 1, max = 100))]
         oversampling: f64,
     },
 }
@@ -64,40 +74,18 @@ impl PsfConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first field outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        let side = |v: f64| (0.05..=100.0).contains(&v);
+    /// [`OutOfRange`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "psf")?;
         match *self {
-            Self::Gaussian { sigma_px } => require("psf.sigma_px", sigma_px, "0.05 to 100", side),
-            Self::GaussianHalo { sigma_px, halo_sigma_px, halo_fraction } => {
-                require("psf.sigma_px", sigma_px, "0.05 to 100", side)?;
-                require("psf.halo_sigma_px", halo_sigma_px, "from psf.sigma_px to 100", |v| {
-                    side(v) && v >= sigma_px
-                })?;
-                require("psf.halo_fraction", halo_fraction, "0 to 1", |v| (0.0..=1.0).contains(&v))
-            }
-            Self::Moffat { fwhm_px, beta } => {
-                require("psf.fwhm_px", fwhm_px, "0.1 to 100", |v| (0.1..=100.0).contains(&v))?;
-                require("psf.beta", beta, "1.2 to 20", |v| (1.2..=20.0).contains(&v))
-            }
-            Self::Airy { lambda_n_px, obscuration } => {
-                for lambda_n in lambda_n_px {
-                    require("psf.lambda_n_px", lambda_n, "0.1 to 20", |v| (0.1..=20.0).contains(&v))?;
-                }
-                require("psf.obscuration", obscuration, "0 to 0.9", |v| (0.0..=0.9).contains(&v))
+            Self::GaussianHalo { sigma_px, halo_sigma_px, .. } => {
+                require("psf.halo_sigma_px", halo_sigma_px, "from psf.sigma_px to 100", |v| v >= sigma_px)
             }
             Self::Defocus { radius_px, sigma_px } => {
-                require("psf.radius_px", radius_px, "0.1 to 50", |v| (0.1..=50.0).contains(&v))?;
-                require(
-                    "psf.sigma_px",
-                    sigma_px,
-                    "0.05 to 10 and a hundredth of psf.radius_px or more",
-                    |v| (0.05..=10.0).contains(&v) && v >= 0.01 * radius_px,
-                )
+                let expected = "0.05 to 10 and a hundredth of psf.radius_px or more";
+                require("psf.sigma_px", sigma_px, expected, |v| v >= 0.01 * radius_px)
             }
-            Self::Sampled { oversampling, .. } => {
-                require("psf.oversampling", oversampling, "1 to 100", |v| (1.0..=100.0).contains(&v))
-            }
+            _ => Ok(()),
         }
     }
 }

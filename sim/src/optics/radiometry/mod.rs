@@ -9,11 +9,11 @@ mod spectra;
 
 pub use quantum_efficiency::{KnownDetector, QuantumEfficiency};
 
+use contract::OutOfRange;
+use contract::bounds::{self, require};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use spectra::Spectrum;
 
 /// V magnitude of the Sun at 1 au (Willmer 2018, ApJS 236, 47: −26.76, Vega system, Johnson V).
@@ -29,17 +29,21 @@ pub enum RadiometryConfig {
     /// Aperture, transmission, passband and quantum efficiency in one number, the same for every colour.
     ZeroPoint {
         /// Photo-electrons a second from a star of magnitude V = 0, over its whole image, greater than 0, at most 1e15.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e15))]
         zero_point_e_per_s: f64,
     },
     /// By the spectrum: stars by their colour, whatever the Sun shines on by the spectrum of the Sun.
     Spectral {
         /// Diameter of the circular, unobstructed aperture, mm, greater than 0, at most 10 000.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 10000))]
         aperture_diameter_mm: f64,
         /// Share of the light that the optics let through, greater than 0, at most 1; it also holds a central obstruction.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
         transmission: f64,
         /// Photo-electrons a photon: "silicon_ccd", or a table of [wavelength in nm, efficiency].
         quantum_efficiency: QuantumEfficiency,
         /// Shortest and longest wavelength that a filter lets through, nm, growing, within 300 to 1100; absent: no filter.
+        #[schemars(inner(range(min = 300, max = 1100)))]
         band_nm: Option<[f64; 2]>,
     },
 }
@@ -48,29 +52,16 @@ impl RadiometryConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        match self {
-            Self::ZeroPoint { zero_point_e_per_s } => {
-                require("radiometry.zero_point_e_per_s", *zero_point_e_per_s, "in (0, 1e15]", |v| {
-                    v > 0.0 && v <= 1e15
-                })
-            }
-            Self::Spectral { aperture_diameter_mm, transmission, quantum_efficiency, band_nm } => {
-                let field = "radiometry.aperture_diameter_mm";
-                require(field, *aperture_diameter_mm, "in (0, 10000]", |d| d > 0.0 && d <= 10_000.0)?;
-                require("radiometry.transmission", *transmission, "in (0, 1]", |t| t > 0.0 && t <= 1.0)?;
-                quantum_efficiency.check()?;
-                if let Some([short, long]) = *band_nm {
-                    let field = "radiometry.band_nm";
-                    require(field, short, "300 to 1100", |w| (300.0..=1100.0).contains(&w))?;
-                    require(field, long, "greater than the first, at most 1100", |w| {
-                        w > short && w <= 1100.0
-                    })?;
-                }
-                Ok(())
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "radiometry")?;
+        if let Self::Spectral { quantum_efficiency, band_nm, .. } = self {
+            quantum_efficiency.check()?;
+            if let Some([short, long]) = *band_nm {
+                require("radiometry.band_nm", long, "greater than the first, at most 1100", |w| w > short)?;
             }
         }
+        Ok(())
     }
 }
 
@@ -105,8 +96,8 @@ impl Radiometry {
     /// Prepares the conversion.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for a number outside its range, or when the detector sees nothing of the light.
-    pub fn new(config: &RadiometryConfig) -> Result<Self, SimError> {
+    /// [`OutOfRange`] for a number outside its range, or when the detector sees nothing of the light.
+    pub fn new(config: &RadiometryConfig) -> Result<Self, OutOfRange> {
         config.check()?;
         let prepared = match config {
             RadiometryConfig::ZeroPoint { zero_point_e_per_s } => Self {

@@ -1,10 +1,9 @@
 //! How many photo-electrons a photon gives.
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::SimError;
-use crate::error::require;
 
 /// Quantum efficiency of a detector by wavelength.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -13,7 +12,13 @@ pub enum QuantumEfficiency {
     /// A detector that is known by name.
     Known(KnownDetector),
     /// Wavelength (nm, growing, 200 to 1200) and electrons a photon (0 to 1), 2 to 1000 pairs; straight lines between, 0 outside.
-    Table(Vec<[f64; 2]>),
+    Table(
+        #[schemars(length(min = 2, max = 1000), extend("items" = { "type": "array", "minItems": 2, "maxItems": 2, "prefixItems": [
+            { "type": "number", "minimum": 200, "maximum": 1200 },
+            { "type": "number", "minimum": 0, "maximum": 1 },
+        ] }))]
+        Vec<[f64; 2]>,
+    ),
 }
 
 /// Detectors whose quantum efficiency is built in.
@@ -26,22 +31,15 @@ pub enum KnownDetector {
 }
 
 impl QuantumEfficiency {
-    /// Checks the table.
+    /// Checks that the wavelengths of a table grow; its numbers are checked with the radiometry.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] when it is too short or too long, does not grow, or has a value outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
+    /// [`OutOfRange`] when they do not.
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
         let Self::Table(table) = self else { return Ok(()) };
-        let field = "radiometry.quantum_efficiency";
-        require(field, table.len() as f64, "a table of 2 to 1000 pairs", |n| (2.0..=1000.0).contains(&n))?;
-        for [wavelength_nm, efficiency] in table {
-            let expected = "wavelengths of 200 to 1200 nm";
-            require(field, *wavelength_nm, expected, |w| (200.0..=1200.0).contains(&w))?;
-            require(field, *efficiency, "efficiencies of 0 to 1", |q| (0.0..=1.0).contains(&q))?;
-        }
         for pair in table.windows(2) {
             let [[before, _], [after, _]] = pair else { continue };
-            require(field, *after, "wavelengths that grow", |w| w > *before)?;
+            require("radiometry.quantum_efficiency", *after, "wavelengths that grow", |w| w > *before)?;
         }
         Ok(())
     }
@@ -130,6 +128,16 @@ mod tests {
 
     #[test]
     fn a_bad_table_is_refused() {
+        let check = |table: Vec<[f64; 2]>| {
+            let spectral = crate::optics::RadiometryConfig::Spectral {
+                aperture_diameter_mm: 10.0,
+                transmission: 0.8,
+                quantum_efficiency: QuantumEfficiency::Table(table),
+                band_nm: None,
+            };
+            spectral.check()
+        };
+        check(vec![[500.0, 0.5], [600.0, 0.6]]).unwrap();
         for table in [
             vec![[500.0, 0.5]],
             vec![[500.0, 0.5], [500.0, 0.6]],
@@ -137,7 +145,7 @@ mod tests {
             vec![[500.0, f64::NAN], [600.0, 0.5]],
             vec![[100.0, 0.5], [600.0, 0.5]],
         ] {
-            assert!(QuantumEfficiency::Table(table).check().is_err());
+            assert!(check(table).unwrap_err().path.starts_with("radiometry.quantum_efficiency"));
         }
     }
 }

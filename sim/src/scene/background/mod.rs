@@ -10,7 +10,7 @@ pub use stray::StrayLightConfig;
 
 use std::sync::Arc;
 
-use contract::{Camera, CameraFrame, Icrs, PixelPoint, Rotation};
+use contract::{Camera, CameraFrame, Icrs, OutOfRange, PixelPoint, Rotation, bounds};
 use hifitime::Epoch;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -18,7 +18,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::SimError;
 use crate::constants::AU_KM;
-use crate::error::require;
 use crate::optics::{Projection, Radiometry, SUN_V_MAG_AT_1_AU, Vignetting};
 use crate::smooth_field::{NODES, NodeGrid, SmoothField};
 use crate::switch::Switch;
@@ -37,6 +36,7 @@ pub struct BackgroundConfig {
     /// Zodiacal light, `on` or `off`, by ecliptic latitude and longitude from the Sun.
     pub zodiacal: Switch,
     /// Stars that are too faint to be drawn, the same everywhere: S10 (stars like the Sun of V = 10 to a square degree), 0 to 1000.
+    #[schemars(range(min = 0, max = 1000))]
     pub faint_stars_s10: f64,
     /// Scattered light of the Sun; needs radiometry of kind "spectral".
     pub sun: Option<StrayLightConfig>,
@@ -51,6 +51,7 @@ pub struct BackgroundConfig {
 #[serde(deny_unknown_fields)]
 pub struct EarthLightConfig {
     /// Diffuse reflectance (Lambert albedo), clouds included, 0 to 1; 0.3 on the average.
+    #[schemars(range(min = 0, max = 1))]
     pub albedo: f64,
     /// How its light is scattered.
     pub scatter: StrayLightConfig,
@@ -67,37 +68,9 @@ impl BackgroundConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
-        require("background.faint_stars_s10", self.faint_stars_s10, "0 to 1000", |s| {
-            (0.0..=1000.0).contains(&s)
-        })?;
-        if let Some(sun) = &self.sun {
-            sun.check([
-                "background.sun.exclusion_deg",
-                "background.sun.transmittance",
-                "background.sun.power",
-                "background.sun.power_inside",
-            ])?;
-        }
-        if let Some(EarthLightConfig { albedo, scatter }) = &self.earth {
-            require("background.earth.albedo", *albedo, "0 to 1", |a| (0.0..=1.0).contains(&a))?;
-            scatter.check([
-                "background.earth.scatter.exclusion_deg",
-                "background.earth.scatter.transmittance",
-                "background.earth.scatter.power",
-                "background.earth.scatter.power_inside",
-            ])?;
-        }
-        if let Some(moon) = &self.moon {
-            moon.check([
-                "background.moon.exclusion_deg",
-                "background.moon.transmittance",
-                "background.moon.power",
-                "background.moon.power_inside",
-            ])?;
-        }
-        Ok(())
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "background")
     }
 
     /// Whether every part is off.
@@ -143,7 +116,7 @@ impl Background {
     /// Prepares the background of a camera; `None` when all of it is off.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for a number outside its range, and for stray light where the aperture is unknown.
+    /// [`SimError::OutOfRange`] for a number outside its range, and for stray light where the aperture is unknown.
     pub fn new(
         config: &BackgroundConfig,
         camera: &Camera,
@@ -160,21 +133,24 @@ impl Background {
             radiometry.bare_sunlight_e_per_s_m2().map(|e_per_s_m2| e_per_s_m2 * to_sun * pixel_m2);
         let stray = config.sun.is_some() || config.earth.is_some() || config.moon.is_some();
         if stray && bare_sun_e_per_s.is_none() {
-            return Err(SimError::Parameter {
-                field: "radiometry.kind",
-                value: "zero_point".to_owned(),
-                expected: "spectral, because stray light of background.sun, .earth, .moon goes by the aperture",
-            });
+            return Err(OutOfRange::new(
+                "radiometry.kind",
+                "zero_point",
+                "spectral, because stray light of background.sun, .earth, .moon goes by the aperture",
+            )
+            .into());
         }
         let (columns, rows) = projection.detector();
         let grid = Arc::new(NodeGrid::new(columns, rows));
         let nodes = (0..NODES * NODES)
             .map(|i| {
                 let (x, y) = grid.place(i);
-                Node::new(projection, x, y).ok_or_else(|| SimError::Parameter {
-                    field: "camera",
-                    value: format!("no direction for pixel ({x}, {y})"),
-                    expected: "a camera whose every pixel has a direction",
+                Node::new(projection, x, y).ok_or_else(|| {
+                    OutOfRange::new(
+                        "camera",
+                        format!("no direction for pixel ({x}, {y})"),
+                        "a camera whose every pixel has a direction",
+                    )
                 })
             })
             .collect::<Result<Vec<_>, _>>()?;

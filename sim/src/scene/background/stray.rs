@@ -4,8 +4,6 @@ use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
 use crate::truth::shadow::EARTH_RADIUS_KM;
 
 /// How baffle and optics scatter light from outside the field: the point source transmittance (irradiance of the detector over that
@@ -15,27 +13,22 @@ use crate::truth::shadow::EARTH_RADIUS_KM;
 #[serde(deny_unknown_fields)]
 pub struct StrayLightConfig {
     /// Angle from which on the baffle keeps the source's light off the first lens, degrees, 1 to 180.
+    #[schemars(range(min = 1, max = 180))]
     pub exclusion_deg: f64,
     /// Point source transmittance at the exclusion angle, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub transmittance: f64,
     /// Exponent with which it falls beyond the exclusion angle, 0 to 20.
+    #[schemars(range(min = 0, max = 20))]
     pub power: f64,
     /// Exponent with which it grows inside the exclusion angle, 0 to 20.
+    #[schemars(range(min = 0, max = 20))]
     pub power_inside: f64,
 }
 
 impl StrayLightConfig {
     /// Angle below which the law is not followed, rad: 1°.
     const NEAREST_RAD: f64 = std::f64::consts::PI / 180.0;
-
-    /// Checks every number; `fields` are the paths of the four in the scenario.
-    pub(super) fn check(&self, fields: [&'static str; 4]) -> Result<(), SimError> {
-        let [exclusion, transmittance, power, inside] = fields;
-        require(exclusion, self.exclusion_deg, "1 to 180", |a| (1.0..=180.0).contains(&a))?;
-        require(transmittance, self.transmittance, "0 to 1", |t| (0.0..=1.0).contains(&t))?;
-        require(power, self.power, "0 to 20", |p| (0.0..=20.0).contains(&p))?;
-        require(inside, self.power_inside, "0 to 20", |p| (0.0..=20.0).contains(&p))
-    }
 
     /// Point source transmittance for light from the unit vector `source` in the direction `pixel`; at most 1.
     pub(super) fn transmittance(&self, pixel: &Vector3<f64>, source: &Vector3<f64>) -> f64 {

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +11,6 @@ use super::Facet;
 use super::checks::check_source;
 use super::docking_unit::DockingUnitTable;
 use super::shapes::{Circle, flat};
-use crate::SimError;
-use crate::error::require;
 use crate::randomness::{Effect, Seed, Stream, uniform};
 
 /// Tiles, at most: each is drawn in every image.
@@ -28,18 +28,25 @@ pub struct BlanketsTable {
     /// Seed of the layout: places of seams, width of gaps, reflectances.
     pub seed: u64,
     /// Rings of tiles, 1 to 20.
+    #[schemars(range(min = 1, max = 20))]
     pub rings: usize,
     /// Width of a ring, m, positive; all of them fit inside the rim.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub ring_width_m: f64,
     /// Width of a tile along its ring, m, about which they vary; positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub tile_width_m: f64,
     /// Mean gap about a tile, m, 0 or more, less than a quarter of a tile.
+    #[schemars(range(min = 0))]
     pub gap_m: f64,
     /// Share of tiles that are missing, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub missing_fraction: f64,
     /// How far the tiles lie in front of the face, m, positive, less than the docking unit stands out.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub thickness_m: f64,
     /// Least and greatest Lambertian reflectance, 0 to 1.
+    #[schemars(inner(range(min = 0, max = 1)))]
     pub reflectance: [f64; 2],
 }
 
@@ -47,40 +54,38 @@ impl BlanketsTable {
     /// Checks every number; `face` is what lies inside the rim, `depth_m` behind the disk's plane.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first field outside its range.
-    pub(super) fn check(&self, face: &Circle, depth_m: f64, unit: &DockingUnitTable) -> Result<(), SimError> {
+    /// [`OutOfRange`] for the first field outside its range.
+    pub(super) fn check(
+        &self,
+        face: &Circle,
+        depth_m: f64,
+        unit: &DockingUnitTable,
+    ) -> Result<(), OutOfRange> {
         check_source("station.blankets.source", &self.source)?;
-        require("station.blankets.rings", self.rings as f64, "1 to 20", |n| (1.0..=20.0).contains(&n))?;
         require(
             "station.blankets.ring_width_m",
             self.ring_width_m,
             "greater than 0, all rings inside the rim",
-            |w| w > 0.0 && w * self.rings as f64 <= face.radius_m,
+            |w| w * self.rings as f64 <= face.radius_m,
         )?;
         require(
             "station.blankets.tile_width_m",
             self.tile_width_m,
             "greater than 0, so large that there are at most 1000 tiles",
-            |w| w > 0.0 && 2.0 * PI * face.radius_m / w * self.rings as f64 <= MAX_TILES,
+            |w| 2.0 * PI * face.radius_m / w * self.rings as f64 <= MAX_TILES,
         )?;
         let least_m = self.ring_width_m.min(self.tile_width_m);
         require("station.blankets.gap_m", self.gap_m, "0 or more, less than a quarter of a tile", |gap| {
-            (0.0..least_m / 4.0).contains(&gap)
-        })?;
-        require("station.blankets.missing_fraction", self.missing_fraction, "0 to 1", |p| {
-            (0.0..=1.0).contains(&p)
+            gap < least_m / 4.0
         })?;
         require(
             "station.blankets.thickness_m",
             self.thickness_m,
             "greater than 0, less than the docking unit stands out from the face",
-            |t| t > 0.0 && t < depth_m - unit.depth_m,
+            |t| t < depth_m - unit.depth_m,
         )?;
         let [least, greatest] = self.reflectance;
-        require("station.blankets.reflectance", least, "0 to 1, the least first", |rho| {
-            (0.0..=1.0).contains(&rho) && rho <= greatest
-        })?;
-        require("station.blankets.reflectance", greatest, "0 to 1", |rho| (0.0..=1.0).contains(&rho))
+        require("station.blankets.reflectance", least, "0 to 1, the least first", |rho| rho <= greatest)
     }
 
     /// The tiles on `face`, which lies `depth_m` behind the disk's plane.

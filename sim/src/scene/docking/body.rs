@@ -1,16 +1,15 @@
 //! Bodies of simple shape: rails and antennas on the station's end, modules, trusses and solar panels behind it.
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::checks::{check_point, check_source, entry, require_at, vector};
+use super::checks::{check_source, vector};
 use super::shapes::{block, cylinder, facet};
 use super::{Facet, Part};
-use crate::SimError;
 
-/// Bodies of one list, at most.
-const MAX_BODIES: usize = 100;
 /// Cells of one panel, at most.
 const MAX_CELLS: usize = 64;
 
@@ -22,6 +21,7 @@ pub struct Bodies {
     pub source: String,
     /// The bodies, in any order, 100 at most. Those whose extents along y3 overlap stand apart across it, so that
     /// none hides another from where a camera may be.
+    #[schemars(length(max = 100))]
     pub body: Vec<Body>,
 }
 
@@ -32,45 +32,61 @@ pub enum Body {
     /// A cylinder in any direction: a rail, a mast, a dish, a module.
     Cylinder {
         /// Centre of one end, m.
+        #[schemars(inner(range(min = -1000, max = 1000)))]
         from_m: [f64; 3],
         /// Centre of the other end, m, elsewhere.
+        #[schemars(inner(range(min = -1000, max = 1000)))]
         to_m: [f64; 3],
         /// Radius, m, positive.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
         radius_m: f64,
         /// Sides of the prism that stands for it, 3 to 128.
+        #[schemars(range(min = 3, max = 128))]
         sides: usize,
         /// Lambertian reflectance, 0 to 1.
+        #[schemars(range(min = 0, max = 1))]
         reflectance: f64,
     },
     /// A box, its third side along y3.
     Box {
         /// Centre, m.
+        #[schemars(inner(range(min = -1000, max = 1000)))]
         centre_m: [f64; 3],
         /// Sides, m, positive.
+        #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0, "maximum": 1000 }))]
         size_m: [f64; 3],
         /// Turn about y3, degrees from +y1 towards +y2, −180 to 180.
         #[serde(default)]
+        #[schemars(range(min = -180, max = 180))]
         turn_deg: f64,
         /// Lambertian reflectance, 0 to 1.
+        #[schemars(range(min = 0, max = 1))]
         reflectance: f64,
     },
     /// A thin panel of cells with gaps between them that one looks through.
     Panel {
         /// Centre, m.
+        #[schemars(inner(range(min = -1000, max = 1000)))]
         centre_m: [f64; 3],
         /// Width and height, m, positive.
+        #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0, "maximum": 1000 }))]
         size_m: [f64; 2],
         /// Turn of the width about y3, degrees from +y1 towards +y2, −180 to 180.
         #[serde(default)]
+        #[schemars(range(min = -180, max = 180))]
         turn_deg: f64,
         /// Tilt about the width, degrees, −80 to 80; positive brings the upper edge forwards.
         #[serde(default)]
+        #[schemars(range(min = -80, max = 80))]
         tilt_deg: f64,
         /// Cells along width and height, 64 in all at most.
+        #[schemars(inner(range(min = 1, max = 64)))]
         cells: [usize; 2],
         /// Gap between cells, m, 0 or more, less than a cell.
+        #[schemars(range(min = 0))]
         gap_m: f64,
         /// Lambertian reflectance, 0 to 1.
+        #[schemars(range(min = 0, max = 1))]
         reflectance: f64,
     },
 }
@@ -83,18 +99,14 @@ impl Bodies {
         table: &str,
         [back_m, front_m]: [f64; 2],
         expected: &'static str,
-    ) -> Result<(), SimError> {
+    ) -> Result<(), OutOfRange> {
         check_source(&format!("{table}.source"), &self.source)?;
-        if self.body.len() > MAX_BODIES {
-            let count = self.body.len().to_string();
-            return Err(entry(format!("number of {table}.body"), count, "at most 100"));
-        }
         for (i, body) in self.body.iter().enumerate() {
             let path = format!("{table}.body[{i}]");
             body.check(&path)?;
             let [low_m, high_m] = extent(&body.facets());
             if low_m < back_m || high_m > front_m {
-                return Err(entry(path, format!("at y3 of {low_m} to {high_m} m"), expected));
+                return Err(OutOfRange::new(path, format!("at y3 of {low_m} to {high_m} m"), expected));
             }
         }
         Ok(())
@@ -119,51 +131,20 @@ impl Bodies {
 }
 
 impl Body {
-    fn check(&self, path: &str) -> Result<(), SimError> {
-        let positive = |name: &str, value| {
-            require_at(format!("{path}.{name}"), value, "greater than 0, at most 1000", |x| {
-                x > 0.0 && x <= 1000.0
-            })
-        };
-        let angle = |name: &str, value, bound: f64, expected| {
-            require_at(format!("{path}.{name}"), value, expected, |a| a.abs() <= bound)
-        };
-        let reflectance = match *self {
-            Self::Cylinder { from_m, to_m, radius_m, sides, reflectance } => {
-                check_point(format!("{path}.from_m"), from_m)?;
-                check_point(format!("{path}.to_m"), to_m)?;
+    fn check(&self, path: &str) -> Result<(), OutOfRange> {
+        match *self {
+            Self::Cylinder { from_m, to_m, .. } => {
                 let length_m = (vector(to_m) - vector(from_m)).norm();
-                require_at(format!("{path}.to_m"), length_m, "1 mm from from_m at least", |l| l >= 1e-3)?;
-                positive("radius_m", radius_m)?;
-                require_at(format!("{path}.sides"), sides as f64, "3 to 128", |n| {
-                    (3.0..=128.0).contains(&n)
-                })?;
-                reflectance
+                require(format!("{path}.to_m"), length_m, "1 mm from from_m at least", |l| l >= 1e-3)
             }
-            Self::Box { centre_m, size_m, turn_deg, reflectance } => {
-                check_point(format!("{path}.centre_m"), centre_m)?;
-                size_m.into_iter().try_for_each(|side_m| positive("size_m", side_m))?;
-                angle("turn_deg", turn_deg, 180.0, "-180 to 180")?;
-                reflectance
-            }
-            Self::Panel { centre_m, size_m, turn_deg, tilt_deg, cells, gap_m, reflectance } => {
-                check_point(format!("{path}.centre_m"), centre_m)?;
-                size_m.into_iter().try_for_each(|side_m| positive("size_m", side_m))?;
-                angle("turn_deg", turn_deg, 180.0, "-180 to 180")?;
-                angle("tilt_deg", tilt_deg, 80.0, "-80 to 80")?;
-                let [across, along] = cells;
-                let count = across.saturating_mul(along);
-                require_at(format!("{path}.cells"), count as f64, "1 to 64 in all", |n| {
-                    (1.0..=MAX_CELLS as f64).contains(&n)
-                })?;
+            Self::Box { .. } => Ok(()),
+            Self::Panel { size_m, cells: [across, along], gap_m, .. } => {
+                let count = across * along;
+                require(format!("{path}.cells"), count as f64, "1 to 64 in all", |_| count <= MAX_CELLS)?;
                 let cell_m = (size_m[0] / across as f64).min(size_m[1] / along as f64);
-                require_at(format!("{path}.gap_m"), gap_m, "0 or more, less than a cell", |gap| {
-                    (0.0..cell_m).contains(&gap)
-                })?;
-                reflectance
+                require(format!("{path}.gap_m"), gap_m, "0 or more, less than a cell", |gap| gap < cell_m)
             }
-        };
-        require_at(format!("{path}.reflectance"), reflectance, "0 to 1", |rho| (0.0..=1.0).contains(&rho))
+        }
     }
 
     fn facets(&self) -> Vec<Facet> {

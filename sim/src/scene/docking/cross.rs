@@ -1,15 +1,15 @@
 //! The cross that stands off in front of the disk, on its post.
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use contract::docking::StandOffCross;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Part;
-use super::checks::{check_reflectance, check_source};
+use super::checks::check_source;
 use super::shapes::{cylinder, flat, wall};
-use crate::SimError;
-use crate::error::require;
 
 /// Sides of the post.
 const POST_SIDES: usize = 16;
@@ -21,38 +21,36 @@ pub struct CrossTable {
     /// Where the figures are from, or `assumed: why`.
     pub source: String,
     /// b: height of the front face over the disk's plane, m, more than the thickness, at most 10.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 10))]
     pub height_m: f64,
     /// From the centre to the end of a bar, m, more than the width, at most 10.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 10))]
     pub half_length_m: f64,
     /// Width of a bar, m, positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub width_m: f64,
     /// Thickness of a bar along y3, m, positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub thickness_m: f64,
     /// Lambertian reflectance of the bars, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub reflectance: f64,
     /// Radius of the post, m, positive, at most half the width of a bar.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub post_radius_m: f64,
     /// Lambertian reflectance of the post, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub post_reflectance: f64,
 }
 
 impl CrossTable {
-    pub(super) fn check(&self) -> Result<(), SimError> {
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
         check_source("cross.source", &self.source)?;
-        let positive = |field, value| require(field, value, "greater than 0", |x| x > 0.0);
-        positive("cross.width_m", self.width_m)?;
-        positive("cross.thickness_m", self.thickness_m)?;
-        require("cross.height_m", self.height_m, "more than thickness_m, at most 10", |b| {
-            b > self.thickness_m && b <= 10.0
-        })?;
-        require("cross.half_length_m", self.half_length_m, "more than width_m, at most 10", |l| {
-            l > self.width_m && l <= 10.0
-        })?;
-        require("cross.post_radius_m", self.post_radius_m, "greater than 0, at most half of width_m", |r| {
-            r > 0.0 && r <= self.width_m / 2.0
-        })?;
-        check_reflectance("cross.reflectance", self.reflectance)?;
-        check_reflectance("cross.post_reflectance", self.post_reflectance)
+        let Self { height_m, half_length_m, width_m, thickness_m, post_radius_m, .. } = *self;
+        require("cross.height_m", height_m, "more than thickness_m, at most 10", |b| b > thickness_m)?;
+        require("cross.half_length_m", half_length_m, "more than width_m, at most 10", |l| l > width_m)?;
+        let expected = "greater than 0, at most half of width_m";
+        require("cross.post_radius_m", post_radius_m, expected, |r| r <= width_m / 2.0)
     }
 
     /// Post, edges of the bars, their common front face: back to front. The edges are a part of their own because the

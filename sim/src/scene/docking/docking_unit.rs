@@ -2,15 +2,15 @@
 
 use std::f64::consts::PI;
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use contract::docking::Outline;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Part;
-use super::checks::{FARTHEST_M, check_reflectance, check_source};
+use super::checks::check_source;
 use super::shapes::{COARSE_SAGITTA_M, Circle, FINE_SAGITTA_M, block, flat, hollow, wall};
-use crate::SimError;
-use crate::error::require;
 
 /// Sides of walls and cone: 64 leave a circle of 0.66 m by 0.5 mm, seen from the side only.
 const SIDES: usize = 64;
@@ -24,22 +24,31 @@ pub struct DockingUnitTable {
     /// Where the figures are from, or `assumed: why`.
     pub source: String,
     /// Where the axis meets the disk's plane (y1, y2), m.
+    #[schemars(inner(range(min = -1000, max = 1000)))]
     pub axis_m: [f64; 2],
     /// How far the front of the ring lies behind the disk's plane, m, 0 or more.
+    #[schemars(range(min = 0, max = 1000))]
     pub depth_m: f64,
     /// Outer radius of the ring, m, more than the inner one.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub outer_radius_m: f64,
     /// Inner radius of the ring, m, more than that of the cone.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub inner_radius_m: f64,
     /// How far the flange between ring and cone lies behind the front of the ring, m, positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub recess_m: f64,
     /// Radius of the cone's opening, m, positive.
+    #[schemars(range(min = 0.01))]
     pub cone_radius_m: f64,
     /// How far the floor of the cone lies behind the front of the ring, m, more than the recess.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub cone_depth_m: f64,
     /// Lambertian reflectance of the ring, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub ring_reflectance: f64,
     /// Lambertian reflectance of flange and cone, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub cone_reflectance: f64,
     /// Blocks on the ring (latches, sensors); none where it is not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -51,39 +60,30 @@ pub struct DockingUnitTable {
 #[serde(deny_unknown_fields)]
 pub struct BlockRing {
     /// How many, 1 to 32.
+    #[schemars(range(min = 1, max = 32))]
     pub count: usize,
     /// Angle of the first, degrees from +y1 towards +y2, −360 to 360.
+    #[schemars(range(min = -360, max = 360))]
     pub first_angle_deg: f64,
     /// Size along the radius, across it and along y3, m, positive; along the radius less than the ring is wide.
+    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
     pub size_m: [f64; 3],
     /// Lambertian reflectance, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub reflectance: f64,
 }
 
 impl DockingUnitTable {
-    pub(super) fn check(&self) -> Result<(), SimError> {
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
         check_source("docking_unit.source", &self.source)?;
-        for y_m in self.axis_m {
-            require("docking_unit.axis_m", y_m, "-1000 to 1000", |y| y.abs() <= FARTHEST_M)?;
-        }
-        require("docking_unit.depth_m", self.depth_m, "0 to 1000", |h| (0.0..=FARTHEST_M).contains(&h))?;
-        require("docking_unit.cone_radius_m", self.cone_radius_m, "0.01 or more", |r| r >= 0.01)?;
-        require("docking_unit.inner_radius_m", self.inner_radius_m, "more than cone_radius_m", |r| {
-            r > self.cone_radius_m
-        })?;
-        require(
-            "docking_unit.outer_radius_m",
-            self.outer_radius_m,
-            "more than inner_radius_m, at most 100",
-            |r| r > self.inner_radius_m && r <= 100.0,
-        )?;
-        require("docking_unit.recess_m", self.recess_m, "greater than 0", |x| x > 0.0)?;
-        require("docking_unit.cone_depth_m", self.cone_depth_m, "more than recess_m, at most 100", |x| {
-            x > self.recess_m && x <= 100.0
-        })?;
-        check_reflectance("docking_unit.ring_reflectance", self.ring_reflectance)?;
-        check_reflectance("docking_unit.cone_reflectance", self.cone_reflectance)?;
-        self.blocks.map_or(Ok(()), |blocks| blocks.check(self.outer_radius_m - self.inner_radius_m))
+        let Self { outer_radius_m, inner_radius_m, recess_m, cone_radius_m, cone_depth_m, .. } = *self;
+        let (path, expected) = ("docking_unit.inner_radius_m", "more than cone_radius_m");
+        require(path, inner_radius_m, expected, |r| r > cone_radius_m)?;
+        let (path, expected) = ("docking_unit.outer_radius_m", "more than inner_radius_m, at most 100");
+        require(path, outer_radius_m, expected, |r| r > inner_radius_m)?;
+        let (path, expected) = ("docking_unit.cone_depth_m", "more than recess_m, at most 100");
+        require(path, cone_depth_m, expected, |x| x > recess_m)?;
+        self.blocks.map_or(Ok(()), |blocks| blocks.check(outer_radius_m - inner_radius_m))
     }
 
     /// The parts from back to front. `base_m` is how far the station's face, on which the ring stands, lies behind the
@@ -139,24 +139,13 @@ impl DockingUnitTable {
 }
 
 impl BlockRing {
-    fn check(&self, ring_width_m: f64) -> Result<(), SimError> {
-        require("docking_unit.blocks.count", self.count as f64, "1 to 32", |n| (1.0..=32.0).contains(&n))?;
-        require("docking_unit.blocks.first_angle_deg", self.first_angle_deg, "-360 to 360", |a| {
-            a.abs() <= 360.0
-        })?;
-        let [along_m, across_m, height_m] = self.size_m;
-        require(
-            "docking_unit.blocks.size_m",
-            along_m,
-            "along the radius greater than 0, less than the ring is wide",
-            |x| x > 0.0 && x < ring_width_m,
-        )?;
-        for side_m in [across_m, height_m] {
-            require("docking_unit.blocks.size_m", side_m, "greater than 0, at most 1", |x| {
-                x > 0.0 && x <= 1.0
-            })?;
-        }
-        check_reflectance("docking_unit.blocks.reflectance", self.reflectance)
+    fn check(&self, ring_width_m: f64) -> Result<(), OutOfRange> {
+        let (path, [along_m, across_m, height_m]) = ("docking_unit.blocks.size_m", self.size_m);
+        let expected = "along the radius greater than 0, less than the ring is wide";
+        require(path, along_m, expected, |x| x < ring_width_m)?;
+        [across_m, height_m]
+            .into_iter()
+            .try_for_each(|side_m| require(path, side_m, "greater than 0, at most 1", |x| x <= 1.0))
     }
 
     fn facets(&self, axis_m: [f64; 2], radius_m: f64, front_m: f64) -> Vec<super::Facet> {

@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Part;
-use super::checks::{check_reflectance, check_source, entry};
+use super::checks::check_source;
 use super::shapes::{COARSE_SAGITTA_M, Circle, FINE_SAGITTA_M, flat};
-use crate::SimError;
-use crate::error::require;
 
 /// Marks on a plate, at most: each is a hole in it, is held against each, and has
 /// a bit in the truth of a field.
@@ -22,8 +22,10 @@ pub struct PlateTable {
     /// Where the figures are from, or `assumed: why`.
     pub source: String,
     /// Radius, m, 0.01 to 10.
+    #[schemars(range(min = 0.01, max = 10))]
     pub radius_m: f64,
     /// Lambertian reflectance, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub reflectance: f64,
 }
 
@@ -35,6 +37,7 @@ pub struct MarksTable {
     /// Where the figures are from, or `assumed: why`.
     pub source: String,
     /// Lambertian reflectance, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub reflectance: f64,
     /// Equal marks along a circle about the plate's centre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -49,14 +52,19 @@ pub struct MarksTable {
 #[serde(deny_unknown_fields)]
 pub struct MarkRing {
     /// Radius of the circle through the marks' centres, m, positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub circle_radius_m: f64,
     /// How many, 1 to 64.
+    #[schemars(range(min = 1, max = 64))]
     pub count: usize,
     /// Length of a mark along the radius, m, positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub length_m: f64,
     /// Width of a mark across the radius, m, positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub width_m: f64,
     /// Angle of the first mark, degrees from +y1 towards +y2, −360 to 360; the others follow in that sense.
+    #[schemars(range(min = -360, max = 360))]
     pub first_angle_deg: f64,
 }
 
@@ -69,10 +77,8 @@ pub struct MarkQuad {
 }
 
 impl PlateTable {
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        check_source("plate.source", &self.source)?;
-        require("plate.radius_m", self.radius_m, "0.01 to 10", |r| (0.01..=10.0).contains(&r))?;
-        check_reflectance("plate.reflectance", self.reflectance)
+    pub(super) fn check(&self) -> Result<(), OutOfRange> {
+        check_source("plate.source", &self.source)
     }
 
     /// The plate, with the marks as holes and as facets of their own.
@@ -88,9 +94,8 @@ impl PlateTable {
 }
 
 impl MarksTable {
-    pub(super) fn check(&self, plate: &PlateTable) -> Result<(), SimError> {
+    pub(super) fn check(&self, plate: &PlateTable) -> Result<(), OutOfRange> {
         check_source("marks.source", &self.source)?;
-        check_reflectance("marks.reflectance", self.reflectance)?;
         if let Some(ring) = &self.ring {
             ring.check(plate)?;
         }
@@ -102,7 +107,11 @@ impl MarksTable {
         let first = quads.len() - self.quad.len();
         for (i, quad) in quads.iter().enumerate().skip(first) {
             let refuse = |expected| {
-                Err(entry(format!("marks.quad[{}].corners_m", i - first), format!("{quad:?}"), expected))
+                Err(OutOfRange::new(
+                    format!("marks.quad[{}].corners_m", i - first),
+                    format!("{quad:?}"),
+                    expected,
+                ))
             };
             if !quad.iter().all(|corner| inside_plate(*corner, plate)) {
                 return refuse("four corners 0.1 mm inside the plate's edge at least");
@@ -137,12 +146,7 @@ impl MarksTable {
 }
 
 impl MarkRing {
-    fn check(&self, plate: &PlateTable) -> Result<(), SimError> {
-        let positive = |field, value| require(field, value, "greater than 0", |x| x > 0.0);
-        positive("marks.ring.circle_radius_m", self.circle_radius_m)?;
-        positive("marks.ring.length_m", self.length_m)?;
-        positive("marks.ring.width_m", self.width_m)?;
-        require("marks.ring.first_angle_deg", self.first_angle_deg, "-360 to 360", |a| a.abs() <= 360.0)?;
+    fn check(&self, plate: &PlateTable) -> Result<(), OutOfRange> {
         let inner_m = self.circle_radius_m - self.length_m / 2.0;
         let outer_m = self.circle_radius_m + self.length_m / 2.0;
         require("marks.ring.length_m", self.length_m, "less than twice circle_radius_m", |_| inner_m > 0.0)?;
@@ -158,7 +162,7 @@ impl MarkRing {
             "marks.ring.count",
             self.count as f64,
             "1 to 64, as many as have room side by side on the circle",
-            |n| (1.0..=MAX_MARKS as f64).contains(&n) && n * angle < 2.0 * PI,
+            |n| n * angle < 2.0 * PI,
         )
     }
 

@@ -1,16 +1,16 @@
 //! The station's end: a disk with a rim, covered with blankets, and the wall of the module behind it.
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use contract::docking::Outline;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Part;
 use super::blankets::BlanketsTable;
-use super::checks::{FARTHEST_M, check_reflectance, check_source};
+use super::checks::check_source;
 use super::docking_unit::DockingUnitTable;
 use super::shapes::{COARSE_SAGITTA_M, Circle, flat, wall};
-use crate::SimError;
-use crate::error::require;
 
 /// Sides of the wall.
 const WALL_SIDES: usize = 48;
@@ -22,18 +22,25 @@ pub struct StationTable {
     /// Where the figures are from, or `assumed: why`.
     pub source: String,
     /// Centre (y1, y2), m.
+    #[schemars(inner(range(min = -1000, max = 1000)))]
     pub centre_m: [f64; 2],
     /// Radius of the outline, m, at most 100; the docking unit is inside.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub radius_m: f64,
     /// How far the face lies behind the disk's plane, m, more than the docking unit's front does.
+    #[schemars(range(max = 100))]
     pub depth_m: f64,
     /// How far the module's wall goes on behind the face, m, positive.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub length_m: f64,
     /// Width of the bare rim of the face, m, positive.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub rim_m: f64,
     /// Lambertian reflectance of rim and wall, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub rim_reflectance: f64,
     /// Lambertian reflectance of the face inside the rim, seen where no blanket is, 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub face_reflectance: f64,
     /// Blankets on the face; bare where they are not given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -41,25 +48,16 @@ pub struct StationTable {
 }
 
 impl StationTable {
-    pub(super) fn check(&self, unit: &DockingUnitTable) -> Result<(), SimError> {
+    pub(super) fn check(&self, unit: &DockingUnitTable) -> Result<(), OutOfRange> {
         check_source("station.source", &self.source)?;
-        for y_m in self.centre_m {
-            require("station.centre_m", y_m, "-1000 to 1000", |y| y.abs() <= FARTHEST_M)?;
-        }
-        require("station.rim_m", self.rim_m, "greater than 0", |w| w > 0.0)?;
         let [dy1_m, dy2_m] = [0, 1].map(|axis| unit.axis_m[axis] - self.centre_m[axis]);
         let reach_m = libm::hypot(dy1_m, dy2_m) + unit.outer_radius_m;
         require("station.radius_m", self.radius_m, "rim and docking unit inside, at most 100", |r| {
-            r - self.rim_m > reach_m && r <= 100.0
+            r - self.rim_m > reach_m
         })?;
         require("station.depth_m", self.depth_m, "more than docking_unit.depth_m, at most 100", |h| {
-            h > unit.depth_m && h <= 100.0
+            h > unit.depth_m
         })?;
-        require("station.length_m", self.length_m, "greater than 0, at most 1000", |l| {
-            l > 0.0 && l <= 1000.0
-        })?;
-        check_reflectance("station.rim_reflectance", self.rim_reflectance)?;
-        check_reflectance("station.face_reflectance", self.face_reflectance)?;
         let face = self.face();
         self.blankets.as_ref().map_or(Ok(()), |blankets| blankets.check(&face, self.depth_m, unit))
     }

@@ -11,19 +11,19 @@
     )
 )]
 
+use contract::OutOfRange;
+use contract::bounds::{self, require};
 use contract::docking::TargetModel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::DockingScene;
 use super::body::Bodies;
-use super::checks::{check_source, entry};
+use super::checks::check_source;
 use super::cross::CrossTable;
 use super::docking_unit::DockingUnitTable;
 use super::plate::{MarksTable, PlateTable};
 use super::station::StationTable;
-use crate::SimError;
-use crate::error::require;
 
 /// A target file: dimensions in metres in the target frame (origin at the disk's centre, y3 along its normal away from
 /// the station, y2 up). Every group of them says where it is from.
@@ -60,6 +60,7 @@ pub struct ContactTable {
     /// Where the figure is from, or `assumed: why`.
     pub source: String,
     /// Distance of the camera from the disk's plane at contact, m, more than the cross is high, at most 100.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub camera_to_disk_m: f64,
 }
 
@@ -67,11 +68,12 @@ impl TargetFile {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first one outside its range, with its path.
-    pub fn check(&self) -> Result<(), SimError> {
+    /// [`OutOfRange`] for the first one outside its range, with its path.
+    pub fn check(&self) -> Result<(), OutOfRange> {
         if self.name.trim().is_empty() {
-            return Err(entry("name", "empty", "a name"));
+            return Err(OutOfRange::new("name", "empty", "a name"));
         }
+        bounds::check(self, "")?;
         self.plate.check()?;
         if let Some(marks) = &self.marks {
             marks.check(&self.plate)?;
@@ -82,7 +84,7 @@ impl TargetFile {
             "contact.camera_to_disk_m",
             self.contact.camera_to_disk_m,
             "more than cross.height_m, at most 100",
-            |d| d > self.cross.height_m && d <= 100.0,
+            |d| d > self.cross.height_m,
         )?;
         self.docking_unit.check()?;
         self.station.check(&self.docking_unit)?;

@@ -309,7 +309,9 @@ fn bad_values_are_refused_with_their_path() {
     refused("marks.ring.count", |t| ring(t).count = 0);
     refused("marks.ring.count", |t| ring(t).width_m = 0.15);
     refused("number of marks", |t| t.marks.as_mut().unwrap().ring = None);
-    refused("marks.quad[0].corners_m", |t| quad(t, [[0.0, 0.1], [0.01, 0.1], [0.01, 0.11], [0.0, f64::NAN]]));
+    refused("marks.quad[0].corners_m[3][1]", |t| {
+        quad(t, [[0.0, 0.1], [0.01, 0.1], [0.01, 0.11], [0.0, f64::NAN]])
+    });
     refused("marks.quad[0].corners_m", |t| quad(t, [[0.0, 0.1], [0.0, 0.31], [-0.01, 0.31], [-0.01, 0.1]]));
     // Clockwise; then across the first mark of the ring.
     refused("marks.quad[0].corners_m", |t| quad(t, [[0.0, 0.1], [0.0, 0.11], [0.01, 0.11], [0.01, 0.1]]));
@@ -320,7 +322,7 @@ fn bad_values_are_refused_with_their_path() {
     refused("cross.half_length_m", |t| t.cross.half_length_m = 0.015);
     refused("cross.post_radius_m", |t| t.cross.post_radius_m = 0.02);
     refused("cross.post_reflectance", |t| t.cross.post_reflectance = 2.0);
-    refused("docking_unit.axis_m", |t| t.docking_unit.axis_m[1] = f64::NEG_INFINITY);
+    refused("docking_unit.axis_m[1]", |t| t.docking_unit.axis_m[1] = f64::NEG_INFINITY);
     refused("docking_unit.depth_m", |t| t.docking_unit.depth_m = -0.1);
     refused("docking_unit.cone_radius_m", |t| t.docking_unit.cone_radius_m = 0.0);
     refused("docking_unit.inner_radius_m", |t| t.docking_unit.inner_radius_m = 0.4);
@@ -330,7 +332,7 @@ fn bad_values_are_refused_with_their_path() {
     refused("docking_unit.blocks.count", |t| t.docking_unit.blocks.as_mut().unwrap().count = 33);
     refused("docking_unit.blocks.size_m", |t| t.docking_unit.blocks.as_mut().unwrap().size_m[0] = 0.2);
     refused("station.radius_m", |t| t.station.radius_m = 0.7);
-    refused("station.centre_m", |t| t.station.centre_m[0] = 1e6);
+    refused("station.centre_m[0]", |t| t.station.centre_m[0] = 1e6);
     refused("station.depth_m", |t| t.station.depth_m = 0.1);
     refused("station.length_m", |t| t.station.length_m = 0.0);
     refused("station.blankets.rings", |t| t.station.blankets.as_mut().unwrap().rings = 1_000_000);
@@ -345,15 +347,16 @@ fn bad_values_are_refused_with_their_path() {
     // Before the disk's plane; through the station's wall.
     refused("fittings.body[1]", |t| fitting(t, [0.0, 1.0, 0.1], 0.1));
     refused("fittings.body[1].radius_m", |t| fitting(t, [0.0, 1.0, -0.2], -0.1));
-    refused("fittings.body[1].to_m", |t| fitting(t, [0.0, 1.0, f64::NAN], 0.1));
+    refused("fittings.body[1].to_m[2]", |t| fitting(t, [0.0, 1.0, f64::NAN], 0.1));
     refused("structure.body[0]", |t| {
         let body = t.fittings.as_ref().unwrap().body[0].clone();
         t.structure.as_mut().unwrap().body[0] = body;
     });
-    refused("structure.body[1].cells", |t| panel(t, [usize::MAX, 3]));
-    refused("structure.body[1].cells", |t| panel(t, [0, 3]));
+    refused("structure.body[1].cells[0]", |t| panel(t, [usize::MAX, 3]));
+    refused("structure.body[1].cells[0]", |t| panel(t, [0, 3]));
+    refused("structure.body[1].cells", |t| panel(t, [9, 8]));
     refused("structure.body[1].gap_m", |t| panel(t, [1, 64]));
-    refused("number of structure.body", |t| {
+    refused("structure.body", |t| {
         let bodies = &mut t.structure.as_mut().unwrap().body;
         *bodies = vec![bodies[0].clone(); 101];
     });

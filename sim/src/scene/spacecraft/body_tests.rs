@@ -392,5 +392,5 @@ fn numbers_out_of_range_are_told_with_their_place() {
                   [[boxes]]\nsize_m = [1, 1, 1]\nsurface = { diffuse = 0.2, specular = 0.1, roughness = 2.0 }";
     assert!(message(second).contains("target.boxes[1].surface.roughness is 2"));
     let boxes = "kind = \"plates\"\n[[boxes]]\nsize_m = [1.0, 0.0, 1.0]\nsurface = { diffuse = 0.2 }";
-    assert!(message(boxes).contains("target.boxes[0].size_m is 0"));
+    assert!(message(boxes).contains("target.boxes[0].size_m[1] is 0"));
 }

@@ -12,14 +12,13 @@ mod body_tests;
 pub use plate::{BoxConfig, PlateConfig};
 pub use surface::SurfaceConfig;
 
-use contract::{Icrs, PixelPoint, Rotation, Target};
+use contract::bounds::{self, require};
+use contract::{Icrs, OutOfRange, PixelPoint, Rotation, Target};
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
 use crate::constants::AU_KM;
-use crate::error::require;
 use crate::optics::{ImagePoint, SUN_V_MAG_AT_1_AU};
 use crate::truth::{States, TargetAttitudeConfig};
 use body::LitBody;
@@ -36,14 +35,17 @@ pub enum TargetConfig {
     /// A point of constant brightness, whatever the phase angle and the shadow: a beacon.
     Beacon {
         /// Visual magnitude at a distance of 1 km; it fades with the square of the distance.
+        #[schemars(range(min = -30, max = 30))]
         magnitude_at_1_km: f64,
     },
     /// A diffusely reflecting sphere in sunlight (Lambert's phase law), drawn resolved: its centre of brightness moves
     /// towards the Sun with the phase angle.
     LambertSphere {
         /// Radius, m, positive.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
         radius_m: f64,
         /// Diffuse reflectance (Lambert albedo) in V, 0 to 1.
+        #[schemars(range(min = 0, max = 1))]
         albedo: f64,
     },
     /// A body of flat plates in sunlight, with an attitude of its own: its brightness and its centre of brightness move
@@ -65,8 +67,8 @@ impl TargetConfig {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), SimError> {
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
         Spacecraft::new(self).map(|_| ())
     }
 }
@@ -113,22 +115,12 @@ impl Spacecraft {
     /// Checks and prepares a target.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first number outside its range.
-    pub fn new(config: &TargetConfig) -> Result<Self, SimError> {
+    /// [`OutOfRange`] for the first number outside its range.
+    pub fn new(config: &TargetConfig) -> Result<Self, OutOfRange> {
+        bounds::check(config, "target")?;
         let model = match config {
-            &TargetConfig::Beacon { magnitude_at_1_km } => {
-                require("target.magnitude_at_1_km", magnitude_at_1_km, "-30 to 30", |m| {
-                    (-30.0..=30.0).contains(&m)
-                })?;
-                Model::Beacon { magnitude_at_1_km }
-            }
-            &TargetConfig::LambertSphere { radius_m, albedo } => {
-                require("target.radius_m", radius_m, "greater than 0, at most 1000", |r| {
-                    r > 0.0 && r <= 1000.0
-                })?;
-                require("target.albedo", albedo, "0 to 1", |a| (0.0..=1.0).contains(&a))?;
-                Model::Sphere { radius_m, albedo }
-            }
+            &TargetConfig::Beacon { magnitude_at_1_km } => Model::Beacon { magnitude_at_1_km },
+            &TargetConfig::LambertSphere { radius_m, albedo } => Model::Sphere { radius_m, albedo },
             TargetConfig::Plates { attitude, boxes, plates } => {
                 attitude.check()?;
                 let mut all = Vec::with_capacity(6 * boxes.len() + plates.len());

@@ -1,29 +1,19 @@
 //! Flat plates and boxes of them: the shape of the target, in metres in its body frame.
 
+use contract::OutOfRange;
 use nalgebra::{Vector2, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::polygon::Polygon;
-use super::surface::{SurfaceConfig, SurfacePaths};
-use crate::SimError;
-use crate::error::require;
-
-/// Farthest from the origin and largest that a part may be, m.
-const FARTHEST_M: f64 = 200.0;
-
-const BOX_SURFACE: SurfacePaths =
-    ["target.boxes[].surface.diffuse", "target.boxes[].surface.specular", "target.boxes[].surface.roughness"];
-const PLATE_FRONT: SurfacePaths =
-    ["target.plates[].front.diffuse", "target.plates[].front.specular", "target.plates[].front.roughness"];
-const PLATE_BACK: SurfacePaths =
-    ["target.plates[].back.diffuse", "target.plates[].back.specular", "target.plates[].back.roughness"];
+use super::surface::SurfaceConfig;
 
 /// A rectangular plate without thickness. It is opaque from both sides.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlateConfig {
     /// Its centre in the target's body frame, m, each −200 to 200.
+    #[schemars(inner(range(min = -200, max = 200)))]
     pub centre_m: [f64; 3],
     /// Direction out of its front, body frame, of any length but 0.
     pub normal: [f64; 3],
@@ -31,8 +21,10 @@ pub struct PlateConfig {
     /// away.
     pub up: [f64; 3],
     /// Extent across `up`, m, above 0, at most 200.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 200))]
     pub width_m: f64,
     /// Extent along `up`, m, above 0, at most 200.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 200))]
     pub height_m: f64,
     /// Reflectance of its front.
     pub front: SurfaceConfig,
@@ -47,8 +39,10 @@ pub struct PlateConfig {
 pub struct BoxConfig {
     /// Its centre in the target's body frame, m, each −200 to 200.
     #[serde(default)]
+    #[schemars(inner(range(min = -200, max = 200)))]
     pub centre_m: [f64; 3],
     /// Extent along x, y and z, m, each above 0, at most 200.
+    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0, "maximum": 200 }))]
     pub size_m: [f64; 3],
     /// Reflectance of its six faces, outside.
     pub surface: SurfaceConfig,
@@ -67,33 +61,16 @@ pub(super) struct Plate {
     pub back: Option<SurfaceConfig>,
 }
 
-fn check_places(field: &'static str, places: [f64; 3]) -> Result<(), SimError> {
-    places.into_iter().try_for_each(|place| require(field, place, "-200 to 200", |p| p.abs() <= FARTHEST_M))
-}
-
-fn check_size(field: &'static str, size: f64) -> Result<(), SimError> {
-    require(field, size, "greater than 0, at most 200", |s| s > 0.0 && s <= FARTHEST_M)
-}
-
 impl PlateConfig {
     /// The plate.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first number outside its range.
-    pub(super) fn plate(&self) -> Result<Plate, SimError> {
-        check_places("target.plates[].centre_m", self.centre_m)?;
-        check_size("target.plates[].width_m", self.width_m)?;
-        check_size("target.plates[].height_m", self.height_m)?;
-        self.front.check(&PLATE_FRONT)?;
-        self.back.map_or(Ok(()), |back| back.check(&PLATE_BACK))?;
-        let unit = |vector: Vector3<f64>| {
-            vector.iter().all(|component| component.is_finite()).then(|| vector.try_normalize(1e-9)).flatten()
-        };
-        let none = |field, value: [f64; 3], expected| SimError::Parameter {
-            field,
-            value: format!("{value:?}"),
-            expected,
-        };
+    /// [`OutOfRange`] for the first number outside its range.
+    pub(super) fn plate(&self) -> Result<Plate, OutOfRange> {
+        self.front.check("target.plates[].front")?;
+        self.back.map_or(Ok(()), |back| back.check("target.plates[].back"))?;
+        let unit = |vector: Vector3<f64>| vector.try_normalize(1e-9);
+        let none = |field, value: [f64; 3], expected| OutOfRange::new(field, format!("{value:?}"), expected);
         let normal = unit(self.normal.into())
             .ok_or_else(|| none("target.plates[].normal", self.normal, "a vector that is not 0"))?;
         let up =
@@ -117,11 +94,9 @@ impl BoxConfig {
     /// Its six faces.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] for the first number outside its range.
-    pub(super) fn plates(&self) -> Result<[Plate; 6], SimError> {
-        check_places("target.boxes[].centre_m", self.centre_m)?;
-        self.size_m.into_iter().try_for_each(|size| check_size("target.boxes[].size_m", size))?;
-        self.surface.check(&BOX_SURFACE)?;
+    /// [`OutOfRange`] for the first number outside its range.
+    pub(super) fn plates(&self) -> Result<[Plate; 6], OutOfRange> {
+        self.surface.check("target.boxes[].surface")?;
         let face = |axis: usize, side: f64| {
             let unit = |axis: usize| Vector3::ith(axis % 3, 1.0);
             let (normal, up) = (unit(axis) * side, unit(axis + 2));

@@ -2,25 +2,27 @@
 
 use std::f64::consts::PI;
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::SimError;
-use crate::error::require;
 
 /// Reflectance of a surface in V.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SurfaceConfig {
     /// Share of the light that is reflected alike in all directions (Lambert), 0 to 1.
+    #[schemars(range(min = 0, max = 1))]
     pub diffuse: f64,
     /// Share of the light that is reflected about the direction of a mirror, 0 to 1 − `diffuse`.
     #[serde(default)]
+    #[schemars(range(min = 0, max = 1))]
     pub specular: f64,
     /// Spread of that reflection: RMS slope of the surface's facets (Ward's α), 0.02 to 0.6. Seen along the normal it
     /// falls to 1/e at about 2α rad from the mirror's direction.
     #[serde(default = "default_roughness")]
+    #[schemars(range(min = 0.02, max = 0.6))]
     pub roughness: f64,
 }
 
@@ -28,19 +30,10 @@ fn default_roughness() -> f64 {
     0.1
 }
 
-/// Paths in the scenario of `diffuse`, `specular` and `roughness` of a surface.
-pub(super) type SurfacePaths = [&'static str; 3];
-
 impl SurfaceConfig {
-    /// Checks every number; `paths` tell which surface it is.
-    ///
-    /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range.
-    pub(super) fn check(&self, paths: &SurfacePaths) -> Result<(), SimError> {
-        let [diffuse, specular, roughness] = *paths;
-        require(diffuse, self.diffuse, "0 to 1", |d| (0.0..=1.0).contains(&d))?;
-        require(specular, self.specular, "0 to 1 - diffuse", |s| s >= 0.0 && s + self.diffuse <= 1.0)?;
-        require(roughness, self.roughness, "0.02 to 0.6", |a| (0.02..=0.6).contains(&a))
+    /// Checks that it reflects no more light than there is; `path` tells which surface it is.
+    pub(super) fn check(&self, path: &str) -> Result<(), OutOfRange> {
+        require(format!("{path}.specular"), self.specular, "0 to 1 - diffuse", |s| s + self.diffuse <= 1.0)
     }
 
     /// Angle over which the direction of the camera may change before the reflectance does, rad.

@@ -3,19 +3,17 @@
 mod oscillation;
 mod segment;
 
+use contract::OutOfRange;
+use contract::bounds::{self, require};
 use contract::docking::Pose;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::SimError;
-use crate::error::require;
 pub use oscillation::OscillationConfig;
 pub use segment::SegmentConfig;
-use segment::{AxialMotion, D3_M, MAX_DURATION_S, check_d3};
-
-/// Most segments of an approach.
-const MAX_SEGMENTS: usize = 1000;
+use segment::{AxialMotion, D3_M};
 
 /// How the camera moves with respect to the target. The frames are those of [`Pose`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -31,18 +29,23 @@ pub enum ApproachConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ConstantVelocityConfig {
-    /// d at the beginning, m; d3 from 0.05 to 20000, also at the end, d1 and d2 from −20000 to 20000.
+    /// d at the beginning, m, each from −20000 to 20000; d3 from 0.05 on, also at the end.
+    #[schemars(inner(range(min = -20000, max = 20000)))]
     pub position_m: [f64; 3],
     /// Velocity, m/s, each from −100 to 100.
     #[serde(default)]
+    #[schemars(inner(range(min = -100, max = 100)))]
     pub velocity_m_s: [f64; 3],
     /// φ at the beginning, degrees, each from −60 to 60, also at the end.
     #[serde(default)]
+    #[schemars(inner(range(min = -60, max = 60)))]
     pub phi_deg: [f64; 3],
     /// dφ/dt, degrees per second, each from −60 to 60.
     #[serde(default)]
+    #[schemars(inner(range(min = -60, max = 60)))]
     pub phi_rate_deg_s: [f64; 3],
     /// Duration, s, 0 to 1e5; 0 is a single field.
+    #[schemars(range(min = 0, max = 1e5))]
     pub duration_s: f64,
 }
 
@@ -51,24 +54,30 @@ pub struct ConstantVelocityConfig {
 #[serde(deny_unknown_fields)]
 pub struct SegmentedConfig {
     /// d3 at the beginning, m, 0.05 to 20000 and greater than the target's contact distance.
+    #[schemars(range(min = 0.05, max = 20000))]
     pub start_d3_m: f64,
     /// d1 and d2 at the beginning, m, −1000 to 1000. They go with d3, linearly, to those at contact: guidance holds a line
     /// of sight, so that what is aside shrinks with the distance.
     #[serde(default)]
+    #[schemars(inner(range(min = -1000, max = 1000)))]
     pub lateral_at_start_m: [f64; 2],
     /// d1 and d2 at contact, m, −1000 to 1000.
     #[serde(default)]
+    #[schemars(inner(range(min = -1000, max = 1000)))]
     pub lateral_at_contact_m: [f64; 2],
     /// Mean φ, degrees, each from −30 to 30.
     #[serde(default)]
+    #[schemars(inner(range(min = -30, max = 30)))]
     pub phi_deg: [f64; 3],
     /// Duration of a change of speed from one segment to the next, s, 0.01 to 1000.
     #[serde(default = "default_ramp_s")]
+    #[schemars(range(min = 0.01, max = 1000))]
     pub ramp_s: f64,
     /// The limit cycle of the control system, over the whole approach.
     #[serde(default)]
     pub limit_cycle: OscillationConfig,
     /// The segments, at least one; the first begins at its own speed.
+    #[schemars(length(min = 1, max = 1000))]
     pub segments: Vec<SegmentConfig>,
 }
 
@@ -76,32 +85,15 @@ fn default_ramp_s() -> f64 {
     3.0
 }
 
-const LIMIT_CYCLE_PATHS: [&str; 6] = [
-    "approach.limit_cycle.lateral_amplitude_m",
-    "approach.limit_cycle.lateral_period_s",
-    "approach.limit_cycle.lateral_phase_deg",
-    "approach.limit_cycle.angular_amplitude_deg",
-    "approach.limit_cycle.angular_period_s",
-    "approach.limit_cycle.angular_phase_deg",
-];
-
 impl ConstantVelocityConfig {
-    fn check(&self) -> Result<(), SimError> {
-        require("approach.duration_s", self.duration_s, "0 to 1e5", |t| (0.0..=MAX_DURATION_S).contains(&t))?;
-        check_d3("approach.position_m", self.position_m[2])?;
-        for d in self.position_m {
-            require("approach.position_m", d, "-20000 to 20000", |d| d.abs() <= *D3_M.end())?;
+    fn check(&self) -> Result<(), OutOfRange> {
+        let ends_m = [0.0, self.duration_s].map(|t_s| self.position_m[2] + self.velocity_m_s[2] * t_s);
+        for (path, d3_m) in
+            ["approach.position_m", "approach.velocity_m_s (d3 at the end)"].into_iter().zip(ends_m)
+        {
+            require(path, d3_m, "0.05 to 20000", |d3_m| D3_M.contains(&d3_m))?;
         }
-        for v in self.velocity_m_s {
-            require("approach.velocity_m_s", v, "-100 to 100", |v| v.abs() <= 100.0)?;
-        }
-        for rate in self.phi_rate_deg_s {
-            require("approach.phi_rate_deg_s", rate, "-60 to 60", |rate| rate.abs() <= 60.0)?;
-        }
-        let end_m = self.position_m[2] + self.velocity_m_s[2] * self.duration_s;
-        check_d3("approach.velocity_m_s (d3 at the end)", end_m)?;
         for (phi, rate) in self.phi_deg.into_iter().zip(self.phi_rate_deg_s) {
-            require("approach.phi_deg", phi, "-60 to 60", |phi| phi.abs() <= 60.0)?;
             let end = phi + rate * self.duration_s;
             require("approach.phi_rate_deg_s (phi at the end)", end, "-60 to 60", |phi| phi.abs() <= 60.0)?;
         }
@@ -110,33 +102,9 @@ impl ConstantVelocityConfig {
 }
 
 impl SegmentedConfig {
-    fn check(&self, contact_distance_m: f64) -> Result<(), SimError> {
-        check_d3("approach.start_d3_m", self.start_d3_m)?;
-        require("approach.start_d3_m", self.start_d3_m, "greater than the target's contact distance", |d| {
-            d > contact_distance_m
-        })?;
-        for m in self.lateral_at_start_m {
-            require("approach.lateral_at_start_m", m, "-1000 to 1000", |m| m.abs() <= 1000.0)?;
-        }
-        for m in self.lateral_at_contact_m {
-            require("approach.lateral_at_contact_m", m, "-1000 to 1000", |m| m.abs() <= 1000.0)?;
-        }
-        for phi in self.phi_deg {
-            require("approach.phi_deg", phi, "-30 to 30", |phi| phi.abs() <= 30.0)?;
-        }
-        require("approach.ramp_s", self.ramp_s, "0.01 to 1000", |t| (0.01..=1000.0).contains(&t))?;
-        self.limit_cycle.check(&LIMIT_CYCLE_PATHS)?;
-        if !(1..=MAX_SEGMENTS).contains(&self.segments.len()) {
-            return Err(SimError::Parameter {
-                field: "approach.segments",
-                value: format!("a list of {}", self.segments.len()),
-                expected: "1 to 1000 segments",
-            });
-        }
-        for (index, segment) in self.segments.iter().enumerate() {
-            segment.check().map_err(|error| error.in_entry(index))?;
-        }
-        Ok(())
+    fn check(&self, contact_distance_m: f64) -> Result<(), OutOfRange> {
+        let expected = "greater than the target's contact distance";
+        require("approach.start_d3_m", self.start_d3_m, expected, |d| d > contact_distance_m)
     }
 }
 
@@ -196,8 +164,9 @@ impl Approach {
     /// Checks an approach to a target whose contact is at d3 = `contact_distance_m`.
     ///
     /// # Errors
-    /// [`SimError::Parameter`] or [`SimError::Entry`] for the first value that is not allowed.
+    /// [`SimError::OutOfRange`] for the first value that is not allowed.
     pub fn new(config: &ApproachConfig, contact_distance_m: f64) -> Result<Self, SimError> {
+        bounds::check(config, "approach")?;
         let course = match config {
             ApproachConfig::ConstantVelocity(constant) => {
                 constant.check()?;

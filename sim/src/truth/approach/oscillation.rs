@@ -6,24 +6,27 @@ use nalgebra::{Vector2, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::SimError;
-use crate::error::require;
-
 /// A sinusoid on each axis: amplitude × sin(2π t/period + phase). All zero unless set.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OscillationConfig {
     /// Amplitudes of d1 and d2, m, 0 to 100.
+    #[schemars(inner(range(min = 0, max = 100)))]
     pub lateral_amplitude_m: [f64; 2],
     /// Periods of d1 and d2, s, 0.1 to 1e5.
+    #[schemars(inner(range(min = 0.1, max = 1e5)))]
     pub lateral_period_s: [f64; 2],
     /// Phases of d1 and d2 at the beginning, degrees.
+    #[schemars(inner(range(min = -3600, max = 3600)))]
     pub lateral_phase_deg: [f64; 2],
     /// Amplitudes of φ1, φ2, φ3, degrees, 0 to 30.
+    #[schemars(inner(range(min = 0, max = 30)))]
     pub angular_amplitude_deg: [f64; 3],
     /// Periods of φ1, φ2, φ3, s, 0.1 to 1e5.
+    #[schemars(inner(range(min = 0.1, max = 1e5)))]
     pub angular_period_s: [f64; 3],
     /// Phases of φ1, φ2, φ3 at the beginning, degrees.
+    #[schemars(inner(range(min = -3600, max = 3600)))]
     pub angular_phase_deg: [f64; 3],
 }
 
@@ -41,25 +44,6 @@ impl Default for OscillationConfig {
 }
 
 impl OscillationConfig {
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`SimError::Parameter`] for the first one outside its range; `paths` are those of the six lists in the scenario, in
-    /// the order of the fields.
-    pub(super) fn check(&self, paths: &[&'static str; 6]) -> Result<(), SimError> {
-        let all = |path, values: &[f64], expected, holds: fn(f64) -> bool| {
-            values.iter().try_for_each(|&value| require(path, value, expected, holds))
-        };
-        let period = |p: f64| (0.1..=1e5).contains(&p);
-        let phase = |p: f64| p.abs() <= 3600.0;
-        all(paths[0], &self.lateral_amplitude_m, "0 to 100", |a| (0.0..=100.0).contains(&a))?;
-        all(paths[1], &self.lateral_period_s, "0.1 to 1e5", period)?;
-        all(paths[2], &self.lateral_phase_deg, "-3600 to 3600", phase)?;
-        all(paths[3], &self.angular_amplitude_deg, "0 to 30", |a| (0.0..=30.0).contains(&a))?;
-        all(paths[4], &self.angular_period_s, "0.1 to 1e5", period)?;
-        all(paths[5], &self.angular_phase_deg, "-3600 to 3600", phase)
-    }
-
     /// Displacement and its rate, `time_s` after the beginning.
     pub(super) fn at(&self, time_s: f64) -> Displacement {
         let lateral = [0, 1].map(|i| {

@@ -1,17 +1,16 @@
 //! Parts of an approach, and the motion along the docking axis that they make: constant accelerations end to end.
 
+use contract::OutOfRange;
+use contract::bounds::require;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::oscillation::OscillationConfig;
-use crate::SimError;
-use crate::error::require;
 
 /// Nearest and farthest d3 of an approach, m.
 pub(super) const D3_M: std::ops::RangeInclusive<f64> = 0.05..=20_000.0;
-const D3_EXPECTED: &str = "0.05 to 20000";
 /// Longest segment and longest approach, s.
-pub(super) const MAX_DURATION_S: f64 = 1e5;
+const MAX_DURATION_S: f64 = 1e5;
 
 /// One part of an approach. It begins where the one before ended; the speed changes to its own at constant acceleration
 /// over the approach's `ramp_s`.
@@ -22,81 +21,47 @@ pub enum SegmentConfig {
     Glide {
         /// d3 where it ends, m, 0.05 to 20000; the target's contact distance where not given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.05, max = 20000))]
         to_d3_m: Option<f64>,
         /// Closing speed at its beginning, m/s, 0 to 100.
+        #[schemars(range(min = 0, max = 100))]
         speed_m_s: f64,
         /// Closing speed at its end, m/s, 0 to 100, reached at constant acceleration; as at the beginning where not given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0, max = 100))]
         end_speed_m_s: Option<f64>,
     },
     /// Away from the target.
     Retreat {
         /// d3 where it ends, m, 0.05 to 20000.
+        #[schemars(range(min = 0.05, max = 20000))]
         to_d3_m: f64,
         /// Speed at its beginning, m/s, 0 to 100.
+        #[schemars(range(min = 0, max = 100))]
         speed_m_s: f64,
         /// Speed at its end, m/s, 0 to 100, reached at constant acceleration; as at the beginning where not given.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0, max = 100))]
         end_speed_m_s: Option<f64>,
     },
     /// At rest along the docking axis.
     Hold {
         /// Duration with the braking before it, s, 0.1 to 1e5 and not shorter than the ramp.
+        #[schemars(range(min = 0.1, max = 1e5))]
         duration_s: f64,
     },
     /// At rest along the docking axis, and swinging.
     Oscillation {
         /// Duration with the braking before it, s, 0.1 to 1e5 and not shorter than the ramp.
+        #[schemars(range(min = 0.1, max = 1e5))]
         duration_s: f64,
         /// The swing, its phases counted from the segment's beginning; it swells and dies over the ramp.
         swing: OscillationConfig,
     },
 }
 
-const SWING_PATHS: [&str; 6] = [
-    "approach.segments[].swing.lateral_amplitude_m",
-    "approach.segments[].swing.lateral_period_s",
-    "approach.segments[].swing.lateral_phase_deg",
-    "approach.segments[].swing.angular_amplitude_deg",
-    "approach.segments[].swing.angular_period_s",
-    "approach.segments[].swing.angular_phase_deg",
-];
-
-impl SegmentConfig {
-    /// Checks this segment by itself.
-    ///
-    /// # Errors
-    /// [`SimError::Parameter`] for the first value outside its range.
-    pub(super) fn check(&self) -> Result<(), SimError> {
-        let speed = |path, value| require(path, value, "0 to 100", |v| (0.0..=100.0).contains(&v));
-        match self {
-            Self::Glide { to_d3_m, speed_m_s, end_speed_m_s } => {
-                check_d3("approach.segments[].to_d3_m", to_d3_m.unwrap_or(1.0))?;
-                speed("approach.segments[].speed_m_s", *speed_m_s)?;
-                speed("approach.segments[].end_speed_m_s", end_speed_m_s.unwrap_or(*speed_m_s))
-            }
-            Self::Retreat { to_d3_m, speed_m_s, end_speed_m_s } => {
-                check_d3("approach.segments[].to_d3_m", *to_d3_m)?;
-                speed("approach.segments[].speed_m_s", *speed_m_s)?;
-                speed("approach.segments[].end_speed_m_s", end_speed_m_s.unwrap_or(*speed_m_s))
-            }
-            Self::Hold { duration_s } => check_duration(*duration_s),
-            Self::Oscillation { duration_s, swing } => {
-                check_duration(*duration_s)?;
-                swing.check(&SWING_PATHS)
-            }
-        }
-    }
-}
-
-pub(super) fn check_d3(path: &'static str, d3_m: f64) -> Result<(), SimError> {
-    require(path, d3_m, D3_EXPECTED, |d| D3_M.contains(&d))
-}
-
-fn check_duration(duration_s: f64) -> Result<(), SimError> {
-    require("approach.segments[].duration_s", duration_s, "0.1 to 1e5", |d| {
-        (0.1..=MAX_DURATION_S).contains(&d)
-    })
+fn check_d3(d3_m: f64) -> Result<(), OutOfRange> {
+    require("approach.segments[].to_d3_m", d3_m, "0.05 to 20000", |d| D3_M.contains(&d))
 }
 
 /// A stretch of constant acceleration along the docking axis.
@@ -123,13 +88,13 @@ impl AxialMotion {
     /// From segments that were checked, beginning at `start_d3_m` with the first segment's own speed.
     ///
     /// # Errors
-    /// [`SimError::Entry`] for a segment that cannot be flown from where the one before ends.
+    /// [`OutOfRange`] for a segment that cannot be flown from where the one before ends.
     pub(super) fn new(
         segments: &[SegmentConfig],
         start_d3_m: f64,
         contact_distance_m: f64,
         ramp_s: f64,
-    ) -> Result<Self, SimError> {
+    ) -> Result<Self, OutOfRange> {
         let mut motion = Self {
             stretches: Vec::new(),
             begin_s: Vec::new(),
@@ -142,7 +107,7 @@ impl AxialMotion {
             let ramp_s = if index == 0 { 0.0 } else { ramp_s };
             motion
                 .append(segment, contact_distance_m, ramp_s)
-                .and_then(|()| check_d3("approach.segments[].to_d3_m", motion.end_d3_m))
+                .and_then(|()| check_d3(motion.end_d3_m))
                 .and_then(|()| motion.check_nearest(contact_distance_m.min(start_d3_m)))
                 .map_err(|error| error.in_entry(index))?;
         }
@@ -150,7 +115,7 @@ impl AxialMotion {
         Ok(motion)
     }
 
-    fn append(&mut self, segment: &SegmentConfig, contact_m: f64, ramp_s: f64) -> Result<(), SimError> {
+    fn append(&mut self, segment: &SegmentConfig, contact_m: f64, ramp_s: f64) -> Result<(), OutOfRange> {
         self.begin_s.push(self.end_s);
         match *segment {
             SegmentConfig::Glide { to_d3_m, speed_m_s, end_speed_m_s } => {
@@ -175,7 +140,7 @@ impl AxialMotion {
     }
 
     /// To `to_d3_m`, at a rate that changes evenly from the first to the second of `rates_m_s` after the ramp.
-    fn travel(&mut self, to_d3_m: f64, rates_m_s: [f64; 2], ramp_s: f64) -> Result<(), SimError> {
+    fn travel(&mut self, to_d3_m: f64, rates_m_s: [f64; 2], ramp_s: f64) -> Result<(), OutOfRange> {
         self.ramp_to(rates_m_s[0], ramp_s);
         let mean = 0.5 * (rates_m_s[0] + rates_m_s[1]);
         let duration_s = (to_d3_m - self.end_d3_m) / mean;
@@ -194,7 +159,7 @@ impl AxialMotion {
     }
 
     /// Checks that no change of speed takes the camera nearer than `least_d3_m`, or farther than d3 may be.
-    fn check_nearest(&self, least_d3_m: f64) -> Result<(), SimError> {
+    fn check_nearest(&self, least_d3_m: f64) -> Result<(), OutOfRange> {
         let ends = self.stretches.iter().skip(1).map(|next| next.begin_s).chain([self.end_s]);
         self.stretches.iter().zip(ends).try_for_each(|(stretch, end_s)| {
             let turn_s = stretch.begin_s - stretch.rate_m_s / stretch.acceleration_m_s2;

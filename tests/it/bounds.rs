@@ -1,0 +1,178 @@
+//! The ranges of numbers that users write: each declared once, told by the schema, and as the documentation says.
+
+use boresight::files::{CameraFile, docking::SetupFile};
+use boresight::run::json_schema;
+use boresight::run::worlds::FIRST;
+use boresight::scenario::{DockingScenario, FarRangeScenario};
+use boresight::study::StudyFile;
+use boresight::visibility::RequirementFile;
+use schemars::schema_for;
+use serde_json::Value;
+use sim::scene::docking::TargetFile;
+
+/// Every number of a file that a user writes, with its path in the types, as `SensorConfig.gain_e_per_dn`.
+fn numbers() -> Vec<(String, Field)> {
+    let schemas = [
+        schema_for!(FarRangeScenario),
+        schema_for!(DockingScenario),
+        schema_for!(TargetFile),
+        schema_for!(CameraFile),
+        schema_for!(SetupFile),
+        schema_for!(RequirementFile),
+        schema_for!(StudyFile),
+    ];
+    let mut all = Vec::new();
+    for schema in schemas.map(schemars::Schema::to_value) {
+        collect(schema["title"].as_str().unwrap(), &schema, &mut all);
+    }
+    all.sort_by(|a: &(String, Field), b| a.0.cmp(&b.0));
+    all.dedup();
+    all
+}
+
+/// A field that holds a number, or lists of numbers.
+#[derive(Debug, PartialEq)]
+struct Field {
+    description: String,
+    /// Of the number: at least, above, at most, below.
+    limits: [Option<f64>; 4],
+    is_integer: bool,
+}
+
+fn collect(owner: &str, schema: &Value, all: &mut Vec<(String, Field)>) {
+    for (name, definition) in schema["$defs"].as_object().into_iter().flatten() {
+        collect(name, definition, all);
+    }
+    for (key, property) in schema["properties"].as_object().into_iter().flatten() {
+        if let Some(number) = number(property) {
+            let limit = |key: &str| number[key].as_f64();
+            let field = Field {
+                description: property["description"].as_str().unwrap_or_default().to_owned(),
+                limits: ["minimum", "exclusiveMinimum", "maximum", "exclusiveMaximum"].map(limit),
+                is_integer: is_of(number, "integer"),
+            };
+            all.push((format!("{owner}.{key}"), field));
+        } else {
+            collect(owner, property, all);
+        }
+    }
+    for key in ["oneOf", "anyOf", "allOf", "prefixItems"] {
+        schema[key].as_array().into_iter().flatten().for_each(|part| collect(owner, part, all));
+    }
+    if schema["items"].is_object() {
+        collect(owner, &schema["items"], all);
+    }
+}
+
+fn is_of(schema: &Value, name: &str) -> bool {
+    schema["type"] == name || schema["type"].as_array().is_some_and(|types| types.iter().any(|t| t == name))
+}
+
+/// The number that a schema is of, inside lists too.
+fn number(schema: &Value) -> Option<&Value> {
+    if is_of(schema, "number") || is_of(schema, "integer") {
+        Some(schema)
+    } else if schema["items"].is_object() {
+        number(&schema["items"])
+    } else {
+        schema["prefixItems"].get(0).and_then(number)
+    }
+}
+
+/// The first range that a description names, and whether its lower limit is outside of it: "0.05 to 1e5", "above 0 to 5" or "above 0, at most 5".
+fn named(description: &str) -> Option<(bool, [f64; 2])> {
+    let plain = description.replace('−', "-").replace("10 000", "10000");
+    let words: Vec<&str> = plain.split_whitespace().collect();
+    let number = |at: usize| words.get(at)?.trim_end_matches([',', ';', '.', ':', ')']).parse::<f64>().ok();
+    (0..words.len()).find_map(|at| {
+        let is_open = at > 0 && ["above", "than"].contains(&words[at - 1]);
+        let to = match words.get(at + 1..)? {
+            ["to", ..] => number(at + 2)?,
+            ["at", "most", ..] if is_open => number(at + 3)?,
+            _ => return None,
+        };
+        Some((is_open, [number(at)?, to]))
+    })
+}
+
+#[test]
+fn a_range_in_the_documentation_is_the_declared_one() {
+    let mut wrong = Vec::new();
+    let (mut closed, mut open) = (0, 0);
+    for (name, field) in numbers() {
+        let [at_least, above, at_most, below] = field.limits;
+        let Some((is_open, [from, to])) = named(&field.description) else { continue };
+        *(if is_open { &mut open } else { &mut closed }) += 1;
+        let lower = if is_open { above } else { at_least };
+        if lower != Some(from) || below.or(at_most) != Some(to) {
+            wrong.push(format!("{name}: {:?}, but: {}", field.limits, field.description));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(closed > 200 && open > 10, "{closed}, {open}");
+}
+
+#[test]
+fn every_number_has_a_range_or_is_free_on_purpose() {
+    let has_none = |(_, field): &&(String, Field)| {
+        let [at_least, above, at_most, below] = field.limits;
+        // An unsigned integer has a minimum by its type.
+        let lower = if field.is_integer { None } else { at_least.or(above) };
+        lower.or(at_most).or(below).is_none()
+    };
+    let numbers = numbers();
+    let mut free: Vec<&str> = numbers.iter().filter(has_none).map(|(name, _)| name.as_str()).collect();
+    free.dedup();
+    assert_eq!(free, FREE);
+}
+
+/// What no limit of its own bounds: any finite number, or one that `check` of its type holds against others (the detector's size, the
+/// limits of a law, the plate that marks lie on).
+const FREE: [&str; 34] = [
+    "BlanketsTable.seed",
+    "Demand.phase_max_deg",
+    "DockingScenario.seed",
+    "FarRangeScenario.seed",
+    "FixedPatternConfig.dead_columns",
+    "FixedPatternConfig.dead_pixels",
+    "FixedPatternConfig.seed",
+    "GlintConfig.normal",
+    "HotPixelConfig.count",
+    "HotPixelConfig.seed",
+    "HotspotConfig.pixels",
+    "Law.max",
+    "Law.mean",
+    "Law.min",
+    "Law.mode",
+    "MarkQuad.corners_m",
+    "Mounting.phi_deg",
+    "Mounting.psi_deg",
+    "Mounting.theta_deg",
+    "OpticsConfig.vignetting",
+    "PlateConfig.normal",
+    "PlateConfig.up",
+    "Rectangle.first_column",
+    "Rectangle.first_row",
+    "Rectangle.last_column",
+    "Rectangle.last_row",
+    "RequirementFile.seed",
+    "RoiConfig.anchor_column",
+    "RoiConfig.anchor_row",
+    "RoiConfig.columns",
+    "RoiConfig.rows",
+    "StudyFile.seed",
+    "SunConfig.rate_axis",
+    "TargetAttitudeConfig.axis",
+];
+
+#[test]
+fn the_schema_of_scenarios_tells_the_ranges() {
+    let schema = json_schema(Some(FIRST)).to_value();
+    let gain = &schema["$defs"]["SensorConfig"]["properties"]["gain_e_per_dn"];
+    assert_eq!((gain["minimum"].as_f64(), gain["maximum"].as_f64()), (Some(0.05), Some(1e5)));
+    let level = &json_schema(None).to_value()["$defs"]["DriftConfig"]["properties"]["rms_arcsec"];
+    assert_eq!(
+        (level["items"]["minimum"].as_f64(), level["items"]["maximum"].as_f64()),
+        (Some(0.0), Some(36e3))
+    );
+}
