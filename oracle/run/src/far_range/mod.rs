@@ -126,7 +126,12 @@ impl World for Prepared {
         let mut objects = TableReader::<ObjectTruth>::open(&directory.join("truth/objects.parquet"))?;
         let frames = TableReader::<FrameTruth>::open(&truth)?;
         let mut clusters = clusters.map(TableReader::<FrameCluster>::open).transpose()?;
-        let mut answers = ByNumber::new(read_measurements(measurements)?, measurements, "frame", &truth);
+        let mut answers = ByNumber::new(
+            read_measurements(measurements, &run_file.scenario.camera)?,
+            measurements,
+            "frame",
+            &truth,
+        );
         for frame in frames {
             let (number, truths) = frame?;
             let objects = objects.rows_of(number)?;
