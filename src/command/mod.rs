@@ -6,6 +6,7 @@ mod dataset;
 mod fly;
 mod gate;
 mod interrupt;
+#[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 mod missing_feature;
 mod monitor;
 mod options;
@@ -26,6 +27,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use files::Failure;
 
 use answer::Answer;
+#[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 use missing_feature::missing_feature;
 use scratch_directory::scratch_directory;
 

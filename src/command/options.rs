@@ -10,7 +10,7 @@ use run::docking::renderer::DockingRenderer;
 use run::pipeline_choice::PipelineChoice;
 use scenario::ScenarioSource;
 
-use super::interrupt::end_programs_when_interrupted;
+use super::interrupt::clean_up_when_interrupted;
 
 /// A range of frames, `A..B`: from A up to and without B.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,7 +64,7 @@ impl PipelineOptions {
     /// The pipeline asked for. If it is a program, it is ended with this process from now on, when that is asked to end.
     pub(super) fn choice(&self) -> PipelineChoice {
         if self.pipeline.as_deref().is_some_and(|word| word.starts_with("exec:")) {
-            end_programs_when_interrupted();
+            clean_up_when_interrupted();
         }
         PipelineChoice { word: self.pipeline.clone(), timeout_s: self.timeout_s, memory_mb: self.memory_mb }
     }

@@ -13,8 +13,8 @@ use clap::Args;
 use files::Failure;
 use serde_json::json;
 
+use super::Answer;
 use super::output::Output;
-use super::{Answer, missing_feature};
 
 pub(super) use pages::{
     write_beside_far_range_run, write_beside_results, write_gate, write_visibility, write_visibility_beside,
@@ -34,16 +34,18 @@ pub(super) struct ReportArguments {
     budget: Vec<PathBuf>,
 }
 
-/// Refuses the option `--report` in a build that cannot write reports.
+/// Refuses the option `--report` in a build that cannot write reports, and a place where something else is than a report: now, before
+/// minutes are spent on what could not be written.
 ///
 /// # Errors
-/// [`Failure::Usage`] that names the missing feature.
+/// [`Failure::Usage`] that names the missing feature; a [`Failure`] that names the file.
 pub(super) fn check_option(report: Option<&PathBuf>) -> Result<(), Failure> {
-    if report.is_some() && !cfg!(feature = "report") { Err(missing_feature("report")) } else { Ok(()) }
+    report.map_or(Ok(()), |path| pages::check_place(path))
 }
 
 pub(super) fn report(arguments: &ReportArguments, output: &Output) -> Result<Answer, Failure> {
     let path = arguments.out.clone().unwrap_or_else(|| arguments.directory.join("report.html"));
+    check_option(Some(&path))?;
     let bytes = pages::write_report(&arguments.directory, &arguments.budget, &path, output)?;
     output.answer(
         &json!({ "report": path, "bytes": bytes }),

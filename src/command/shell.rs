@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Command};
 use clap_complete::Shell;
-use files::{Failure, FileError, WholeFile};
+use files::{Earlier, Failure, FileError, WholeFile};
 
 use super::Answer;
 use super::output::Output;
@@ -53,6 +53,14 @@ pub(super) fn man(arguments: &ManArguments, root: Command, output: &Output) -> R
     Ok(Answer::Yes)
 }
 
+/// Manual pages of the command, which later ones replace.
+const PAGES: Earlier<'static> = Earlier { what: "an earlier page of this manual", is: &is_page };
+
+fn is_page(beginning: &[u8]) -> bool {
+    let title = b".TH boresight";
+    beginning.windows(title.len()).any(|window| window == title)
+}
+
 fn write_pages(
     command: &Command,
     name: &str,
@@ -66,7 +74,7 @@ fn write_pages(
     clap_mangen::Man::new(command_with_usage).title(name).render(&mut page).map_err(io)?;
     let file = WholeFile::create(&path)?;
     file.file().write_all(&page).map_err(io)?;
-    file.replace()?;
+    file.replace(PAGES)?;
     pages.push(path);
     for below in command.get_subcommands().filter(|below| !below.is_hide_set()) {
         write_pages(below, &format!("{name}-{}", below.get_name()), folder, pages)?;

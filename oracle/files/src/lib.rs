@@ -90,5 +90,5 @@ pub use video::{
     read_listed_field, write_field,
 };
 pub use wcs::{SipTerm, TanSip, WcsError};
-pub use whole_file::WholeFile;
+pub use whole_file::{Earlier, WholeFile};
 pub use whole_table::{WholeTable, read_csv_table, read_parquet_table};

@@ -13,6 +13,10 @@ pub(super) fn write_report(_: &Path, _: &[PathBuf], _: &Path, _: &Output) -> Res
     Err(missing_feature("report"))
 }
 
+pub(super) fn check_place(_: &Path) -> Result<(), Failure> {
+    Err(missing_feature("report"))
+}
+
 pub(in crate::command) fn write_beside_far_range_run(_: &Path, _: Vec<FrameVerdict>, output: &Output) {
     note(output);
 }
