@@ -55,6 +55,7 @@ fn render_far_range(
     output: &Output,
 ) -> Result<Answer, Failure> {
     arguments.renderer.check_far_range()?;
+    refuse_stream(Some(&arguments.out))?;
     let format = format_of("--format", arguments.format.as_deref())?.unwrap_or(ImageFormat::Fits);
     let prepared = Prepared::new(source)?;
     let flight = Flight {
@@ -120,6 +121,15 @@ fn render_docking(
     Ok(Answer::Yes)
 }
 
+/// Refuses standard output, to which the far range writes nothing.
+fn refuse_stream(out: Option<&Path>) -> Result<(), Failure> {
+    if out == Some(Path::new("-")) {
+        let message = "--out is -, expected the name of a place: only docking writes to standard output (`./-` is a file)";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    Ok(())
+}
+
 /// The video alone, for another program to read as it comes.
 fn stream_docking(
     prepared: &PreparedDocking,
@@ -182,6 +192,7 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
             path.display()
         )));
     }
+    refuse_stream(arguments.out.as_deref())?;
     let dataset = Dataset::open(&arguments.directory)?;
     let setup = setup(arguments, &dataset)?;
     check_sums(path)?;

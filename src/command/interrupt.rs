@@ -3,8 +3,17 @@
 //! Programs run in process groups of their own, which the interrupt of a terminal does not reach, and one that hangs does not notice that its
 //! input is closed. A process that is killed (SIGKILL) cannot end them: then the closed input is all that they get.
 
+use files::Failure;
+
+use super::scratch_directory::ScratchDirectory;
 #[cfg(unix)]
-use super::scratch_directory;
+use super::scratch_directory::remove_all;
+
+/// A directory for files that nobody keeps; gone with the value, or when the process is asked to end.
+pub(super) fn scratch_directory() -> Result<ScratchDirectory, Failure> {
+    clean_up_when_interrupted();
+    ScratchDirectory::create(&std::env::temp_dir())
+}
 
 /// Ends the programs of pipelines on SIGINT, SIGTERM and SIGHUP, removes temporary directories, and then ends this process, with the status
 /// of a shell: 128 and the number. Asked again, it does nothing.
@@ -16,7 +25,7 @@ pub(super) fn clean_up_when_interrupted() {
         let _ = std::thread::Builder::new().name("interrupt".to_owned()).spawn(|| {
             if let Ok(number) = first_signal() {
                 pipeline::external::end_all();
-                scratch_directory::remove_all();
+                remove_all();
                 std::process::exit(128 + number);
             }
         });

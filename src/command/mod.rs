@@ -27,9 +27,9 @@ use clap::{CommandFactory, Parser, Subcommand};
 use files::Failure;
 
 use answer::Answer;
+use interrupt::scratch_directory;
 #[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 use missing_feature::missing_feature;
-use scratch_directory::scratch_directory;
 
 /// Synthetic scene simulator and test oracle for optical navigation.
 ///

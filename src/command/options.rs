@@ -3,6 +3,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use files::Failure;
 use pipeline::external::DEFAULT_MEMORY_MB;
@@ -74,6 +75,14 @@ impl Default for PipelineOptions {
     fn default() -> Self {
         Self { pipeline: None, timeout_s: 10.0, memory_mb: DEFAULT_MEMORY_MB }
     }
+}
+
+/// Reads the place of a command's output: `-`, which elsewhere is standard output, is none.
+pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|word| match word.to_str() {
+        Some("-") => Err("expected a name: only docking's `render` and `process` write to standard output (`./-` is a file)"),
+        _ => Ok(PathBuf::from(word)),
+    })
 }
 
 /// Who draws a docking scene.

@@ -12,7 +12,7 @@ use scenario::{Scenario, ScenarioSource, Stage, World};
 use super::Answer;
 use super::dataset::check_size;
 use super::fly::{Shown, fly};
-use super::options::{PipelineOptions, RendererOptions, Selection, format_of};
+use super::options::{PipelineOptions, RendererOptions, Selection, format_of, place};
 use super::output::Output;
 
 /// Where numbered run directories go when `--out` is not given.
@@ -23,7 +23,7 @@ pub(super) struct RunArguments {
     #[command(flatten)]
     selection: Selection,
     /// A new or empty directory for the results; default: the next free `runs/SCENARIO-001`
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineOptions,

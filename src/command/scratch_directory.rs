@@ -8,8 +8,6 @@ use std::time::{Duration, SystemTime};
 use files::Failure;
 use tempfile::TempDir;
 
-use super::interrupt::clean_up_when_interrupted;
-
 /// How the names of these directories begin.
 const PREFIX: &str = "boresight-";
 /// A process that has made one locks it at once.
@@ -17,12 +15,6 @@ const UNLOCKED: Duration = Duration::from_secs(3600);
 
 /// Those of this process.
 static PLACES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-
-/// A directory for files that nobody keeps; gone with the value, or when the process is asked to end.
-pub(super) fn scratch_directory() -> Result<ScratchDirectory, Failure> {
-    clean_up_when_interrupted();
-    ScratchDirectory::create(&std::env::temp_dir())
-}
 
 /// A directory for files that nobody keeps; gone with the value.
 pub(super) struct ScratchDirectory {
@@ -58,6 +50,7 @@ impl Drop for ScratchDirectory {
 }
 
 /// Removes those of this process, which is about to end without dropping them.
+#[cfg(unix)]
 pub(super) fn remove_all() {
     for place in places().iter() {
         // Another thread may put a file there meanwhile.

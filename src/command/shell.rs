@@ -7,6 +7,7 @@ use clap_complete::Shell;
 use files::{Earlier, Failure, FileError, WholeFile};
 
 use super::Answer;
+use super::options::place;
 use super::output::Output;
 
 #[derive(Debug, Args)]
@@ -19,7 +20,7 @@ pub(super) struct CompletionsArguments {
 #[derive(Debug, Args)]
 pub(super) struct ManArguments {
     /// Directory of the pages, made when it is not there; pages that are there are replaced
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: PathBuf,
 }
 

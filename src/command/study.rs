@@ -18,7 +18,7 @@ use study::{
 
 use super::Answer;
 use super::fly::fly;
-use super::options::{PipelineOptions, default_jobs, format_of};
+use super::options::{PipelineOptions, default_jobs, format_of, place};
 use super::output::Output;
 use super::report::write_beside_results;
 use crate::command::cluster::{Engine, check_dask, run_on_dask};
@@ -45,7 +45,7 @@ pub(super) struct RunArguments {
     /// A TOML file (docs/studies.md)
     study: PathBuf,
     /// Directory of the results; one that holds a part of the same study is gone on with
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: PathBuf,
     /// One shard of so many, `I/N` with I from 1
     #[arg(long, value_name = "I/N")]
@@ -82,7 +82,7 @@ pub(super) struct MergeArguments {
     /// The study's file
     study: PathBuf,
     /// Directory of the shards
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: PathBuf,
     /// Write no report.html
     #[arg(long)]
@@ -99,7 +99,7 @@ pub(super) struct ReplayArguments {
     #[arg(long, value_name = "K")]
     case: u64,
     /// A new or empty directory for the run; default: the next free `runs/STUDY-case-K-001`
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: Option<PathBuf>,
     /// Keep the images as well: fits, png or exr; docking: png, avi, mjpeg (AVI) or y4m
     #[arg(long, value_name = "FORMAT")]

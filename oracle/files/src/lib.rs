@@ -75,6 +75,7 @@ pub use failure::Failure;
 pub use field_telemetry::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
 pub use frame_file::{ImageFormat, read_frame, write_frame};
 pub use frame_header::FrameHeader;
+pub use lines::Lines;
 pub use measurements::{MeasurementWriter, read_measurements};
 pub use parquet_file::ParquetFile;
 pub use parquet_table::{Row, TableReader, TableWriter};

@@ -50,6 +50,19 @@ fn a_table_that_is_not_there_or_lacks_a_column_is_named() {
 }
 
 #[test]
+fn a_run_of_a_later_version_is_refused() {
+    let bench = dataset();
+    bench.write("mine.csv", format!("{HEADER}\n20,no_target,,\n"));
+    let version = env!("CARGO_PKG_VERSION");
+    for other in ["99", "99.0.0", "one"] {
+        bench.edit("set/run.toml", &format!("version = \"{version}\""), &format!("version = \"{other}\""));
+        let parts = ["set/run.toml:2:11: version", other, "or earlier"];
+        check_refused(&bench, "score set mine.csv", &parts);
+        bench.edit("set/run.toml", &format!("version = \"{other}\""), &format!("version = \"{version}\""));
+    }
+}
+
+#[test]
 fn a_directory_without_truth_or_with_damaged_truth_is_refused() {
     let bench = dataset();
     bench.write("mine.csv", format!("{HEADER}\n20,no_target,,\n"));

@@ -60,6 +60,25 @@ fn a_report_replaces_nothing_but_a_report() {
 }
 
 #[test]
+fn standard_output_is_no_place_where_nothing_is_written_to_it() {
+    let bench = dataset();
+    for words in [
+        "render argon --frames 0..2 --out -",
+        "process set --out -",
+        "run argon --frames 0..2 --out -",
+        "report set --out -",
+        "man --out -",
+        "gate baseline set --reason x --out -",
+        "gate set set --junit -",
+        "gate set set --report -",
+        "visibility uasc-far-range --out -",
+    ] {
+        bench.boresight(words).refused(&["standard output"]);
+        assert!(!bench.path("-").exists(), "{words}");
+    }
+}
+
+#[test]
 fn a_manual_replaces_nothing_but_its_pages() {
     let bench = Bench::new();
     for _ in 0..2 {
