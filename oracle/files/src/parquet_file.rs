@@ -401,7 +401,7 @@ mod tests {
     /// Which of the two other readers take is their affair.
     #[test]
     fn a_column_that_is_there_twice_is_refused() {
-        let [x, y] = [1.0, 2.0].map(|value| Column::new("x", [value].into_iter()));
+        let [x, y] = [1.0, 2.0].map(|value| Column::new("x", [value]));
         let (_folder, path) = written(&[x, y]);
         let refused = ParquetFile::open(&path).unwrap().batches(&["x"], 10).err().unwrap().to_string();
         assert!(refused.contains("column `x` more than once"), "{refused}");
