@@ -18,7 +18,7 @@ use files::{
 use indexmap::IndexMap;
 use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
-use score::{Figure, Score, ScoreContext, Scored, UnitTable};
+use score::{Figure, Score, ScoreContext, ScoreError, Scored, UnitTable};
 use sim::optics::Projection;
 use sim::truth::{FrameTruth, ObjectTruth};
 
@@ -123,7 +123,8 @@ impl World for Prepared {
         let projection = Projection::new(&run_file.scenario.camera)?;
         let mut scorer = score::Scorer::new(context(&run_file, &projection));
         let truth = directory.join("truth/frames.parquet");
-        let mut objects = TableReader::<ObjectTruth>::open(&directory.join("truth/objects.parquet"))?;
+        let table = directory.join("truth/objects.parquet");
+        let mut objects = TableReader::<ObjectTruth>::open(&table)?;
         let frames = TableReader::<FrameTruth>::open(&truth)?;
         let mut clusters = clusters.map(TableReader::<FrameCluster>::open).transpose()?;
         let mut answers = ByNumber::new(
@@ -139,8 +140,15 @@ impl World for Prepared {
             if let Some((outcome, table)) = outcome.as_mut().zip(clusters.as_mut()) {
                 outcome.clusters = table.rows_of(number)?.into_iter().map(|row| row.cluster).collect();
             }
-            for truth in &truths {
-                scorer.add(truth, &objects, outcome.as_ref()).map_err(unscorable)?;
+            for of_frame in &truths {
+                scorer.add(of_frame, &objects, outcome.as_ref()).map_err(|error| {
+                    let is_of_frames = matches!(
+                        error,
+                        ScoreError::Order { .. } | ScoreError::Impossible { field: "range_km", .. }
+                    );
+                    let path = if is_of_frames { &truth } else { &table };
+                    Failure::Usage(format!("{}: {}", path.display(), unscorable(error)))
+                })?;
             }
         }
         answers.end()?;
