@@ -40,15 +40,16 @@ impl NoSolution {
         }
     }
 
-    /// Reads what [`fmt::Display`] writes; an unknown word is somebody else's reason, kept as a failure's text.
-    pub fn parse(text: &str) -> Self {
-        match text {
+    /// Reads what [`fmt::Display`] writes, and `failed` alone; `None` for an unknown word.
+    pub fn parse(text: &str) -> Option<Self> {
+        Some(match text {
             "empty_frame" => Self::EmptyFrame,
             "saturated_frame" => Self::SaturatedFrame,
             "no_previous_frame" => Self::NoPreviousFrame,
             "no_target" => Self::NoTarget,
-            other => Self::Failed(other.strip_prefix("failed: ").unwrap_or(other).to_owned()),
-        }
+            "failed" => Self::Failed(text.to_owned()),
+            other => Self::Failed(other.strip_prefix("failed: ")?.to_owned()),
+        })
     }
 }
 

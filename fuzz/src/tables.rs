@@ -10,6 +10,7 @@ use boresight::files::{
 use boresight::gate::Baseline;
 use boresight::study::CaseTable;
 use boresight::visibility::read_sky;
+use contract::Camera;
 use sha2::{Digest, Sha256};
 use sim::docking::FieldTruth;
 use sim::truth::{FrameTruth, ObjectTruth};
@@ -20,12 +21,25 @@ use crate::Sandbox;
 const BASELINE: &str = include_str!("../corpus/baseline/argon.toml");
 const BASELINE_ROWS: &[u8] = include_bytes!("../corpus/baseline_rows/argon.parquet");
 
+/// A camera whose frames may have been measured.
+const CAMERA: Camera = Camera {
+    columns: 752,
+    rows: 580,
+    focal_length_mm: 20.187,
+    pixel_width_um: 8.6,
+    pixel_height_um: 8.3,
+    principal_x_px: 395.0,
+    principal_y_px: 288.0,
+    radial: [0.0; 3],
+    tangential: [0.0; 2],
+};
+
 /// The tables of CSV tell each other's files apart by their headers.
 pub(crate) fn csv(sandbox: &Sandbox, bytes: &[u8]) {
     let path = sandbox.file("a.csv", bytes);
     let _ = read_telemetry(&path);
     let _ = read_field_telemetry(&path);
-    let _ = read_measurements(&path);
+    let _ = read_measurements(&path, &CAMERA);
     let _ = read_field_measurements(&path);
     let _ = read_motion(&path);
     let _ = read_stars(&path);

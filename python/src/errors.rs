@@ -13,9 +13,9 @@ import_exception!(boresight.errors, FileError);
 pub(crate) fn raised(failure: Failure) -> PyErr {
     match &failure {
         Failure::Interrupted => PyKeyboardInterrupt::new_err(()),
-        Failure::File(ReadOrWrite::Io { .. } | ReadOrWrite::OutputTaken { .. }) => {
-            FileError::new_err(failure.to_string())
-        }
+        Failure::File(
+            ReadOrWrite::Io { .. } | ReadOrWrite::OutputTaken { .. } | ReadOrWrite::NotReplaced { .. },
+        ) => FileError::new_err(failure.to_string()),
         Failure::Renderer(_) => BoresightError::new_err(failure.to_string()),
         _ => {
             let text = failure.explain();

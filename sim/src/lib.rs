@@ -27,6 +27,7 @@ pub mod docking;
 )]
 pub mod draw;
 mod error;
+pub mod exact_toml;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"

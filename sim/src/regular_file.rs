@@ -10,10 +10,17 @@ use std::path::Path;
 /// Those of the operating system, and for a file that is not regular.
 pub fn open(path: &Path) -> Result<File> {
     // Asked before: opening a pipe waits for whoever writes into it.
-    if !std::fs::metadata(path)?.is_file() {
+    let metadata = std::fs::metadata(path)?;
+    if !metadata.is_file() || (metadata.len() == 0 && is_of_the_kernel(path)) {
         return Err(Error::other("it is not a regular file"));
     }
     File::open(path)
+}
+
+/// Whether a file is one that the kernel makes up as it is read: it calls itself regular and empty, and may have no end.
+fn is_of_the_kernel(path: &Path) -> bool {
+    let place = std::fs::canonicalize(path);
+    place.is_ok_and(|place| place.starts_with("/proc") || place.starts_with("/sys"))
 }
 
 /// The bytes of a file of at most `max_bytes`. A pipe or a device, which may have no end, is refused.
@@ -50,6 +57,8 @@ mod tests {
     fn what_may_have_no_end_or_is_too_large_is_refused() {
         assert!(open(Path::new("/dev/zero")).is_err() && open(Path::new("/")).is_err());
         assert!(read(Path::new("/dev/zero"), 10).is_err());
+        #[cfg(target_os = "linux")]
+        assert!(read(Path::new("/proc/kmsg"), 10).is_err() && read(Path::new("/proc/cpuinfo"), 10).is_err());
         assert!(read_text(Path::new("/dev/zero"), 10).is_err());
         let own = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
         let bytes = read(own, 1 << 20).unwrap();

@@ -109,8 +109,8 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     match dataset {
         Some(world) if is_plain => process_dataset(world, arguments, output),
         Some(_) if !is_docking && !sequence.names_cameras() => Err(Failure::Usage(format!(
-            "{} is given, expected with docking alone",
-            sequence.given().unwrap_or("--out -")
+            "{}, expected with docking alone",
+            sequence.given().map_or("--out is -".to_owned(), |option| format!("{option} is given"))
         ))),
         None if !is_stream && path.is_dir() && !sequence.names_cameras() => Err(Failure::Usage(format!(
             "{}: expected camera.toml (far range) or setup.toml (docking) in it, or --scenario SCENARIO for a folder of docking \

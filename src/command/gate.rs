@@ -10,6 +10,7 @@ use gate::{
 };
 
 use super::Answer;
+use super::options::place;
 use super::output::Output;
 use super::report::{check_option, write_gate};
 use crate::table::{baseline_text, gate_table};
@@ -46,10 +47,10 @@ struct CompareArguments {
     #[arg(long, value_name = "FIGURE=SIZE")]
     tolerance: Vec<Tolerance>,
     /// Write the report as JUnit XML too, or why nothing could be compared; a new file
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = place())]
     junit: Option<PathBuf>,
     /// Write the report as one HTML file too, flipped frames as pictures; replaced if it is there
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = place())]
     report: Option<PathBuf>,
 }
 
@@ -58,7 +59,7 @@ struct BaselineArguments {
     /// Directory of a run, or of a study that is complete
     result: PathBuf,
     /// Folder of the baseline
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: PathBuf,
     /// Why this is what later results are held against
     #[arg(long, value_name = "TEXT")]

@@ -1,18 +1,31 @@
-//! Programs in the place of the pipeline end with this process, also when it is interrupted.
+//! Programs in the place of the pipeline end with this process, also when it is interrupted, and its temporary directories go.
 //!
-//! They run in process groups of their own, which the interrupt of a terminal does not reach, and one that hangs does not notice that its
+//! Programs run in process groups of their own, which the interrupt of a terminal does not reach, and one that hangs does not notice that its
 //! input is closed. A process that is killed (SIGKILL) cannot end them: then the closed input is all that they get.
 
-/// Ends the programs of pipelines on SIGINT, SIGTERM and SIGHUP, and then this process, with the status of a shell: 128 and the number.
-/// Asked again, it does nothing.
+use files::Failure;
+
+use super::scratch_directory::ScratchDirectory;
 #[cfg(unix)]
-pub(super) fn end_programs_when_interrupted() {
+use super::scratch_directory::remove_all;
+
+/// A directory for files that nobody keeps; gone with the value, or when the process is asked to end.
+pub(super) fn scratch_directory() -> Result<ScratchDirectory, Failure> {
+    clean_up_when_interrupted();
+    ScratchDirectory::create(&std::env::temp_dir())
+}
+
+/// Ends the programs of pipelines on SIGINT, SIGTERM and SIGHUP, removes temporary directories, and then ends this process, with the status
+/// of a shell: 128 and the number. Asked again, it does nothing.
+#[cfg(unix)]
+pub(super) fn clean_up_when_interrupted() {
     static STARTED: std::sync::Once = std::sync::Once::new();
     STARTED.call_once(|| {
         // Without a thread, or without signals, they are what they are without this: a closed input.
         let _ = std::thread::Builder::new().name("interrupt".to_owned()).spawn(|| {
             if let Ok(number) = first_signal() {
                 pipeline::external::end_all();
+                remove_all();
                 std::process::exit(128 + number);
             }
         });
@@ -27,6 +40,6 @@ fn first_signal() -> std::io::Result<i32> {
     signals.forever().next().ok_or_else(|| std::io::ErrorKind::UnexpectedEof.into())
 }
 
-/// Elsewhere a program ends when its input does.
+/// Elsewhere a program ends when its input does, and the next process removes the directories.
 #[cfg(not(unix))]
-pub(super) fn end_programs_when_interrupted() {}
+pub(super) fn clean_up_when_interrupted() {}

@@ -6,6 +6,7 @@ mod dataset;
 mod fly;
 mod gate;
 mod interrupt;
+#[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 mod missing_feature;
 mod monitor;
 mod options;
@@ -26,8 +27,9 @@ use clap::{CommandFactory, Parser, Subcommand};
 use files::Failure;
 
 use answer::Answer;
+use interrupt::scratch_directory;
+#[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 use missing_feature::missing_feature;
-use scratch_directory::scratch_directory;
 
 /// Synthetic scene simulator and test oracle for optical navigation.
 ///

@@ -3,6 +3,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use files::Failure;
 use pipeline::external::DEFAULT_MEMORY_MB;
@@ -10,7 +11,7 @@ use run::ScenarioSource;
 use run::docking::renderer::DockingRenderer;
 use run::pipeline_choice::PipelineChoice;
 
-use super::interrupt::end_programs_when_interrupted;
+use super::interrupt::clean_up_when_interrupted;
 
 /// A range of frames, `A..B`: from A up to and without B.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -64,7 +65,7 @@ impl PipelineOptions {
     /// The pipeline asked for. If it is a program, it is ended with this process from now on, when that is asked to end.
     pub(super) fn choice(&self) -> PipelineChoice {
         if self.pipeline.as_deref().is_some_and(|word| word.starts_with("exec:")) {
-            end_programs_when_interrupted();
+            clean_up_when_interrupted();
         }
         PipelineChoice { word: self.pipeline.clone(), timeout_s: self.timeout_s, memory_mb: self.memory_mb }
     }
@@ -74,6 +75,14 @@ impl Default for PipelineOptions {
     fn default() -> Self {
         Self { pipeline: None, timeout_s: 10.0, memory_mb: DEFAULT_MEMORY_MB }
     }
+}
+
+/// Reads the place of a command's output: `-`, which elsewhere is standard output, is none.
+pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|word| match word.to_str() {
+        Some("-") => Err("expected a name: only docking's `render` and `process` write to standard output (`./-` is a file)"),
+        _ => Ok(PathBuf::from(word)),
+    })
 }
 
 /// Who draws a docking scene.

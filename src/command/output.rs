@@ -27,7 +27,7 @@ impl Output {
                 .map_err(|error| Failure::Usage(format!("the answer cannot be written as JSON: {error}")))?;
             print_line(json)
         } else {
-            print_line(text)
+            print_line(harmless_but_styled(&text.to_string()))
         }
     }
 
@@ -126,6 +126,22 @@ impl Output {
     }
 }
 
+/// A text that orders nothing of a terminal but how letters look: names and reasons in it are of anybody's making.
+fn harmless_but_styled(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once("\u{1b}[") {
+        let orders = after.trim_start_matches(|c: char| c.is_ascii_digit() || c == ';');
+        let numbers = after.strip_suffix(orders).unwrap_or_default();
+        shown += &harmless(before);
+        (shown, rest) = match orders.strip_prefix('m') {
+            Some(plain) => (shown + "\u{1b}[" + numbers + "m", plain),
+            None => (shown + &harmless("\u{1b}") + "[", after),
+        };
+    }
+    shown + &harmless(rest)
+}
+
 /// Prints one line; a reader that has gone away (`| head`) is not an error.
 fn print_line(text: impl Display) -> Result<(), Failure> {
     match writeln!(std::io::stdout(), "{text}") {
@@ -133,5 +149,19 @@ fn print_line(text: impl Display) -> Result<(), Failure> {
             Err(Failure::Usage(format!("stdout cannot be written: {error}")))
         }
         _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_terminal_is_told_how_letters_look_and_nothing_else() {
+        assert_eq!(harmless_but_styled("\u{1b}[1;31mday\u{1b}[0m 1\tä\n"), "\u{1b}[1;31mday\u{1b}[0m 1\tä\n");
+        assert_eq!(
+            harmless_but_styled("\u{1b}[2J\u{1b}]0;x\u{7}\u{1b}["),
+            "\\u{1b}[2J\\u{1b}]0;x\\u{7}\\u{1b}["
+        );
     }
 }

@@ -13,8 +13,9 @@ use clap::Args;
 use files::Failure;
 use serde_json::json;
 
+use super::Answer;
+use super::options::place;
 use super::output::Output;
-use super::{Answer, missing_feature};
 
 pub(super) use pages::{
     write_beside_results, write_beside_run, write_gate, write_visibility, write_visibility_beside,
@@ -26,7 +27,7 @@ pub(super) struct ReportArguments {
     #[arg(value_name = "DIR")]
     directory: PathBuf,
     /// The file to write, replaced if it is there; default: `report.html` in the directory
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", value_parser = place())]
     out: Option<PathBuf>,
     /// Far range, for the error budget: `all` flies the same frames again, once a stage, and keeps what they gave in DIR/budget; or the
     /// directory of a run of the same frames with --inject STAGE, may be given for every stage
@@ -34,16 +35,18 @@ pub(super) struct ReportArguments {
     budget: Vec<PathBuf>,
 }
 
-/// Refuses the option `--report` in a build that cannot write reports.
+/// Refuses the option `--report` in a build that cannot write reports, and a place where something else is than a report: now, before
+/// minutes are spent on what could not be written.
 ///
 /// # Errors
-/// [`Failure::Usage`] that names the missing feature.
+/// [`Failure::Usage`] that names the missing feature; a [`Failure`] that names the file.
 pub(super) fn check_option(report: Option<&PathBuf>) -> Result<(), Failure> {
-    if report.is_some() && !cfg!(feature = "report") { Err(missing_feature("report")) } else { Ok(()) }
+    report.map_or(Ok(()), |path| pages::check_place(path))
 }
 
 pub(super) fn report(arguments: &ReportArguments, output: &Output) -> Result<Answer, Failure> {
     let path = arguments.out.clone().unwrap_or_else(|| arguments.directory.join("report.html"));
+    check_option(Some(&path))?;
     let bytes = pages::write_report(&arguments.directory, &arguments.budget, &path, output)?;
     output.answer(
         &json!({ "report": path, "bytes": bytes }),

@@ -9,7 +9,7 @@ use scenario::Stage;
 
 use super::Answer;
 use super::fly::{Shown, fly};
-use super::options::{PipelineOptions, RendererOptions, Selection};
+use super::options::{PipelineOptions, RendererOptions, Selection, place};
 use super::output::Output;
 
 /// Where numbered run directories go when `--out` is not given.
@@ -20,7 +20,7 @@ pub(super) struct RunArguments {
     #[command(flatten)]
     selection: Selection,
     /// A new or empty directory for the results; default: the next free `runs/SCENARIO-001`
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineOptions,

@@ -1,9 +1,78 @@
 //! A place for files that nobody keeps.
 
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, SystemTime};
+
 use files::Failure;
+use tempfile::TempDir;
+
+/// How the names of these directories begin.
+const PREFIX: &str = "boresight-";
+/// A process that has made one locks it at once.
+const UNLOCKED: Duration = Duration::from_secs(3600);
+
+/// Those of this process.
+static PLACES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// A directory for files that nobody keeps; gone with the value.
-pub(super) fn scratch_directory() -> Result<tempfile::TempDir, Failure> {
-    tempfile::tempdir()
-        .map_err(|error| Failure::Usage(format!("a temporary directory cannot be made: {error}")))
+pub(super) struct ScratchDirectory {
+    directory: TempDir,
+    /// Held as long as the process lives, whatever ends it: so one that was left is told from one that is used.
+    _lock: Option<File>,
+}
+
+impl ScratchDirectory {
+    /// Makes one in a folder, and removes those of processes that were killed.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when none can be made there.
+    pub(super) fn create(folder: &Path) -> Result<Self, Failure> {
+        remove_abandoned(folder);
+        let directory = tempfile::Builder::new().prefix(PREFIX).tempdir_in(folder).map_err(|error| {
+            Failure::Usage(format!("a temporary directory cannot be made in {}: {error}", folder.display()))
+        })?;
+        let lock = File::open(directory.path()).ok().filter(|file| file.try_lock().is_ok());
+        places().push(directory.path().to_owned());
+        Ok(Self { directory, _lock: lock })
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        self.directory.path()
+    }
+}
+
+impl Drop for ScratchDirectory {
+    fn drop(&mut self) {
+        places().retain(|place| place != self.directory.path());
+    }
+}
+
+/// Removes those of this process, which is about to end without dropping them.
+#[cfg(unix)]
+pub(super) fn remove_all() {
+    for place in places().iter() {
+        // Another thread may put a file there meanwhile.
+        let _ = std::fs::remove_dir_all(place).or_else(|_| std::fs::remove_dir_all(place));
+    }
+}
+
+fn places() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
+    PLACES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what processes left that were killed. That it cannot be done is no matter: nobody reads it.
+fn remove_abandoned(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let age = entry.metadata().and_then(|metadata| metadata.modified()).ok();
+        let age = age.and_then(|modified| SystemTime::now().duration_since(modified).ok());
+        let is_old = entry.file_name().to_string_lossy().starts_with(PREFIX)
+            && entry.file_type().is_ok_and(|kind| kind.is_dir())
+            && age.is_some_and(|age| age > UNLOCKED);
+        if is_old && File::open(&path).is_ok_and(|file| file.try_lock().is_ok()) {
+            let _ = std::fs::remove_dir_all(&path);
+        }
+    }
 }

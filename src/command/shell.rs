@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Command};
 use clap_complete::Shell;
-use files::{Failure, FileError, WholeFile};
+use files::{Earlier, Failure, FileError, WholeFile};
 
 use super::Answer;
+use super::options::place;
 use super::output::Output;
 
 #[derive(Debug, Args)]
@@ -19,7 +20,7 @@ pub(super) struct CompletionsArguments {
 #[derive(Debug, Args)]
 pub(super) struct ManArguments {
     /// Directory of the pages, made when it is not there; pages that are there are replaced
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: PathBuf,
 }
 
@@ -53,6 +54,14 @@ pub(super) fn man(arguments: &ManArguments, root: Command, output: &Output) -> R
     Ok(Answer::Yes)
 }
 
+/// Manual pages of the command, which later ones replace.
+const PAGES: Earlier<'static> = Earlier { what: "an earlier page of this manual", is: &is_page };
+
+fn is_page(beginning: &[u8]) -> bool {
+    let title = b".TH boresight";
+    beginning.windows(title.len()).any(|window| window == title)
+}
+
 fn write_pages(
     command: &Command,
     name: &str,
@@ -66,7 +75,7 @@ fn write_pages(
     clap_mangen::Man::new(command_with_usage).title(name).render(&mut page).map_err(io)?;
     let file = WholeFile::create(&path)?;
     file.file().write_all(&page).map_err(io)?;
-    file.replace()?;
+    file.replace(PAGES)?;
     pages.push(path);
     for below in command.get_subcommands().filter(|below| !below.is_hide_set()) {
         write_pages(below, &format!("{name}-{}", below.get_name()), folder, pages)?;

@@ -15,7 +15,7 @@ use study::{
 
 use super::Answer;
 use super::fly::{Shown, fly};
-use super::options::{PipelineOptions, default_jobs};
+use super::options::{PipelineOptions, default_jobs, place};
 use super::output::Output;
 use super::report::write_beside_results;
 use crate::command::cluster::{Engine, check_dask, run_on_dask};
@@ -42,7 +42,7 @@ pub(super) struct RunArguments {
     /// A TOML file (docs/studies.md)
     study: PathBuf,
     /// Directory of the results; one that holds a part of the same study is gone on with
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: PathBuf,
     /// One shard of so many, `I/N` with I from 1
     #[arg(long, value_name = "I/N")]
@@ -79,7 +79,7 @@ pub(super) struct MergeArguments {
     /// The study's file
     study: PathBuf,
     /// Directory of the shards
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: PathBuf,
     /// Write no report.html
     #[arg(long)]
@@ -96,7 +96,7 @@ pub(super) struct ReplayArguments {
     #[arg(long, value_name = "K")]
     case: u64,
     /// A new or empty directory for the run; default: the next free `runs/STUDY-case-K-001`
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: Option<PathBuf>,
     /// Keep the images as well: fits, png or exr; docking: png, avi, mjpeg (AVI) or y4m
     #[arg(long, value_name = "FORMAT")]

@@ -7,6 +7,7 @@ use files::Failure;
 use visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, Status, assess, write_report};
 
 use super::Answer;
+use super::options::place;
 use super::output::Output;
 use super::report::{check_option, write_visibility, write_visibility_beside};
 use crate::table::{visibility_markdown, visibility_table};
@@ -17,10 +18,10 @@ pub(super) struct VisibilityArguments {
     #[arg(required_unless_present_any = ["schema", "list"])]
     requirement: Option<String>,
     /// A new or empty directory for visibility.json, visibility.md and the curves
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: Option<PathBuf>,
     /// Write the report as one HTML file too, replaced if it is there; with --out it is in the directory anyway
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = place())]
     report: Option<PathBuf>,
     /// Frames simulated for each result, instead of the file's `confirm.frames`; 0: none
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=100_000))]
@@ -52,6 +53,11 @@ pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Re
     };
     check_option(arguments.report.as_ref())?;
     let mut requirements = Requirements::read(word)?;
+    if requirements.file.requirements.is_empty() {
+        return Err(Failure::Usage(format!(
+            "{word}: there is no [[requirements]], expected at least one: where nothing is asked, nothing is met"
+        )));
+    }
     if let Some(frames) = arguments.frames {
         requirements.file.confirm.frames = frames;
     }

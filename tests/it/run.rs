@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use boresight::files::read_telemetry;
+use boresight::files::{format_utc, parse_utc, read_telemetry};
 use boresight::run::ScenarioSource;
 use boresight::run::far_range::simulator;
 use boresight::score::{ARGON_TABLE_2, names};
+use hifitime::Unit;
 use serde_json::Value;
 use sim::truth::{ObjectKind, ObjectTruth};
 
@@ -36,6 +37,42 @@ fn a_run_directory_holds_every_file_of_a_run() {
         "truth/objects.parquet",
     ];
     assert_eq!(files, expected.map(PathBuf::from).into());
+}
+
+/// Timestamps of the truth have no number for second 60, and do not step back: what is inside has that of its end.
+fn check_times(telemetry: &[String], truth: &[String]) {
+    let expected = |text: &String| {
+        if text.contains(":60.") { "2017-01-01T00:00:00.000000000Z".to_owned() } else { text.clone() }
+    };
+    assert!(telemetry.iter().any(|text| text.contains("23:59:60.")), "{telemetry:?}");
+    assert_eq!(truth, telemetry.iter().map(expected).collect::<Vec<_>>());
+    assert!(truth.is_sorted(), "{truth:?}");
+}
+
+#[test]
+fn times_of_the_truth_go_through_a_leap_second_in_both_worlds() {
+    let bench = Bench::new();
+    bench.scenario("far.toml", "starting-point", |table| {
+        table["orbit"]["epoch_utc"] = "2016-12-31T00:00:00Z".into();
+        table["schedule"][0]["start_utc"] = "2016-12-31T23:59:10.75Z".into();
+        table["schedule"][0]["cadence_s"] = 1.5.into();
+    });
+    bench.boresight("run far.toml --frames 0..40 --out far").done();
+    let telemetry: Vec<String> =
+        bench.csv("far/telemetry.csv").iter().map(|row| row["time_utc"].clone()).collect();
+    let truth: Vec<String> = bench.frames("far").iter().map(|truth| format_utc(truth.time)).collect();
+    check_times(&telemetry, &truth);
+    bench.scenario("near.toml", "docking", |table| {
+        table["start_utc"] = "2016-12-31T23:59:59.5Z".into();
+    });
+    bench.boresight("run near.toml --frames 0..100 --out near").done();
+    let start = parse_utc("2016-12-31T23:59:59.5Z").unwrap();
+    let time = |row: &BTreeMap<String, String>| {
+        format_utc(start + Unit::Second * row["time_s"].parse::<f64>().unwrap())
+    };
+    let telemetry: Vec<String> = bench.csv("near/telemetry.csv").iter().map(time).collect();
+    let truth: Vec<String> = bench.fields("near").iter().map(|truth| format_utc(truth.time)).collect();
+    check_times(&telemetry, &truth);
 }
 
 #[test]

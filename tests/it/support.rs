@@ -8,6 +8,7 @@ use std::time::Duration;
 use boresight::files::{Row, TableReader};
 use boresight::scenario::BUILT_IN;
 use serde_json::Value;
+use sim::docking::FieldTruth;
 use sim::truth::{FrameTruth, ObjectTruth};
 use tempfile::{TempDir, tempdir};
 
@@ -121,6 +122,11 @@ impl Bench {
     /// The truth about each frame of a run directory.
     pub(crate) fn frames(&self, run: &str) -> Vec<FrameTruth> {
         self.table(&format!("{run}/truth/frames.parquet"))
+    }
+
+    /// The truth about each field of a docking run directory.
+    pub(crate) fn fields(&self, run: &str) -> Vec<FieldTruth> {
+        self.table(&format!("{run}/truth/fields.parquet"))
     }
 
     /// The truth about each object in each frame of a run directory.

@@ -395,7 +395,9 @@ fn the_built_in_example_tells_where_the_stars_are_lost_and_does_not_depend_on_th
 
 #[test]
 fn all_met_is_exit_status_0() {
-    let (report, status) = answer("sky.pointings = 200\nconfirm.frames = 0\n", "");
+    let lines = "sky.pointings = 200\nconfirm.frames = 0\n[[requirements]]\nid = \"R-1\"\ntext = \"stars\"\n\
+                 demand = { kind = \"stars\", probability = 0.01 }\n";
+    let (report, status) = answer(lines, "");
     assert_eq!(status, Some(0), "{report:#}");
     let bench = Bench::new();
     assert!(bench.boresight("visibility --schema").done().json()["properties"]["requirements"].is_object());

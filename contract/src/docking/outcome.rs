@@ -59,12 +59,11 @@ impl NoPose {
         }
     }
 
-    /// Reads what [`fmt::Display`] writes; an unknown word is somebody else's reason, kept as a failure's text.
-    pub fn parse(text: &str) -> Self {
-        Self::PLAIN
-            .into_iter()
-            .find(|reason| reason.code() == text)
-            .unwrap_or_else(|| Self::Failed(text.strip_prefix("failed: ").unwrap_or(text).to_owned()))
+    /// Reads what [`fmt::Display`] writes, and `failed` alone; `None` for an unknown word.
+    pub fn parse(text: &str) -> Option<Self> {
+        let failed = || if text == "failed" { Some(text) } else { text.strip_prefix("failed: ") };
+        let plain = Self::PLAIN.into_iter().find(|reason| reason.code() == text);
+        plain.or_else(|| failed().map(|reason| Self::Failed(reason.to_owned())))
     }
 }
 

@@ -3,19 +3,21 @@
 //! The lines are those of `sha256sum`, and `sha256sum --check SHA256SUMS` reads them. Boresight reads them itself, after the files: of
 //! damage that a reader of the file can tell, it tells the place.
 
-use std::io::{BufRead, BufReader, ErrorKind};
-use std::path::Path;
+use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::path::{Component, Path};
 
 use sha2::{Digest, Sha256};
 
 use super::error::Place;
-use super::{FileError, WholeFile};
+use super::{Earlier, FileError, WholeFile};
 use crate::sha256::hex;
 
 /// The file's name.
 const NAME: &str = "SHA256SUMS";
 /// Largest file that is read.
 const MOST_BYTES: u64 = 1 << 20;
+/// Largest file that is hashed: the tables of a hundred million frames are shorter.
+const MOST_HASHED_BYTES: u64 = 1 << 38;
 /// Bytes hashed at a time.
 const CHUNK_BYTES: usize = 1 << 16;
 
@@ -24,10 +26,18 @@ const CHUNK_BYTES: usize = 1 << 16;
 pub struct Checksums;
 
 impl Checksums {
-    /// Writes the checksums of those of `names` that are in a directory, in the place of earlier ones.
+    /// Makes sure that a directory has no checksums of other files than `names`: they are somebody else's.
     ///
     /// # Errors
-    /// [`FileError::Io`] when a file cannot be read, or the checksums not be written.
+    /// [`FileError::NotReplaced`] when it has, [`FileError::Io`].
+    pub fn check_own(directory: &Path, names: &[&str]) -> Result<(), FileError> {
+        earlier(&|beginning| is_of(beginning, names)).check(&directory.join(NAME))
+    }
+
+    /// Writes the checksums of those of `names` that are in a directory, in the place of earlier ones of the same names.
+    ///
+    /// # Errors
+    /// Those of [`Checksums::check_own`]; [`FileError::Io`] when a file cannot be read, or the checksums not be written.
     pub fn write(directory: &Path, names: &[&str]) -> Result<(), FileError> {
         let mut lines = String::new();
         for name in names {
@@ -35,7 +45,22 @@ impl Checksums {
                 lines += &format!("{sum}  {name}\n");
             }
         }
-        WholeFile::with_text(&directory.join(NAME), &lines)?.replace()
+        let file = WholeFile::with_text(&directory.join(NAME), &lines)?;
+        file.replace(earlier(&|beginning| is_of(beginning, names)))
+    }
+
+    /// Removes the checksums of a directory, whose files are about to change.
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn remove(directory: &Path) -> Result<(), FileError> {
+        let path = directory.join(NAME);
+        match std::fs::remove_file(&path) {
+            Err(source) if source.kind() != ErrorKind::NotFound => {
+                Err(FileError::io(&path, "remove", source))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Holds files of a directory against its checksums, where it has any: those whose names `is_used`. A file that has no line is
@@ -52,15 +77,12 @@ impl Checksums {
             Err(source) => return Err(FileError::io(&path, "read", source)),
         };
         for (number, line) in (1..).zip(text.lines()) {
-            let (told, name) = line.split_once("  ").filter(|(sum, _)| is_sum(sum)).ok_or_else(|| {
-                FileError::value(
-                    &path,
-                    Place::Line(number),
-                    "line",
-                    line,
-                    "64 hexadecimal digits, two blanks, a name",
-                )
-            })?;
+            let wrong = |expected: &str| FileError::value(&path, Place::Line(number), "line", line, expected);
+            let (told, name) =
+                parse(line).ok_or_else(|| wrong("64 hexadecimal digits, two blanks, a name"))?;
+            if !is_inside(name) {
+                return Err(wrong("the name of a file in this directory, without `..`"));
+            }
             if !is_used(name) {
                 continue;
             }
@@ -77,6 +99,26 @@ impl Checksums {
     }
 }
 
+fn earlier<'a>(is: &'a dyn Fn(&[u8]) -> bool) -> Earlier<'a> {
+    Earlier { what: "the checksums of the files that are to be written", is }
+}
+
+/// Whether a text is that of checksums of some of `names` and nothing else.
+fn is_of(text: &[u8], names: &[&str]) -> bool {
+    let lines = std::str::from_utf8(text).map(str::lines);
+    lines.is_ok_and(|mut lines| lines.all(|line| parse(line).is_some_and(|(_, name)| names.contains(&name))))
+}
+
+/// Sum and name of a line.
+fn parse(line: &str) -> Option<(&str, &str)> {
+    line.split_once("  ").filter(|(sum, _)| is_sum(sum))
+}
+
+/// Whether a name leads to no place outside the directory.
+fn is_inside(name: &str) -> bool {
+    !name.is_empty() && Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
+}
+
 fn is_sum(text: &str) -> bool {
     text.len() == 64 && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
@@ -88,8 +130,13 @@ fn sha256(path: &Path) -> Result<Option<String>, FileError> {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(FileError::io(path, "open", source)),
     };
+    let length = file.metadata().map_err(|source| FileError::io(path, "read", source))?.len();
+    if length > MOST_HASHED_BYTES {
+        let expected = format!("at most {MOST_HASHED_BYTES}");
+        return Err(FileError::value(path, Place::Whole, "length in bytes", length, expected));
+    }
     let mut hash = Sha256::new();
-    let mut file = BufReader::with_capacity(CHUNK_BYTES, file);
+    let mut file = BufReader::with_capacity(CHUNK_BYTES, file.take(length));
     loop {
         let chunk = match file.fill_buf() {
             Ok([]) => break,
@@ -136,5 +183,41 @@ mod tests {
         assert!(check().is_ok());
         std::fs::write(path(NAME), "a.csv\n").unwrap();
         assert!(check().unwrap_err().to_string().contains("line 1"));
+    }
+
+    #[test]
+    fn names_stay_inside_the_directory() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("run")).unwrap();
+        std::fs::write(folder.path().join("a.csv"), "1").unwrap();
+        let sum = "0".repeat(64);
+        for name in ["../a.csv", "truth/../../a.csv", "/etc/passwd", "/proc/kmsg", "..", ""] {
+            std::fs::write(folder.path().join("run").join(NAME), format!("{sum}  {name}\n")).unwrap();
+            let message = Checksums::check(&folder.path().join("run"), |_| true).unwrap_err().to_string();
+            assert!(message.contains("line 1") && message.contains("in this directory"), "{name}: {message}");
+        }
+    }
+
+    #[test]
+    fn a_file_that_is_longer_than_any_table_is_not_hashed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.csv");
+        std::fs::File::create(&path).unwrap().set_len(MOST_HASHED_BYTES + 1).unwrap();
+        std::fs::write(folder.path().join(NAME), format!("{}  a.csv\n", "0".repeat(64))).unwrap();
+        let message = Checksums::check(folder.path(), |_| true).unwrap_err().to_string();
+        assert!(message.contains("length in bytes"), "{message}");
+    }
+
+    #[test]
+    fn checksums_of_other_files_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a.csv"), "1").unwrap();
+        std::fs::write(folder.path().join("b.csv"), "2").unwrap();
+        Checksums::write(folder.path(), &["a.csv"]).unwrap();
+        let message = Checksums::write(folder.path(), &["b.csv"]).unwrap_err().to_string();
+        assert!(message.contains("SHA256SUMS") && message.contains("another file"), "{message}");
+        assert!(Checksums::check_own(folder.path(), &["b.csv"]).is_err());
+        Checksums::write(folder.path(), &["a.csv", "b.csv"]).unwrap();
+        assert!(Checksums::check_own(folder.path(), &["b.csv", "a.csv"]).is_ok());
     }
 }

@@ -147,8 +147,7 @@ impl CsvRow<'_> {
         }
     }
 
-    /// Refuses a value where the row's status has none: it is an answer under a misspelt word, and counted as a miss, it would be lost in
-    /// silence.
+    /// Refuses a value where the row's status has none: counted as a miss, it would be lost in silence.
     pub(super) fn check_empty(
         &self,
         columns: impl IntoIterator<Item = &'static str>,

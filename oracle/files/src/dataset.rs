@@ -1,6 +1,6 @@
 //! A directory of images to be processed: ours or anybody's.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::Place;
 use super::frame_file::read_image;
+use super::raw_image::Size;
 use super::telemetry::read_with_lines;
 use super::toml_table::{self, TomlTable};
 use super::{FileError, TelemetryRow, parse_utc};
@@ -125,6 +126,7 @@ impl Dataset {
             };
         let frames: Vec<DatasetFrame> = rows.into_iter().map(locate).collect::<Result<_, _>>()?;
         refuse_unnamed(&table, &frames)?;
+        refuse_twice(&table, "frame", frames.iter().map(|frame| (frame.row.frame, frame.path.as_path())))?;
         Ok(Self { camera, frames })
     }
 
@@ -156,16 +158,10 @@ impl Dataset {
 impl CameraFile {
     /// Reads the image of a frame of this camera.
     fn read_image(&self, path: &Path, row: &TelemetryRow) -> Result<Frame, FileError> {
-        let image = read_image(path)?;
-        let camera = &self.camera;
-        // First of all: of an image of another size, the regions would be refused, and they are not what is wrong.
-        if (image.columns, image.rows) == (camera.columns, camera.rows) {
-            image.into_frame(path, row.frame, self.bit_depth, row.windows.clone())
-        } else {
-            let size = format!("{} × {}", image.columns, image.rows);
-            let expected = format!("{} × {}, that of camera.toml", camera.columns, camera.rows);
-            Err(FileError::value(path, Place::Header, "image size", size, expected))
-        }
+        let Camera { columns, rows, .. } = self.camera;
+        let image = read_image(path, Some(Size { columns, rows, whose: "that of camera.toml" }))?;
+        image.told.check(path, row)?;
+        image.into_frame(path, row.frame, self.bit_depth, row.windows.clone())
     }
 
     /// Reads the image that a row of a directory's `telemetry.csv` names; `None` where the row names none. Other images of the
@@ -187,6 +183,24 @@ pub(super) fn locate_alone(directory: &Path, file: &str, field: &str) -> Result<
         let expected = format!("an image in the dataset's directory; it is {reason}");
         FileError::value(&directory.join("telemetry.csv"), Place::Whole, field, file, expected)
     })
+}
+
+/// Refuses an image that belongs to two frames (or fields, as `what` says), each given by its number.
+pub(super) fn refuse_twice<'a>(
+    table: &Path,
+    what: &str,
+    images: impl Iterator<Item = (u64, &'a Path)>,
+) -> Result<(), FileError> {
+    let mut known = BTreeMap::new();
+    for (number, path) in images {
+        let real = path.canonicalize().map_err(|source| FileError::io(path, "open", source))?;
+        if let Some(other) = known.insert(real, number) {
+            let field = format!("file of {what} {number}");
+            let expected = format!("an image of its own; {what} {other} has it too");
+            return Err(FileError::value(table, Place::Whole, field, path.display(), expected));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses an image that lies beside the others and that no row of the telemetry names: its row is missing.

@@ -124,6 +124,16 @@ pub enum FileError {
         /// Why it cannot be used.
         reason: &'static str,
     },
+    /// A file in whose place a new one was to be.
+    #[error("{path} {reason}, expected {expected}", path = path.display())]
+    NotReplaced {
+        /// The file.
+        path: PathBuf,
+        /// Why it stays.
+        reason: String,
+        /// What may be there.
+        expected: String,
+    },
     /// A value that the contract refuses.
     #[error("{path}: {source}", path = path.display())]
     Contract {

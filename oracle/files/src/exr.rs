@@ -12,7 +12,7 @@ use exr::prelude::{
 use sim::vector::RadianceImage;
 
 use super::error::{Place, create_new};
-use super::raw_image::{RawImage, check_claim, checked_size, dn_of_all};
+use super::raw_image::{RawImage, Size, Told, check_claim, checked_size, dn_of_all};
 use super::{FileError, FrameHeader, windows};
 
 /// The one attribute that holds what EXR has no name for. One, because the crate keeps a layer's own attributes in
@@ -51,7 +51,7 @@ pub(super) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
 /// [`FileError::Io`] when the file exists or cannot be written; [`FileError::Value`] when the number of values is
 /// not columns × rows.
 pub fn write_expected(path: &Path, expected: &Expected) -> Result<(), FileError> {
-    let (columns, rows) = checked_size(path, expected.columns as u64, expected.rows as u64)?;
+    let (columns, rows) = checked_size(path, expected.columns as u64, expected.rows as u64, None)?;
     if expected.electrons.len() != columns * rows {
         let got = expected.electrons.len();
         return Err(FileError::value(path, Place::Header, "pixels", got, format!("{}", columns * rows)));
@@ -65,7 +65,7 @@ pub fn write_expected(path: &Path, expected: &Expected) -> Result<(), FileError>
 /// # Errors
 /// A [`FileError`] for a file that cannot be read or has more than one channel.
 pub fn read_expected(path: &Path) -> Result<Expected, FileError> {
-    let channel = read_channel(path)?;
+    let channel = read_channel(path, None)?;
     Ok(Expected { columns: channel.columns, rows: channel.rows, electrons: channel.samples })
 }
 
@@ -75,7 +75,7 @@ pub fn read_expected(path: &Path) -> Result<Expected, FileError> {
 /// [`FileError::Io`] when the file exists or cannot be written; [`FileError::Value`] when the number of values is
 /// not columns × rows.
 pub fn write_radiance(path: &Path, image: &RadianceImage) -> Result<(), FileError> {
-    let (columns, rows) = checked_size(path, image.columns as u64, image.rows as u64)?;
+    let (columns, rows) = checked_size(path, image.columns as u64, image.rows as u64, None)?;
     if image.radiance.len() != columns * rows {
         let got = image.radiance.len();
         return Err(FileError::value(path, Place::Header, "pixels", got, format!("{}", columns * rows)));
@@ -90,13 +90,13 @@ pub fn write_radiance(path: &Path, image: &RadianceImage) -> Result<(), FileErro
 /// # Errors
 /// A [`FileError`] for a file that cannot be read or has more than one channel.
 pub fn read_radiance(path: &Path) -> Result<RadianceImage, FileError> {
-    let channel = read_channel(path)?;
+    let channel = read_channel(path, None)?;
     Ok(RadianceImage { columns: channel.columns, rows: channel.rows, radiance: channel.samples })
 }
 
 /// Reads a frame from an image of one channel in DN.
-pub(super) fn read(path: &Path) -> Result<RawImage, FileError> {
-    let Channel { columns, rows, samples, own } = read_channel(path)?;
+pub(super) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, FileError> {
+    let Channel { columns, rows, samples, own } = read_channel(path, size)?;
     let dn = dn_of_all(path, columns, samples.into_iter().map(f64::from))?;
     let field = |name: &str| {
         own.split('|').find_map(|field| field.split_once('=').filter(|(key, _)| *key == name)).map(|(_, v)| v)
@@ -111,7 +111,10 @@ pub(super) fn read(path: &Path) -> Result<RawImage, FileError> {
         None | Some("all") => None,
         Some(text) => windows::parse(text).map_err(|expected| error("windows", text, expected))?,
     };
-    Ok(RawImage { columns, rows, dn, bit_depth, windows })
+    let frame =
+        field("frame").map(|text| text.parse().map_err(|_| error("frame", text, "a number"))).transpose()?;
+    let told = Told { frame: frame.map(|frame| ("boresight.frame", frame)), ..Told::default() };
+    Ok(RawImage { columns, rows, dn, bit_depth, windows, told })
 }
 
 fn attributes(path: &Path, layer: &str, own: &str) -> Result<LayerAttributes, FileError> {
@@ -150,8 +153,8 @@ struct Channel {
     own: String,
 }
 
-fn read_channel(path: &Path) -> Result<Channel, FileError> {
-    check_header(path)?;
+fn read_channel(path: &Path, size: Option<Size<'_>>) -> Result<Channel, FileError> {
+    check_header(path, size)?;
     let image = exr_reader()
         .no_deep_data()
         .largest_resolution_level()
@@ -175,10 +178,11 @@ fn read_channel(path: &Path) -> Result<Channel, FileError> {
 }
 
 /// Checks what the header claims before anything is allocated for it.
-fn check_header(path: &Path) -> Result<(), FileError> {
+fn check_header(path: &Path, size: Option<Size<'_>>) -> Result<(), FileError> {
     let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|error| exr_error(path, error))?;
     for header in &meta.headers {
-        let (columns, rows) = checked_size(path, header.layer_size.0 as u64, header.layer_size.1 as u64)?;
+        let (columns, rows) =
+            checked_size(path, header.layer_size.0 as u64, header.layer_size.1 as u64, size)?;
         let channels = header.channels.list.len();
         if channels != 1 {
             return Err(FileError::value(path, Place::Header, "number of channels", channels, "1 (grey)"));
@@ -240,7 +244,7 @@ mod tests {
         let directory = tempdir().unwrap();
         let path = directory.path().join("rgb.exr");
         exr::prelude::write_rgb_file(&path, 4, 4, |_, _| (0.0_f32, 1.0_f32, 2.0_f32)).unwrap();
-        let message = read(&path).unwrap_err().to_string();
+        let message = read(&path, None).unwrap_err().to_string();
         assert!(message.contains("number of channels") && message.contains("`3`"), "{message}");
     }
 
@@ -250,7 +254,7 @@ mod tests {
         let path = directory.path().join("nan.exr");
         let electrons = vec![1.0, f32::NAN];
         write_expected(&path, &Expected { columns: 2, rows: 1, electrons }).unwrap();
-        let message = read(&path).unwrap_err().to_string();
+        let message = read(&path, None).unwrap_err().to_string();
         assert!(message.contains("pixel (1, 0)"), "{message}");
     }
 
@@ -270,7 +274,7 @@ mod tests {
             }
             bytes.truncate(cut);
             fs::write(&path, bytes).unwrap();
-            let _ = read(&path);
+            let _ = read(&path, None);
         }
     }
 }

@@ -1,8 +1,9 @@
 //! What a field of a row is in a table: a cell, or several of a kind that stand together.
 
 use contract::{Angle, Direction, Icrs, PixelPoint, Rotation};
-use hifitime::{Duration, Epoch};
+use hifitime::Epoch;
 use nalgebra::Vector3;
+use sim::truth::clock;
 
 use super::batch_columns::Columns;
 use super::table_column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};
@@ -171,10 +172,8 @@ value!(usize: [u32; 1], |index| [*index as u32], |[index]| Ok(index as usize));
 // UTC; leap seconds are not counted.
 value!(
     Epoch: [Nanoseconds; 1],
-    |time| [Nanoseconds(time.to_unix_duration().total_nanoseconds() as i64)],
-    |[Nanoseconds(since_1970)]| {
-        Ok(Self::from_unix_duration(Duration::from_total_nanoseconds(i128::from(since_1970))))
-    }
+    |time| [Nanoseconds(clock::unix_ns(*time))],
+    |[Nanoseconds(since_1970)]| Ok(clock::from_unix_ns(since_1970))
 );
 value!(Vector3<f64>: [f64; 3], |vector| (*vector).into(), |xyz| Ok(xyz.into()));
 value!(PixelPoint: [f64; 2], |point| [point.x, point.y], |[x, y]| Ok(Self::new(x, y)));

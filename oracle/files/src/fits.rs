@@ -16,7 +16,8 @@ use fitsio_pure::primary::build_primary_header;
 use fitsio_pure::value::Value;
 
 use super::error::{Place, create_new, open_regular};
-use super::raw_image::{RawImage, checked_size, dn_of_all};
+use super::raw_image::{RawImage, Size, Told, checked_size, dn_of_all};
+use super::time::parse_utc;
 use super::{FileError, FrameHeader, fits_cards, windows};
 
 /// Longest header read, in blocks of 36 cards: no frame needs a hundredth of it.
@@ -45,7 +46,7 @@ pub(super) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<
 /// Reads the first two-dimensional image of a FITS file: samples of 8, 16, 32 or 64 bits or floating point, BSCALE
 /// and BZERO honoured, converted by the rule of [`super::raw_image::dn`]; BLANK pixels and NaN are refused.
 /// Tile-compressed images are not read.
-pub(super) fn read(path: &Path) -> Result<RawImage, FileError> {
+pub(super) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, FileError> {
     let io = |source| FileError::io(path, "read", source);
     let file = open_regular(path)?;
     let length = file.metadata().map_err(io)?.len();
@@ -63,8 +64,8 @@ pub(super) fn read(path: &Path) -> Result<RawImage, FileError> {
             header.error("bytes of data", bytes, format!("at most {left}, as the file ends there"))
         })?;
         if header.is_image()? {
-            let image = read_image(&header, &mut reader, bytes)?;
-            check_sum(&header, &mut reader, start..end)?;
+            let image = read_image(&header, &mut reader, bytes, size)?;
+            check_sums(&header, &mut reader, start..end, offset)?;
             return Ok(image);
         }
         offset = end.next_multiple_of(BLOCK_SIZE as u64);
@@ -226,6 +227,28 @@ impl Header<'_> {
             .transpose()
     }
 
+    /// What it tells of its frame, if times are UTC.
+    fn told(&self) -> Result<Told, FileError> {
+        let frame = self.whole("FRAMENO")?.map(|_| self.count("FRAMENO", None)).transpose()?;
+        let is_utc = match self.value("TIMESYS") {
+            Some(Value::String(scale)) => scale.trim() == "UTC",
+            _ => true,
+        };
+        let time = match self.value("DATE-AVG").filter(|_| is_utc) {
+            Some(Value::String(text)) => {
+                let time = parse_utc(&format!("{}Z", text.trim().trim_end_matches('Z')));
+                Some(time.map_err(|expected| self.error("DATE-AVG", text, expected))?)
+            }
+            _ => None,
+        };
+        let exposure_s = self.value("EXPTIME").map(|_| self.number("EXPTIME", 0.0)).transpose()?;
+        Ok(Told {
+            frame: frame.map(|frame| ("FRAMENO", frame)),
+            time: time.map(|time| ("DATE-AVG", time)),
+            exposure_s: exposure_s.map(|exposure_s| ("EXPTIME", exposure_s)),
+        })
+    }
+
     /// The transmitted regions, as [`write`] tells them.
     fn windows(&self) -> Result<Option<Vec<Window>>, FileError> {
         if self.whole("NROI")?.is_none() {
@@ -245,18 +268,21 @@ impl Header<'_> {
     }
 }
 
-/// Holds header and data, `place` in the file, against the keyword CHECKSUM, where there is one (FITS standard 4.0, 4.4.2.7 and appendix J:
-/// their sum in ones' complement is minus nought).
-fn check_sum(
+/// Holds header and data, `place` in the file, against the keyword CHECKSUM (FITS standard 4.0, 4.4.2.7 and appendix J: their sum in ones'
+/// complement is minus nought), and the data, from `data_at` on, against DATASUM, where there are such.
+fn check_sums(
     header: &Header<'_>,
     reader: &mut (impl Read + Seek),
     place: Range<u64>,
+    data_at: u64,
 ) -> Result<(), FileError> {
-    let Some(Value::String(told)) = header.value("CHECKSUM").filter(|_| place.end > place.start) else {
-        return Ok(());
+    // Nothing is the standard's word for a sum that is not known.
+    let told = |keyword: &str| match header.value(keyword) {
+        Some(Value::String(text)) if !text.trim().is_empty() => Some(text),
+        _ => None,
     };
-    if told.trim().is_empty() {
-        // The standard's word for a sum that is not known.
+    let (sum, data_sum) = (told("CHECKSUM"), told("DATASUM"));
+    if (sum.is_none() && data_sum.is_none()) || place.is_empty() {
         return Ok(());
     }
     let io = |source| FileError::io(header.path, "read", source);
@@ -265,21 +291,42 @@ fn check_sum(
     let length = (place.end - place.start).next_multiple_of(BLOCK_SIZE as u64);
     reader.take(length).read_to_end(&mut unit).map_err(io)?;
     // A last block that is cut short, be it by noughts alone, is not what was written.
-    if unit.len() as u64 == length && matches!(checksum_blocks(&unit), 0 | u32::MAX) {
-        Ok(())
-    } else {
-        let expected = "the sum of header and data: the file was damaged, or changed by a program that left the keyword as it was";
-        Err(header.error("CHECKSUM", told, expected))
+    let is_whole = unit.len() as u64 == length;
+    let refused = |keyword: &str, told: &str, of: &str| {
+        let expected = format!(
+            "the sum of {of}: the file was damaged, or changed by a program that left the keyword as it was"
+        );
+        Err(header.error(keyword, told, expected))
+    };
+    if let Some(told) = sum.filter(|_| !is_whole || !matches!(checksum_blocks(&unit), 0 | u32::MAX)) {
+        return refused("CHECKSUM", told, "header and data");
+    }
+    let data = unit.get((data_at - place.start) as usize..).unwrap_or_default();
+    // Nought and minus nought are the same.
+    let is_sum = |text: &str| {
+        text.trim().parse::<u32>().is_ok_and(|told| told % u32::MAX == checksum_blocks(data) % u32::MAX)
+    };
+    match data_sum.filter(|told| !is_whole || !is_sum(told)) {
+        Some(told) => refused("DATASUM", told, "the data"),
+        None => Ok(()),
     }
 }
 
-fn read_image(header: &Header<'_>, reader: &mut impl Read, bytes: u64) -> Result<RawImage, FileError> {
+fn read_image(
+    header: &Header<'_>,
+    reader: &mut impl Read,
+    bytes: u64,
+    size: Option<Size<'_>>,
+) -> Result<RawImage, FileError> {
     let path = header.path;
     let [columns, rows, ..] = *header.axes()? else {
         return Err(FileError::format(path, "FITS", "it holds no two-dimensional image"));
     };
-    let (columns, rows) = checked_size(path, columns, rows)?;
+    let (columns, rows) = checked_size(path, columns, rows, size)?;
     let (scale, zero) = (header.number("BSCALE", 1.0)?, header.number("BZERO", 0.0)?);
+    if scale == 0.0 {
+        return Err(header.error("BSCALE", scale, "another number: with it all pixels are the same"));
+    }
     let width = header.bytes_per_sample()? as usize;
     let pixel_bytes = columns * rows * width;
     if bytes != pixel_bytes as u64 {
@@ -311,7 +358,8 @@ fn read_image(header: &Header<'_>, reader: &mut impl Read, bytes: u64) -> Result
         }
         _ => dn_of_all(path, columns, samples.map(|b| float(f64::from_be_bytes(fixed(b))))),
     }?;
-    Ok(RawImage { columns, rows, dn, bit_depth: header.bit_depth()?, windows: header.windows()? })
+    let (bit_depth, windows, told) = (header.bit_depth()?, header.windows()?, header.told()?);
+    Ok(RawImage { columns, rows, dn, bit_depth, windows, told })
 }
 
 /// The bytes of one sample; `chunks_exact` gives exactly as many.
@@ -343,7 +391,7 @@ mod tests {
         let directory = tempdir().unwrap();
         let path = directory.path().join("a.fits");
         fs::write(&path, bytes).unwrap();
-        read(&path)
+        read(&path, None)
     }
 
     fn image(bitpix: i64, more: &[&str], data: &[u8]) -> Result<RawImage, FileError> {
@@ -355,6 +403,26 @@ mod tests {
     fn check_refused(result: Result<RawImage, FileError>, parts: &[&str]) {
         let message = result.unwrap_err().to_string();
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+
+    /// A file with holes claims 2 GiB of doubles and has them: it is the camera that says no, before memory is reserved.
+    #[test]
+    fn an_image_of_another_size_than_the_cameras_is_refused_before_it_is_read() {
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("a.fits");
+        let header: String =
+            ["SIMPLE  = T", "BITPIX  = -64", "NAXIS   = 2", "NAXIS1  = 16384", "NAXIS2  = 16384", "END"]
+                .map(|card| format!("{card:80}"))
+                .concat();
+        fs::write(&path, format!("{header:2880}")).unwrap();
+        let file = fs::File::options().write(true).open(&path).unwrap();
+        file.set_len(2880 + 8 * 16384 * 16384).unwrap();
+        let size = Size { columns: 752, rows: 580, whose: "that of the camera" };
+        let message = read(&path, Some(size)).unwrap_err().to_string();
+        assert!(
+            message.contains("16384 × 16384") && message.contains("752 × 580, that of the camera"),
+            "{message}"
+        );
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use contract::{Frame, Window};
 
-use super::raw_image::RawImage;
+use super::raw_image::{RawImage, Size};
 use super::{FileError, FrameHeader, exr, fits, image16};
 
 /// The formats that frames are written in.
@@ -82,17 +82,18 @@ pub fn read_frame(
     bit_depth: u8,
     windows: Option<Vec<Window>>,
 ) -> Result<Frame, FileError> {
-    read_image(path)?.into_frame(path, number, bit_depth, windows)
+    read_image(path, None)?.into_frame(path, number, bit_depth, windows)
 }
 
-/// Reads what a file of one of the extensions of [`read_frame`] holds, before it is taken for a frame.
-pub(super) fn read_image(path: &Path) -> Result<RawImage, FileError> {
+/// Reads what a file of one of the extensions of [`read_frame`] holds, before it is taken for a frame. An image of another size than the
+/// one given is refused before memory is reserved for it.
+pub(super) fn read_image(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, FileError> {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
     match extension.as_str() {
-        "fits" | "fit" | "fts" => fits::read(path),
-        "png" => image16::read(path, image::ImageFormat::Png),
-        "tif" | "tiff" => image16::read(path, image::ImageFormat::Tiff),
-        "exr" => exr::read(path),
+        "fits" | "fit" | "fts" => fits::read(path, size),
+        "png" => image16::read(path, image::ImageFormat::Png, size),
+        "tif" | "tiff" => image16::read(path, image::ImageFormat::Tiff, size),
+        "exr" => exr::read(path, size),
         _ => {
             let reason =
                 format!("the extension `{extension}` is none of fits, fit, fts, png, tif, tiff, exr");

@@ -9,7 +9,7 @@ use image::{ExtendedColorType, ImageBuffer, ImageDecoder, ImageEncoder, ImageRea
 
 use super::FileError;
 use super::error::{Place, create_new, open_regular};
-use super::raw_image::{RawImage, check_claim, checked_size};
+use super::raw_image::{RawImage, Size, Told, check_claim, checked_size};
 
 /// Most bytes that a decoder makes of what a file says besides its pixels.
 const ABOUT_PIXELS_BYTES: u64 = 1 << 23;
@@ -45,11 +45,16 @@ pub(super) fn write_png_of_depth(path: &Path, frame: &Frame) -> Result<(), FileE
 
 /// Reads a grey image of 8 or 16 bits. Colour, alpha, palettes and fewer bits are refused: the values that a
 /// decoder makes of them are not digital numbers.
-pub(super) fn read(path: &Path, format: image::ImageFormat) -> Result<RawImage, FileError> {
+pub(super) fn read(
+    path: &Path,
+    format: image::ImageFormat,
+    size: Option<Size<'_>>,
+) -> Result<RawImage, FileError> {
     let mut decoder = decoder(path, format)?;
     let (columns, rows) = decoder.dimensions();
-    let (columns, rows) = checked_size(path, u64::from(columns), u64::from(rows))?;
-    let color = decoder.original_color_type();
+    let (columns, rows) = checked_size(path, u64::from(columns), u64::from(rows), size)?;
+    let few_bits = if format == image::ImageFormat::Png { fewer_bits(path)? } else { None };
+    let color = few_bits.unwrap_or_else(|| decoder.original_color_type());
     if !matches!(color, ExtendedColorType::L8 | ExtendedColorType::L16) {
         let expected = "grey of 8 or 16 bits (L8, L16); convert the image";
         return Err(FileError::value(path, Place::Header, "pixel type", format!("{color:?}"), expected));
@@ -68,7 +73,19 @@ pub(super) fn read(path: &Path, format: image::ImageFormat) -> Result<RawImage, 
             return Err(FileError::value(path, Place::Header, "pixel type", kind, "L8 or L16"));
         }
     };
-    Ok(RawImage { columns, rows, dn, bit_depth: None, windows: None })
+    Ok(RawImage { columns, rows, dn, bit_depth: None, windows: None, told: Told::default() })
+}
+
+/// What a PNG of less than 8 bits a sample is, of which its decoder says that it has the 8 that it makes of them: they stand at a fixed
+/// place of the file.
+fn fewer_bits(path: &Path) -> Result<Option<ExtendedColorType>, FileError> {
+    let mut beginning = [0; 25];
+    let mut file = open_regular(path)?;
+    let read = std::io::Read::read_exact(&mut file, &mut beginning);
+    read.map_err(|source| FileError::io(path, "read", source))?;
+    let [.., bits] = beginning;
+    let types = [(1, ExtendedColorType::L1), (2, ExtendedColorType::L2), (4, ExtendedColorType::L4)];
+    Ok(types.into_iter().find(|(few, _)| *few == bits).map(|(_, color)| color))
 }
 
 /// What a decoder may take before its pixels are asked for.
@@ -107,6 +124,20 @@ mod tests {
     use super::super::frame_file::tests::ramp;
     use super::super::read_frame;
     use super::*;
+
+    /// PNG of 1, 2 and 4 bits, which its decoder would stretch to 8.
+    #[test]
+    fn grey_of_fewer_than_8_bits_is_refused() {
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("a.png");
+        for (bits, depth) in [(1, png::BitDepth::One), (2, png::BitDepth::Two), (4, png::BitDepth::Four)] {
+            let mut encoder = png::Encoder::new(fs::File::create(&path).unwrap(), 8, 1);
+            encoder.set_depth(depth);
+            encoder.write_header().unwrap().write_image_data(&vec![0x1b; bits]).unwrap();
+            let message = read(&path, image::ImageFormat::Png, None).unwrap_err().to_string();
+            assert!(message.contains("pixel type") && message.contains(&format!("L{bits}")), "{message}");
+        }
+    }
 
     #[test]
     fn grey_of_8_and_16_bits_is_read_from_png_and_tiff() {

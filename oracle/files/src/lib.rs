@@ -75,6 +75,7 @@ pub use failure::Failure;
 pub use field_telemetry::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
 pub use frame_file::{ImageFormat, read_frame, write_frame};
 pub use frame_header::FrameHeader;
+pub use lines::Lines;
 pub use measurements::{MeasurementWriter, read_measurements};
 pub use parquet_file::ParquetFile;
 pub use parquet_table::{Row, TableReader, TableWriter};
@@ -90,5 +91,5 @@ pub use video::{
     read_listed_field, write_field,
 };
 pub use wcs::{SipTerm, TanSip, WcsError};
-pub use whole_file::WholeFile;
+pub use whole_file::{Earlier, WholeFile};
 pub use whole_table::{WholeTable, read_csv_table, read_parquet_table};

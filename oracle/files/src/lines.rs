@@ -1,34 +1,63 @@
-//! Text in lines, none of which is endless: whoever reads a line keeps it.
+//! CSV in records, none of which is endless: whoever reads a record keeps it. A record is a line, or several where a cell in quotation marks
+//! goes on in the next one.
 
 use std::io::{Error, ErrorKind, Read, Result};
 
-/// Longest line, bytes.
+/// Longest record, bytes.
 const LONGEST: usize = 1 << 20;
 
-/// A reader that fails at a line of more than [`LONGEST`] bytes.
+/// A reader that fails at a record of more than [`LONGEST`] bytes.
 #[derive(Debug)]
-pub(super) struct Lines<R> {
+pub struct Lines<R> {
     inner: R,
-    /// Bytes since the last line ended.
+    /// Bytes since the last record ended.
     length: usize,
+    place: Place,
+}
+
+/// Where in a record a byte is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// The beginning of a cell.
+    Start,
+    /// A cell without quotation marks; in it they are letters.
+    Plain,
+    /// Between quotation marks.
+    Quoted,
+    /// After a quotation mark that ends a cell, unless it is doubled.
+    Closed,
+}
+
+impl Place {
+    fn after(self, byte: u8) -> Self {
+        match (self, byte) {
+            (Self::Start | Self::Closed, b'"') => Self::Quoted,
+            (Self::Quoted, b'"') => Self::Closed,
+            (Self::Quoted, _) => Self::Quoted,
+            (_, b',' | b'\n' | b'\r') => Self::Start,
+            _ => Self::Plain,
+        }
+    }
 }
 
 impl<R> Lines<R> {
-    pub(super) fn new(inner: R) -> Self {
-        Self { inner, length: 0 }
+    /// A reader of the records of `inner`.
+    pub fn new(inner: R) -> Self {
+        Self { inner, length: 0, place: Place::Start }
     }
 }
 
 impl<R: Read> Read for Lines<R> {
     fn read(&mut self, buffer: &mut [u8]) -> Result<usize> {
         let count = self.inner.read(buffer)?;
-        for part in buffer.get(..count).unwrap_or_default().split_inclusive(|byte| *byte == b'\n') {
-            self.length = self.length.saturating_add(part.len());
+        for &byte in buffer.get(..count).unwrap_or_default() {
+            self.place = self.place.after(byte);
+            self.length += 1;
             if self.length > LONGEST {
                 let message = format!("a line is longer than {LONGEST} bytes");
                 return Err(Error::new(ErrorKind::InvalidData, message));
             }
-            if part.ends_with(b"\n") {
+            if matches!(byte, b'\n' | b'\r') && self.place == Place::Start {
                 self.length = 0;
             }
         }
@@ -51,6 +80,21 @@ mod tests {
         assert_eq!(read(&longest.repeat(3)).unwrap(), 3 * LONGEST);
         for text in [format!("a{longest}"), format!("{longest}a{longest}"), "a".repeat(LONGEST + 1)] {
             assert!(read(&text).unwrap_err().to_string().contains("longer than"));
+        }
+    }
+
+    #[test]
+    fn a_cell_in_quotation_marks_goes_on_in_the_next_line_and_is_bounded_too() {
+        let lines = "a\n".repeat(LONGEST / 2);
+        for begin in ["\"", "1,\"", "1,\"a\"\"b", "\n\""] {
+            assert!(
+                read(&format!("{begin}{lines}")).unwrap_err().to_string().contains("longer than"),
+                "{begin}"
+            );
+        }
+        // Marks that are closed, and those that are letters.
+        for begin in ["\"a\"\n", "\"a\"\"\",1\n", "6\" of film\n", "1,a\"\n", "\"a\nb\",1\r\n"] {
+            assert!(read(&format!("{begin}{lines}")).is_ok(), "{begin}");
         }
     }
 }

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use contract::{
-    AttitudeSource, CameraFrame, Direction, Icrs, Measurement, NoSolution, Outcome, PixelPoint, Rotation,
-    Solution,
+    AttitudeSource, Camera, CameraFrame, Direction, Icrs, Measurement, NoSolution, Outcome, PixelPoint,
+    Rotation, Solution,
 };
 
 use super::FileError;
@@ -21,9 +21,9 @@ table! {
         /// number of the frame; ascending, each once
         frame: u64,
         /// `detected`; or why not, in which case the position must be empty: `no_target`, `no_previous_frame`, `empty_frame`,
-        /// `saturated_frame`, `failed: ` and a reason. Any other text is read as a failure with that reason
+        /// `saturated_frame`, `failed`, `failed: ` and a reason
         status: String,
-        /// centre of the target's image; off the detector (−0.5 to columns − 0.5, rows − 0.5) it is no detection
+        /// centre of the target's image, on the detector (−0.5 to columns − 0.5, rows − 0.5)
         position: Option<PixelPoint> = POSITION,
         /// line of sight, unit vector within 1e-5; all three or none. Without it the score takes the position through the true camera
         line_of_sight: Option<Direction<Icrs>> = optional(LINE_OF_SIGHT),
@@ -37,8 +37,10 @@ table! {
     }
 }
 
-/// The status of a row that has a target; any other text is the reason why there is none.
+/// The status of a row that has a target.
 const DETECTED: &str = "detected";
+/// What is expected in place of any other word.
+const STATUS: &str = "`detected`, `no_target`, `no_previous_frame`, `empty_frame`, `saturated_frame`, `failed`, or `failed: ` and a reason";
 
 /// Writes the table row by row.
 pub type MeasurementWriter = CsvWriter<MeasurementLine>;
@@ -65,28 +67,38 @@ impl MeasurementWriter {
     }
 }
 
-/// Reads the table: the answer to each frame, frames ascending, gaps allowed, clusters empty.
+/// Reads the table: the answer to each frame of `camera`, frames ascending, gaps allowed, clusters empty. What the protocol of external
+/// pipelines refuses is refused here too.
 ///
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be.
-pub fn read_measurements(path: &Path) -> Result<Vec<(u64, Outcome)>, FileError> {
+pub fn read_measurements(path: &Path, camera: &Camera) -> Result<Vec<(u64, Outcome)>, FileError> {
     CsvReader::open::<MeasurementLine>(path)?.read_rows(|row, previous: Option<&(u64, Outcome)>| {
-        check_status(row)?;
+        let reason = reason(row)?;
         let line = MeasurementLine::read(row)?;
         row.check_ascends("frame", line.frame, previous.map(|(frame, _)| *frame))?;
-        Ok((line.frame, outcome(row, line)?))
+        Ok((line.frame, outcome(row, line, reason, camera)?))
     })
 }
 
-fn check_status(row: &CsvRow<'_>) -> Result<(), FileError> {
-    match row.text("status").trim() {
-        "" => Err(row.error("status", "`detected`, or the reason why there is no target")),
-        DETECTED => Ok(()),
-        _ => row.check_empty(POSITION.into_iter().chain(LINE_OF_SIGHT)),
+/// Why a row has no target; `None` of a detection.
+fn reason(row: &CsvRow<'_>) -> Result<Option<NoSolution>, FileError> {
+    let status = row.text("status");
+    if status.trim() == DETECTED {
+        return Ok(None);
     }
+    // What stands behind `failed: ` is kept to the letter.
+    let reason = NoSolution::parse(status.trim_start()).ok_or_else(|| row.error("status", STATUS))?;
+    row.check_empty(POSITION.into_iter().chain(LINE_OF_SIGHT))?;
+    Ok(Some(reason))
 }
 
-fn outcome(row: &CsvRow<'_>, line: MeasurementLine) -> Result<Outcome, FileError> {
+fn outcome(
+    row: &CsvRow<'_>,
+    line: MeasurementLine,
+    reason: Option<NoSolution>,
+    &Camera { columns, rows, .. }: &Camera,
+) -> Result<Outcome, FileError> {
     let attitude_source = match line.attitude.trim() {
         "" => None,
         code => Some(
@@ -94,12 +106,21 @@ fn outcome(row: &CsvRow<'_>, line: MeasurementLine) -> Result<Outcome, FileError
                 .ok_or_else(|| row.error("attitude", "`stars`, `too_few_stars`, `no_stars` or nothing"))?,
         ),
     };
-    let solution = if line.status.trim() == DETECTED {
-        let position = line.position.ok_or_else(|| row.error(POSITION[0], f64::EXPECTED))?;
-        Solution::Detected(Measurement { position, line_of_sight: line.line_of_sight })
-    } else {
-        // Not trimmed: the reason is kept to the letter.
-        Solution::NoSolution(NoSolution::parse(&line.status))
+    let solution = match reason {
+        Some(reason) => Solution::NoSolution(reason),
+        None => {
+            let position = line.position.ok_or_else(|| row.error(POSITION[0], f64::EXPECTED))?;
+            if !position.is_on_detector(columns, rows) {
+                let is_x = !PixelPoint::new(position.x, 0.0).is_on_detector(columns, rows);
+                let (column, count) = if is_x { (POSITION[0], columns) } else { (POSITION[1], rows) };
+                let expected = format!(
+                    "a place on the detector of {columns} × {rows} pixels, -0.5 to {}",
+                    count as f64 - 0.5
+                );
+                return Err(row.error(column, expected));
+            }
+            Solution::Detected(Measurement { position, line_of_sight: line.line_of_sight })
+        }
     };
     Ok(Outcome {
         solution,
@@ -120,12 +141,13 @@ mod tests {
     use tempfile::tempdir;
 
     use super::*;
+    use crate::wcs::tests::camera;
 
     fn read(text: &str) -> Result<Vec<(u64, Outcome)>, FileError> {
         let directory = tempdir().unwrap();
         let path = directory.path().join("measurements.csv");
         fs::write(&path, text).unwrap();
-        read_measurements(&path)
+        read_measurements(&path, &camera())
     }
 
     fn check_refused(text: &str, line: &str, column: &str) {
@@ -155,9 +177,21 @@ mod tests {
         check_refused("frame,status,x_px,y_px\n1,no_target,,\n1,no_target,,\n", "line 3", "frame");
     }
 
+    /// As by the protocol of external pipelines: an unknown word would pass for a miss, a place off the detector for a detection.
     #[test]
-    fn a_misspelt_detection_is_refused_and_not_counted_as_a_miss() {
-        check_refused("frame,status,x_px,y_px\n1,Detected,1,2\n", "line 2", "x_px");
+    fn what_an_external_pipeline_may_not_answer_is_refused() {
+        let check = |row: &str, column| {
+            check_refused(&format!("frame,status,x_px,y_px\n1,no_target,,\n{row}\n"), "line 3", column)
+        };
+        check("2,Detected,1,2", "status");
+        for status in ["ok", "Detected", "no target", "no_target ", "failed:", "failure", "none"] {
+            check(&format!("2,{status},,"), "status");
+        }
+        check("2,detected,4000,4", "x_px");
+        check("2,detected,4,4000", "y_px");
+        check("2,detected,-0.51,4", "x_px");
+        check("2,no_target,4,4", "x_px");
+        assert!(read("frame,status,x_px,y_px\n1, detected,-0.5,579.5\n2,failed,,\n").is_ok());
     }
 
     #[test]
@@ -175,13 +209,12 @@ mod tests {
             "\\PC{0,20}".prop_map(NoSolution::Failed),
         ];
         let vector = || prop::array::uniform3(0.1..3.0_f64).prop_map(Vector3::from);
-        let detected =
-            (-10.0..800.0_f64, any::<f64>(), prop::option::of(vector())).prop_map(|(x, y, los)| {
-                Solution::Detected(Measurement {
-                    position: PixelPoint::new(x, if y.is_finite() { y } else { -0.0 }),
-                    line_of_sight: los.map(|v| Direction::from_vector(v).unwrap()),
-                })
-            });
+        let detected = (-0.5..750.5_f64, any::<f64>(), prop::option::of(vector())).prop_map(|(x, y, los)| {
+            Solution::Detected(Measurement {
+                position: PixelPoint::new(x, if (-0.5..=579.5).contains(&y) { y } else { -0.0 }),
+                line_of_sight: los.map(|v| Direction::from_vector(v).unwrap()),
+            })
+        });
         let solution = prop_oneof![detected, reason.prop_map(Solution::NoSolution)];
         let source = prop::option::of(prop_oneof![
             Just(AttitudeSource::Stars),
@@ -208,7 +241,7 @@ mod tests {
             let rows: Vec<_> = (0..).map(|n: u64| n * 7).zip(outcomes).collect();
             rows.iter().for_each(|(frame, outcome)| writer.write(*frame, outcome).unwrap());
             writer.finish().unwrap();
-            prop_assert_eq!(read_measurements(&path).unwrap(), rows);
+            prop_assert_eq!(read_measurements(&path, &camera()).unwrap(), rows);
         }
     }
 }

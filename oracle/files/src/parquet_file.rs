@@ -69,7 +69,7 @@ impl ParquetFile {
         &self.columns
     }
 
-    /// The first column of a name.
+    /// The column of a name.
     pub fn column(&self, name: &str) -> Option<&FileColumn> {
         self.columns.iter().find(|column| column.name == name)
     }
@@ -89,9 +89,12 @@ impl ParquetFile {
         let mut wanted = Vec::with_capacity(names.len());
         for name in names {
             let name = name.as_ref();
-            let found = columns.iter().enumerate().find(|(_, column)| column.name == name);
+            let mut found = columns.iter().enumerate().filter(|(_, column)| column.name == name);
             let (index, column) =
-                found.ok_or_else(|| damaged(&path, format!("it has no column `{name}`")))?;
+                found.next().ok_or_else(|| damaged(&path, format!("it has no column `{name}`")))?;
+            if found.next().is_some() {
+                return Err(damaged(&path, format!("it has column `{name}` more than once")));
+            }
             let column_type = column.column_type.clone().map_err(|other| {
                 damaged(&path, format!("column `{name}` is of type {other}, which no table of ours has"))
             })?;
@@ -393,6 +396,15 @@ mod tests {
             Column::nullable_texts("text?", rows.clone().map(|n| odd(n).then(|| n.to_string()))),
             Column::nullable("none?", rows.map(|_| None::<u32>)),
         ]
+    }
+
+    /// Which of the two other readers take is their affair.
+    #[test]
+    fn a_column_that_is_there_twice_is_refused() {
+        let [x, y] = [1.0, 2.0].map(|value| Column::new("x", [value]));
+        let (_folder, path) = written(&[x, y]);
+        let refused = ParquetFile::open(&path).unwrap().batches(&["x"], 10).err().unwrap().to_string();
+        assert!(refused.contains("column `x` more than once"), "{refused}");
     }
 
     #[test]

@@ -3,9 +3,11 @@
 use std::path::Path;
 
 use contract::{Camera, Frame, Window};
+use hifitime::Epoch;
 
-use super::FileError;
 use super::error::Place;
+use super::time::format_utc;
+use super::{FileError, TelemetryRow};
 
 /// Pixels and what the file itself says about them.
 #[derive(Debug)]
@@ -18,6 +20,56 @@ pub(super) struct RawImage {
     pub(super) bit_depth: Option<u8>,
     /// Regions that were transmitted, if the file tells.
     pub(super) windows: Option<Vec<Window>>,
+    /// What else the file tells of its frame.
+    pub(super) told: Told,
+}
+
+/// What an image tells of its frame, each with the keyword that tells it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Told {
+    pub(super) frame: Option<(&'static str, u64)>,
+    /// Middle of the exposure.
+    pub(super) time: Option<(&'static str, Epoch)>,
+    pub(super) exposure_s: Option<(&'static str, f64)>,
+}
+
+impl Told {
+    /// Most by which the times may differ, s: other cameras write milliseconds.
+    const TIME_S: f64 = 1e-3;
+    /// Most by which the exposure times may differ, in parts of them: of a number with six digits.
+    const EXPOSURE: f64 = 1e-5;
+
+    /// Holds it against a row of the telemetry: names of files can be swapped, and images with them.
+    pub(super) fn check(&self, path: &Path, row: &TelemetryRow) -> Result<(), FileError> {
+        let refused = |field: &str, found: String, expected: String| {
+            let expected = format!("{expected}, that of frame {} in the telemetry which names it", row.frame);
+            Err(FileError::value(path, Place::Header, field, found, expected))
+        };
+        let telemetry = &row.telemetry;
+        if let Some((field, frame)) = self.frame.filter(|(_, frame)| *frame != row.frame) {
+            return refused(field, frame.to_string(), row.frame.to_string());
+        }
+        if let Some((field, time)) = self.time
+            && (time - telemetry.time).to_seconds().abs() > Self::TIME_S
+        {
+            return refused(field, format_utc(time), format_utc(telemetry.time));
+        }
+        let is_other =
+            |told: f64| (told - telemetry.exposure_s).abs() > Self::EXPOSURE * telemetry.exposure_s;
+        match self.exposure_s.filter(|(_, told)| is_other(*told)) {
+            Some((field, told)) => refused(field, told.to_string(), telemetry.exposure_s.to_string()),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The size that an image must have.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Size<'a> {
+    pub(super) columns: usize,
+    pub(super) rows: usize,
+    /// Whose it is: `that of camera.toml`.
+    pub(super) whose: &'a str,
 }
 
 impl RawImage {
@@ -76,13 +128,24 @@ pub(super) fn dn_of_all(
     values.enumerate().map(convert).collect()
 }
 
-/// Columns and rows as a header claims them, if they are 1 to [`Camera::MAX_SIDE_PX`].
-pub(super) fn checked_size(path: &Path, columns: u64, rows: u64) -> Result<(usize, usize), FileError> {
+/// Columns and rows as a header claims them, if they are those of `size`, or without it 1 to [`Camera::MAX_SIDE_PX`]. It is asked before
+/// memory is reserved for the pixels.
+pub(super) fn checked_size(
+    path: &Path,
+    columns: u64,
+    rows: u64,
+    size: Option<Size<'_>>,
+) -> Result<(usize, usize), FileError> {
     let side = |n: u64| usize::try_from(n).ok().filter(|n| (1..=Camera::MAX_SIDE_PX).contains(n));
-    side(columns).zip(side(rows)).ok_or_else(|| {
-        let size = format!("{columns} × {rows}");
-        let expected = format!("1 to {} pixels a side", Camera::MAX_SIDE_PX);
-        FileError::value(path, Place::Header, "image size", size, expected)
+    let found = side(columns).zip(side(rows));
+    let is_right = |found: &(usize, usize)| size.is_none_or(|size| *found == (size.columns, size.rows));
+    found.filter(is_right).ok_or_else(|| {
+        let found = format!("{columns} × {rows}");
+        let expected = match size {
+            Some(Size { columns, rows, whose }) => format!("{columns} × {rows}, {whose}"),
+            None => format!("1 to {} pixels a side", Camera::MAX_SIDE_PX),
+        };
+        FileError::value(path, Place::Header, "image size", found, expected)
     })
 }
 
@@ -114,7 +177,14 @@ mod tests {
 
     #[test]
     fn a_value_above_full_scale_names_its_pixel() {
-        let raw = RawImage { columns: 2, rows: 2, dn: vec![0, 0, 0, 1024], bit_depth: None, windows: None };
+        let raw = RawImage {
+            columns: 2,
+            rows: 2,
+            dn: vec![0, 0, 0, 1024],
+            bit_depth: None,
+            windows: None,
+            told: Told::default(),
+        };
         let message = raw.into_frame(Path::new("a.png"), 1, 10, None).unwrap_err().to_string();
         assert_eq!(
             message,

@@ -38,8 +38,8 @@ impl TomlError {
             column: in_line.chars().count() + 1,
             span,
             help: nearest_valid_name(&message),
+            message: in_plain_words(&message) + opencv_order(&path, &message),
             path,
-            message: in_plain_words(message),
         }
     }
 }
@@ -84,7 +84,7 @@ pub fn read_text(file: &Path) -> std::io::Result<String> {
 /// # Errors
 /// A [`TomlError`] for text that is not TOML, a key that does not exist, a value of the wrong type or a key missing.
 pub fn parse<T: DeserializeOwned>(file: &Path, text: &str) -> Result<T, Box<TomlError>> {
-    toml::from_str(text).map_err(|error| {
+    sim::exact_toml::from_str(text).map_err(|error| {
         let span = error.span().filter(|span| !is_whole(span, text));
         let path = span.as_ref().and_then(|span| path_of(text, span)).unwrap_or_default();
         let message = error.message().trim().to_owned();
@@ -167,13 +167,24 @@ fn is_whole(span: &Range<usize>, text: &str) -> bool {
 }
 
 /// serde names Rust's types; a person reads what they mean.
-fn in_plain_words(message: String) -> String {
+fn in_plain_words(message: &str) -> String {
     let types = ["usize", "u64", "u32", "u8"];
     let whole = "a whole number from 0";
     types
         .iter()
-        .fold(message, |text, name| text.replace(&format!("expected {name}"), &format!("expected {whole}")))
+        .fold(message.to_owned(), |text, name| {
+            text.replace(&format!("expected {name}"), &format!("expected {whole}"))
+        })
         .replace("expected f64", "expected a number")
+}
+
+/// What there is to say to a radial distortion that is not three numbers: OpenCV lists the tangential ones between them.
+fn opencv_order(path: &str, message: &str) -> &'static str {
+    if path.ends_with("radial") && message.starts_with("invalid length") {
+        ": k1, k2, k3; OpenCV's order is k1, k2, p1, p2, k3, of which p1, p2 are `tangential` here"
+    } else {
+        ""
+    }
 }
 
 /// For serde's "unknown field `x`, expected one of `a`, `b`": the nearest of the names.

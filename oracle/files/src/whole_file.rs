@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all: written under a name of their own, synced, and then given theirs.
 
 use std::fs::File;
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
@@ -14,6 +14,50 @@ pub(super) const PARTIAL: &str = ".partial-";
 
 /// A file that is being written grows. One that has not for so long was left by a process that was killed.
 const ABANDONED: Duration = Duration::from_secs(3600);
+
+/// Bytes in which a file says of what kind it is.
+const BEGINNING_BYTES: u64 = 1 << 16;
+
+/// A kind of files, of which a later one may take the place of an earlier one.
+#[derive(Clone, Copy)]
+pub struct Earlier<'a> {
+    /// What it is: `an earlier report`.
+    pub what: &'a str,
+    /// Whether a file that begins so is one.
+    pub is: &'a dyn Fn(&[u8]) -> bool,
+}
+
+impl Earlier<'_> {
+    /// Refuses a path where something else is: a folder, a link, a device, a file of another kind, or one that may not be written.
+    ///
+    /// # Errors
+    /// [`FileError::NotReplaced`]; [`FileError::Io`] when it cannot be read.
+    pub fn check(&self, path: &Path) -> Result<(), FileError> {
+        let refused = |reason: &str| {
+            let (path, expected) = (path.to_owned(), format!("a free name, or that of {}", self.what));
+            Err(FileError::NotReplaced { path, reason: reason.to_owned(), expected })
+        };
+        let error = |source| FileError::io(path, "open", source);
+        let metadata = match path.symlink_metadata() {
+            Ok(metadata) => metadata,
+            // Of a folder that is missing or no folder, the writer tells.
+            Err(source) if matches!(source.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                return Ok(());
+            }
+            Err(source) => return Err(error(source)),
+        };
+        if !metadata.is_file() {
+            return refused("exists and is not a regular file");
+        }
+        let mut beginning = Vec::new();
+        let file = sim::regular_file::open(path).map_err(error)?;
+        file.take(BEGINNING_BYTES).read_to_end(&mut beginning).map_err(error)?;
+        if !(self.is)(&beginning) {
+            return refused("exists and is another file");
+        }
+        if metadata.permissions().readonly() { refused("exists and may not be written") } else { Ok(()) }
+    }
+}
 
 /// A file that is being written; gone unless it is given its name.
 #[derive(Debug)]
@@ -61,6 +105,11 @@ impl WholeFile {
         Ok(file)
     }
 
+    /// The same file, which will be another path of the same folder.
+    pub fn named(self, path: &Path) -> Self {
+        Self { path: path.to_owned(), ..self }
+    }
+
     /// What is to be written to.
     pub fn file(&self) -> &File {
         self.file.as_file()
@@ -103,11 +152,12 @@ impl WholeFile {
         }
     }
 
-    /// Gives the file its name, in the place of an earlier one.
+    /// Gives the file its name, in the place of an earlier one of its kind.
     ///
     /// # Errors
-    /// [`FileError::Io`] when it cannot be synced or named.
-    pub fn replace(self) -> Result<(), FileError> {
+    /// Those of [`Earlier::check`]; [`FileError::Io`] when it cannot be synced or named.
+    pub fn replace(self, earlier: Earlier<'_>) -> Result<(), FileError> {
+        earlier.check(&self.path)?;
         self.sync()?;
         let Self { file, path } = self;
         file.persist(&path).map(drop).map_err(|error| FileError::io(&path, "create", error.error))
@@ -116,8 +166,13 @@ impl WholeFile {
     /// Removes what processes that were killed left in a folder, an hour after they last wrote to it. That it cannot be done is no
     /// matter: nobody reads it.
     pub fn remove_abandoned(folder: &Path) {
+        Self::remove_abandoned_of(folder, Self::is_partial);
+    }
+
+    /// [`WholeFile::remove_abandoned`], of files with other names.
+    pub fn remove_abandoned_of(folder: &Path, is: impl Fn(&Path) -> bool) {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        for path in entries.map(|entry| entry.path()).filter(|path| Self::is_partial(path)) {
+        for path in entries.map(|entry| entry.path()).filter(|path| is(path)) {
             let modified = path.symlink_metadata().and_then(|metadata| metadata.modified());
             let age = modified.ok().and_then(|modified| SystemTime::now().duration_since(modified).ok());
             if age.is_some_and(|age| age > ABANDONED) {
@@ -149,7 +204,25 @@ mod tests {
         assert!(WholeFile::with_text(&path, "first").unwrap().commit().unwrap().is_none());
         let second = WholeFile::with_text(&path, "second").unwrap().commit().unwrap().unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "first");
-        second.replace().unwrap();
+        let earlier = |beginning: &'static [u8]| move |bytes: &[u8]| bytes == beginning;
+        let foreign = Earlier { what: "an earlier one", is: &earlier(b"zeroth") };
+        let refused = foreign.check(&path).unwrap_err().to_string();
+        assert!(
+            refused.contains("another file, expected a free name, or that of an earlier one"),
+            "{refused}"
+        );
+        assert!(foreign.check(folder.path()).unwrap_err().to_string().contains("not a regular file"));
+        let first = Earlier { what: "an earlier one", is: &earlier(b"first") };
+        let set_readonly = |readonly| {
+            let mut permissions = std::fs::metadata(&path).unwrap().permissions();
+            permissions.set_readonly(readonly);
+            std::fs::set_permissions(&path, permissions).unwrap();
+        };
+        set_readonly(true);
+        assert!(first.check(&path).unwrap_err().to_string().contains("may not be written"));
+        #[allow(clippy::permissions_set_readonly_false, reason = "in a folder of this test")]
+        set_readonly(false);
+        second.replace(first).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "second");
         let taken = WholeFile::with_text(&path, "third").unwrap().commit_new().unwrap_err();
         assert!(taken.to_string().contains("nothing is overwritten"), "{taken}");

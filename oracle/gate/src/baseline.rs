@@ -2,10 +2,13 @@
 //!
 //! A folder with two files: `baseline.toml`, readable in a diff, says what was run, by which pipeline, why this is the baseline, how it is
 //! cut into blocks, and the figures; `rows.parquet` has a row a unit. The one holds the SHA-256 of the other.
+//!
+//! Two files cannot be replaced at once. New rows wait under a name of their hash until the header is there that holds it, and then get
+//! theirs; a reader takes those that the header means. So whenever it is killed, the old baseline is there, or the new one.
 use std::path::{Path, PathBuf};
 
 use files::sha256::sha256_hex;
-use files::{Checksums, Failure, FileError, WholeFile, toml_file};
+use files::{Checksums, Earlier, Failure, FileError, WholeFile, toml_file};
 use indexmap::IndexMap;
 use score::{FigureTerms, Reduction};
 use serde::{Deserialize, Serialize};
@@ -24,6 +27,13 @@ const MOST_BYTES: u64 = 1 << 28;
 /// The files of a baseline.
 const NAMES: [&str; 2] = ["baseline.toml", "rows.parquet"];
 
+/// What a later one replaces.
+const HEADERS: Earlier<'static> = Earlier {
+    what: "the baseline.toml of an earlier baseline",
+    is: &|beginning| beginning.starts_with(b"format = "),
+};
+const ROWS: Earlier<'static> =
+    Earlier { what: "the rows of an earlier baseline", is: &|beginning| beginning.starts_with(b"PAR1") };
 /// What becomes of a baseline that is there already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Replace {
@@ -140,9 +150,12 @@ impl Baseline {
     /// Writes the files into a folder, which is made when it is not there. Each gets its name when both are complete.
     ///
     /// # Errors
-    /// [`Failure`] when there is a baseline already and `replace` refuses it, or a file cannot be written.
+    /// [`Failure`] when there is a baseline already and `replace` refuses it, when the folder has other files of these names or checksums
+    /// of other files, or when a file cannot be written.
     pub fn write(&mut self, folder: &Path, replace: Replace) -> Result<(), Failure> {
         let [header, rows] = paths(folder);
+        HEADERS.check(&header)?;
+        ROWS.check(&rows)?;
         for path in [&header, &rows] {
             if replace == Replace::Refuse && path.exists() {
                 return Err(Failure::Usage(format!(
@@ -151,18 +164,24 @@ impl Baseline {
                 )));
             }
         }
+        Checksums::check_own(folder, &NAMES)?;
         std::fs::create_dir_all(folder).map_err(|source| FileError::io(folder, "create", source))?;
         let new_rows = WholeFile::create(&rows)?;
         rows::write(new_rows.file(), &rows, &self.sample.table, |unit| self.blocks.of(unit))?;
         self.header.rows_sha256 = file_sha256(new_rows.place())?;
         let text = toml::to_string(&self.header)
             .map_err(|error| Failure::Usage(format!("the baseline cannot be written: {error}")))?;
-        for file in [new_rows, WholeFile::with_text(&header, &text)?] {
-            match replace {
-                Replace::Allow => file.replace()?,
-                Replace::Refuse => file.commit_new()?,
-            }
+        let new_header = WholeFile::with_text(&header, &text)?;
+        let waiting = waiting_rows(folder, &self.header.rows_sha256);
+        new_rows.named(&waiting).replace(ROWS)?;
+        // Those of the earlier baseline, which would say that the new header is damaged.
+        Checksums::remove(folder)?;
+        match replace {
+            Replace::Allow => new_header.replace(HEADERS)?,
+            Replace::Refuse => new_header.commit_new()?,
         }
+        std::fs::rename(&waiting, &rows).map_err(|source| FileError::io(&rows, "create", source))?;
+        WholeFile::remove_abandoned_of(folder, is_waiting);
         Ok(Checksums::write(folder, &NAMES)?)
     }
 
@@ -195,7 +214,10 @@ impl Baseline {
             };
             figures.push((name.clone(), reduction));
         }
-        if file_sha256(&rows_path)? != header.rows_sha256 {
+        let waiting = waiting_rows(folder, &header.rows_sha256);
+        let is_of_header = |path: &Path| Ok::<_, FileError>(file_sha256(path)? == header.rows_sha256);
+        let rows_path = if waiting.is_file() && is_of_header(&waiting)? { waiting } else { rows_path };
+        if !is_of_header(&rows_path)? {
             let message = format!("is not that of {}: one of the two files was changed", rows_path.display());
             return Err(refuse("rows_sha256", message));
         }
@@ -243,6 +265,20 @@ fn paths(folder: &Path) -> [PathBuf; 2] {
     NAMES.map(|name| folder.join(name))
 }
 
+/// How the names of rows begin that wait for their header.
+const WAITING: &str = ".rows-";
+
+/// Where rows wait until the header is there that means them.
+fn waiting_rows(folder: &Path, sha256: &str) -> PathBuf {
+    // Of a header of anybody's making: no path.
+    let digits: String = sha256.chars().filter(char::is_ascii_hexdigit).collect();
+    folder.join(format!("{WAITING}{digits}.parquet"))
+}
+
+fn is_waiting(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(WAITING))
+}
+
 fn file_sha256(path: &Path) -> Result<String, FileError> {
     let bytes =
         sim::regular_file::read(path, MOST_BYTES).map_err(|source| FileError::io(path, "read", source))?;
@@ -284,6 +320,43 @@ mod tests {
             let sums = std::fs::read_to_string(folder.path().join("SHA256SUMS")).unwrap();
             assert!(NAMES.iter().all(|name| sums.contains(name)), "{sums}");
         }
+    }
+
+    /// The states that a `--replace` goes through, as a kill leaves them: there is always one of the two.
+    #[test]
+    fn a_replacement_that_is_killed_leaves_one_of_the_two() {
+        let [(old, folder), (new, other)] = [written(6), written(7)];
+        let at = |name: &str| folder.path().join(name);
+        let waiting = waiting_rows(folder.path(), &new.header.rows_sha256);
+        std::fs::copy(other.path().join("rows.parquet"), &waiting).unwrap();
+        assert_eq!(Baseline::read(folder.path()).unwrap(), old);
+        std::fs::remove_file(at("SHA256SUMS")).unwrap();
+        assert_eq!(Baseline::read(folder.path()).unwrap(), old);
+        std::fs::copy(other.path().join("baseline.toml"), at("baseline.toml")).unwrap();
+        assert_eq!(Baseline::read(folder.path()).unwrap(), new);
+        // Of what was killed here, the next one has no need; and until it has its own header, it leaves what the old one means.
+        let mut third = Baseline::new(run(8), "third", Some(1)).unwrap();
+        third.write(folder.path(), Replace::Allow).unwrap();
+        assert_eq!(Baseline::read(folder.path()).unwrap(), third);
+    }
+
+    #[test]
+    fn a_baseline_replaces_nothing_else() {
+        let (mut baseline, folder) = written(6);
+        let parts = |name: &str, text: &str, expected: &str| {
+            let other = tempfile::tempdir().unwrap();
+            std::fs::write(other.path().join(name), text).unwrap();
+            for replace in [Replace::Refuse, Replace::Allow] {
+                let message = baseline.clone().write(other.path(), replace).unwrap_err().to_string();
+                assert!(message.contains(name) && message.contains(expected), "{message}");
+            }
+            assert_eq!(std::fs::read_dir(other.path()).unwrap().count(), 1);
+            assert_eq!(std::fs::read_to_string(other.path().join(name)).unwrap(), text);
+        };
+        parts("baseline.toml", "name = 1\n", "another file");
+        parts("rows.parquet", "mine", "another file");
+        parts("SHA256SUMS", &format!("{}  run.toml\n", "0".repeat(64)), "checksums of the files");
+        baseline.write(folder.path(), Replace::Allow).unwrap();
     }
 
     #[test]

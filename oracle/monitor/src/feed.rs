@@ -204,7 +204,8 @@ fn replay_far_range(
     let mut clusters = optional(&directory.join("clusters.parquet"))
         .map(|path| TableReader::<FrameCluster>::open(&path))
         .transpose()?;
-    let mut answers = read_measurements(&directory.join("measurements.csv"))?.into_iter().peekable();
+    let mut answers =
+        read_measurements(&directory.join("measurements.csv"), reporter.camera)?.into_iter().peekable();
     for row in TableReader::<FrameTruth>::open(&directory.join("truth/frames.parquet"))? {
         let (number, truths) = row?;
         session.wait_for_goal(number)?;

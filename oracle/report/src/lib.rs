@@ -61,7 +61,7 @@ pub use visibility::{read_visibility, visibility_page};
 
 use self::read::is_far_range_run;
 use self::run_page::run_page;
-use files::{Checksums, Failure, WholeFile};
+use files::{Checksums, Earlier, Failure, WholeFile};
 use run::{AnyScored, Prepared, PreparedDocking, World as _, world_of_run};
 use score::Scored;
 
@@ -139,12 +139,21 @@ pub fn report_of_run(directory: &Path, scored: &mut dyn AnyScored) -> Result<Pag
     }
 }
 
+/// Reports, which a later one replaces.
+pub const REPORTS: Earlier<'static> = Earlier { what: "an earlier report of Boresight", is: &is_report };
+
+/// Whether a file that begins so is a report.
+fn is_report(beginning: &[u8]) -> bool {
+    let named = br#"<meta name="generator" content="Boresight "#;
+    beginning.starts_with(b"<!doctype html>") && beginning.windows(named.len()).any(|window| window == named)
+}
+
 /// Writes a page, at once or not at all; a report that was there is replaced. Returns its length, bytes.
 ///
 /// # Errors
-/// A [`Failure`] when the page cannot be put together or the file not be written.
+/// A [`Failure`] when the page cannot be put together, the file not be written, or something else than a report is there.
 pub fn write_page(page: &Page, path: &Path) -> Result<u64, Failure> {
     let html = page.html()?;
-    WholeFile::with_text(path, &html)?.replace()?;
+    WholeFile::with_text(path, &html)?.replace(REPORTS)?;
     Ok(html.len() as u64)
 }

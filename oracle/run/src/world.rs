@@ -146,7 +146,7 @@ pub trait World: Sized + Send + Sync + 'static {
     fn check_stream(&self, _: &Flight<Self::Images>) -> Result<(), Failure> {
         let code = Self::CODE;
         Err(Failure::Usage(format!(
-            "--out is -, expected a directory: {code} has no format that is a stream"
+            "--out is -, expected the name of a place: {code} writes nothing to standard output (`./-` is a file)"
         )))
     }
 

@@ -220,6 +220,12 @@ impl<S: ScenarioFile> RunFile<S> {
             source,
         })?;
         let run_file = S::parse_run(path, &text)?;
+        if !is_known(&run_file.version) {
+            let version = env!("CARGO_PKG_VERSION");
+            let message =
+                format!("is `{}`, expected a version of Boresight, {version} or earlier", run_file.version);
+            return Err(toml_file::refuse(path, &text, "version", message).into());
+        }
         if sha256_hex(run_file.scenario.to_toml()?) == run_file.hash {
             Ok(run_file)
         } else {
@@ -228,6 +234,16 @@ impl<S: ScenarioFile> RunFile<S> {
             Err(toml_file::refuse(path, &text, "hash", message).into())
         }
     }
+}
+
+/// Whether a version is this one or one before it: what a later one writes may mean something else.
+fn is_known(version: &str) -> bool {
+    let numbers = |text: &str| -> Option<[u64; 3]> {
+        let parts: Result<Vec<u64>, _> = text.split('.').map(str::parse).collect();
+        parts.ok()?.try_into().ok()
+    };
+    numbers(version)
+        .is_some_and(|version| numbers(env!("CARGO_PKG_VERSION")).is_some_and(|own| version <= own))
 }
 
 #[doc(hidden)]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use contract::{Angle, AttitudeSource, Outcome};
 use indexmap::IndexMap;
-use sim::truth::{FrameTruth, ObjectTruth};
+use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
 use thiserror::Error;
 
 use super::angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
@@ -54,6 +54,18 @@ pub enum ScoreError {
         /// The frame met.
         frame: u64,
     },
+    /// A value that no frame has.
+    #[error("frame {frame}: `{field}` is {value}, expected {expected}")]
+    Impossible {
+        /// The frame.
+        frame: u64,
+        /// Column of the truth.
+        field: &'static str,
+        /// The value met.
+        value: String,
+        /// What is possible.
+        expected: &'static str,
+    },
     /// An object of another frame.
     #[error("an object of frame {object} is given with frame {frame}")]
     ForeignObject {
@@ -62,6 +74,31 @@ pub enum ScoreError {
         /// The frame of the object.
         object: u64,
     },
+}
+
+/// Refuses what no frame has: figures of it would be numbers all the same.
+fn check_possible(truth: &FrameTruth, objects: &[ObjectTruth]) -> Result<(), ScoreError> {
+    let check = |field, value: f64, expected, is_possible: bool| {
+        let impossible =
+            || ScoreError::Impossible { frame: truth.frame, field, value: value.to_string(), expected };
+        if is_possible { Ok(()) } else { Err(impossible()) }
+    };
+    check("range_km", truth.range_km, "more than 0", truth.range_km > 0.0)?;
+    let targets = objects.iter().filter(|object| object.kind == ObjectKind::Target).count();
+    check("number of targets", targets as f64, "at most 1", targets <= 1)?;
+    for object in objects {
+        for (field, value) in [
+            ("electrons", object.electrons),
+            ("peak_electrons", object.peak_electrons),
+            ("snr", object.snr),
+            ("radius_px", object.radius_px),
+            ("bloom_px", object.bloom_px),
+            ("cut", object.cut),
+        ] {
+            check(field, value, "0 or more", value >= 0.0)?;
+        }
+    }
+    Ok(())
 }
 
 /// Scores the frames of a far-range run one after the other.
@@ -112,6 +149,7 @@ impl<'a> Scorer<'a> {
         if let Some(foreign) = objects.iter().find(|object| object.frame != frame) {
             return Err(ScoreError::ForeignObject { frame, object: foreign.frame });
         }
+        check_possible(truth, objects)?;
         let detector = Detector { columns: self.context.columns, rows: self.context.rows };
         let group = match self.verdicts.last() {
             Some(last) if *last.group == *truth.group => Arc::clone(&last.group),
@@ -312,6 +350,27 @@ mod tests {
 
     fn counts_of(score: &Score, name: &str) -> (u64, u64) {
         (score.figures[name].count, score.figures[name].of)
+    }
+
+    /// Its figures would be numbers all the same.
+    #[test]
+    fn what_no_frame_has_is_refused() {
+        let refused = |truth: FrameTruth, objects: &[ObjectTruth], parts: [&str; 2]| {
+            let message = scorer().add(&truth, objects, None).unwrap_err().to_string();
+            assert!(
+                message.starts_with("frame 0") && parts.iter().all(|part| message.contains(part)),
+                "{message}"
+            );
+        };
+        let target = target_with(1000.0);
+        refused(frame(0), &[target_with(-1.0)], ["`electrons` is -1", "0 or more"]);
+        refused(
+            frame(0),
+            &[ObjectTruth { radius_px: f64::NAN, ..target.clone() }],
+            ["`radius_px` is NaN", "0 or"],
+        );
+        refused(frame(0), &[target.clone(), target.clone()], ["`number of targets` is 2", "at most 1"]);
+        refused(FrameTruth { range_km: -10.0, ..frame(0) }, &[target], ["`range_km` is -10", "more than 0"]);
     }
 
     /// The definition of every rate: what it counts and what it is divided by.

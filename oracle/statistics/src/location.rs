@@ -35,8 +35,12 @@ pub fn median(sequences: &[Vec<f64>]) -> Option<f64> {
 }
 
 /// The interval of a median: the values at the ranks that the interval of the rate ½ gives, with the effective
-/// size of "is it below the median". Needs no law of the values. `None` for no value.
+/// size of "is it below the median". Needs no law of the values. `None` for fewer than three values: between two the median lies half
+/// of the time, however far it scatters.
 pub fn median_interval(sequences: &[Vec<f64>]) -> Option<Interval> {
+    if sequences.iter().map(Vec::len).sum::<usize>() < 3 {
+        return None;
+    }
     let median = median(sequences)?;
     let below: Vec<Vec<f64>> = sequences
         .iter()
@@ -126,7 +130,9 @@ mod tests {
         assert_eq!(mean_interval(&one), None);
         assert_eq!(rms_interval(&one), None);
         assert_eq!(median(&one), Some(3.0));
-        assert_eq!(median_interval(&one), Some(Interval { low: 3.0, high: 3.0 }));
+        assert_eq!(median_interval(&one), None);
+        assert_eq!(median_interval(&[vec![3.0], vec![4.0]]), None);
+        assert!(median_interval(&[vec![3.0, 5.0], vec![4.0]]).is_some());
         assert_eq!(median(&[]), None);
         assert_eq!(median_interval(&[]), None);
     }

@@ -8,7 +8,7 @@ use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use files::{Checksums, Failure, FileError, WholeFile};
+use files::{Checksums, Earlier, Failure, FileError, WholeFile};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -93,16 +93,23 @@ pub struct ShardStore {
 }
 
 impl ShardStore {
-    /// Opens a folder for a plan, and makes it when it is not there. What is in it must be of the same plan.
+    /// Opens a folder for a plan, and makes it when it is not there. What is in it must be of the same plan; without a plan, nothing in it
+    /// may have a name of a study's files.
     ///
     /// # Errors
     /// [`Failure::Usage`] when the folder holds another study, or the same one in other pieces; [`Failure`] of files.
     pub fn open(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let store = Self { folder: folder.to_owned(), plan };
+        let path = store.folder.join("plan.json");
+        if !path.exists() {
+            let is_free = Earlier { what: "a folder of a study with its plan.json", is: &|_| false };
+            let [_, others @ ..] = &SEALED;
+            others.iter().try_for_each(|name| is_free.check(&folder.join(name)))?;
+        }
+        Checksums::check_own(folder, &SEALED)?;
         std::fs::create_dir_all(store.shards()).map_err(|source| FileError::io(folder, "create", source))?;
         WholeFile::remove_abandoned(folder);
         WholeFile::remove_abandoned(&store.shards());
-        let path = store.folder.join("plan.json");
         let text = to_json(&store.plan)?;
         if !path.exists() {
             // Several processes may come to this at once: all write the same, and the first one's stays.
@@ -247,7 +254,7 @@ impl ShardStore {
         if let Some(file) = file.commit()?
             && self.read(shard, &table.with_rows(Vec::new()))?.is_none()
         {
-            file.replace()?;
+            file.replace(OF_THE_PLAN)?;
         }
         Ok(manifest)
     }
@@ -261,7 +268,7 @@ impl ShardStore {
         let file = WholeFile::create(&path)?;
         let of = [("study_hash", self.plan.hash.clone()), ("version", self.plan.version.clone())];
         table.write(file.file(), &path, &of)?;
-        file.replace()?;
+        file.replace(OF_THE_PLAN)?;
         Ok(path)
     }
 
@@ -271,7 +278,7 @@ impl ShardStore {
     /// [`Failure`] when it cannot be written.
     pub fn write_record(&self, record: &StudyRecord) -> Result<PathBuf, Failure> {
         let path = self.folder.join("study.json");
-        WholeFile::with_text(&path, &to_json(record)?)?.replace()?;
+        WholeFile::with_text(&path, &to_json(record)?)?.replace(OF_THE_PLAN)?;
         Ok(path)
     }
 
@@ -289,10 +296,13 @@ impl ShardStore {
     /// [`Failure`] when it cannot be written.
     pub fn write_summary(&self, summary: &impl Serialize) -> Result<PathBuf, Failure> {
         let path = self.folder.join("summary.json");
-        WholeFile::with_text(&path, &to_json(summary)?)?.replace()?;
+        WholeFile::with_text(&path, &to_json(summary)?)?.replace(OF_THE_PLAN)?;
         Ok(path)
     }
 }
+
+/// What a file of a folder replaces whose plan is that of the study: whatever it held, it is made of the same cases.
+const OF_THE_PLAN: Earlier<'static> = Earlier { what: "a file of the study", is: &|_| true };
 
 /// The files of a study that have checksums: those of the shards stand in them.
 const SEALED: [&str; 4] = ["plan.json", "study.json", "cases.parquet", "summary.json"];

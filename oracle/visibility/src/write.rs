@@ -1,7 +1,7 @@
 //! The files of a report: `visibility.json`, `visibility.md`, and a CSV a curve.
 use std::path::{Path, PathBuf};
 
-use files::{Failure, FileError, WholeFile, open_regular};
+use files::{Failure, FileError, Lines, WholeFile, open_regular};
 
 use super::report::{PointingStars, VisibilityReport};
 
@@ -120,7 +120,7 @@ fn sky(report: &VisibilityReport) -> String {
 /// [`FileError`] for a file that cannot be read, or a row that is none of its.
 pub fn read_sky(path: &Path) -> Result<Vec<PointingStars>, FileError> {
     let format = |error: csv::Error| FileError::format(path, "sky.csv", error);
-    let file = open_regular(path)?;
+    let file = Lines::new(open_regular(path)?);
     csv::Reader::from_reader(file).deserialize().map(|row| row.map_err(format)).collect()
 }
 

@@ -120,11 +120,9 @@ pub fn outcome(answer: &[u8], number: u64) -> Result<DockingOutcome, String> {
         "measured" => DockingSolution::Measured(Box::new(measurement(&answer)?)),
         "range_only" => range_only(&answer)?,
         status => match NoPose::parse(status) {
-            NoPose::Failed(_) if status != "failed" && !status.starts_with("failed: ") => {
-                return Err(format!("its status `{}` is not known", shortened(status)));
-            }
-            NoPose::Failed(reason) => DockingSolution::NoSolution(NoPose::Failed(shortened(&reason))),
-            reason => DockingSolution::NoSolution(reason),
+            None => return Err(format!("its status `{}` is not known", shortened(status))),
+            Some(NoPose::Failed(reason)) => DockingSolution::NoSolution(NoPose::Failed(shortened(&reason))),
+            Some(reason) => DockingSolution::NoSolution(reason),
         },
     };
     let digitiser = digitiser(&answer)?;

@@ -174,11 +174,9 @@ pub fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Result<Ou
     let solution = match answer.status.as_str() {
         "detected" => Solution::Detected(measurement(&answer, size_px)?),
         status => match NoSolution::parse(status) {
-            NoSolution::Failed(_) if status != "failed" && !status.starts_with("failed: ") => {
-                return Err(format!("its status `{}` is not known", shortened(status)));
-            }
-            NoSolution::Failed(reason) => Solution::NoSolution(NoSolution::Failed(shortened(&reason))),
-            reason => Solution::NoSolution(reason),
+            None => return Err(format!("its status `{}` is not known", shortened(status))),
+            Some(NoSolution::Failed(reason)) => Solution::NoSolution(NoSolution::Failed(shortened(&reason))),
+            Some(reason) => Solution::NoSolution(reason),
         },
     };
     Ok(Outcome {

@@ -16,12 +16,12 @@ use super::truth::FieldTruth;
 use crate::SimError;
 use crate::optics::ImageBlur;
 use crate::randomness::Seed;
-use crate::regular_file;
 use crate::scene::docking::{DockingScene, Lighting, TargetFile};
 use crate::television::{BIT_DEPTH, Caption, FieldLabel, Television, TelevisionConfig, VideoField};
 use crate::truth::approach::{Approach, ApproachState};
 use crate::truth::clock::{format_utc, parse_utc_of};
 use crate::vector::{Drawer, RadianceImage};
+use crate::{exact_toml, regular_file};
 
 /// Largest target file, bytes.
 const MAX_TARGET_BYTES: u64 = 4 << 20;
@@ -321,7 +321,7 @@ fn target_file(target: &str, folder: &Path) -> Result<TargetFile, SimError> {
         let names: Vec<_> = TargetFile::built_in_names().collect();
         refused(format!("{error}; built-in targets are {}", names.join(", ")))
     })?;
-    toml::from_str(&text).map_err(|error| refused(error.to_string()))
+    exact_toml::from_str(&text).map_err(|error| refused(error.to_string()))
 }
 
 #[cfg(test)]

@@ -31,11 +31,11 @@ const CENTURY_S: f64 = 36_525.0 * 86_400.0;
 ///
 /// # Errors
 /// [`OutOfRange`] when the text has another form, the date does not exist, or the year lies before 1972
-/// (UTC had no whole seconds to TAI then).
+/// (UTC had no whole seconds to TAI then) or after 2261 (the last that timestamps in nanoseconds reach).
 pub fn parse_utc(text: &str) -> Result<Epoch, OutOfRange> {
     let refuse = |expected| OutOfRange::new("time", text, expected);
     let civil = Civil::parse(text)
-        .ok_or_else(|| refuse("a UTC time such as 2012-04-25T12:18:54.5Z, from 1972 on"))?;
+        .ok_or_else(|| refuse("a UTC time such as 2012-04-25T12:18:54.5Z, from 1972 to 2261"))?;
     let label_ns = civil.label_ns().ok_or_else(|| refuse("a date and time that exist"))?;
     if civil.second < 60 {
         return Ok(epoch_of_tai(label_ns + tai_minus_utc_ns(label_ns)));
@@ -71,15 +71,34 @@ pub fn format_utc(time: Epoch) -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{nanosecond:09}Z")
 }
 
-/// Whole milliseconds of UTC since 1970-01-01 in days of 86,400 s, rounded down: the time of POSIX and of JavaScript's dates. A leap second has
-/// the numbers of the second after it.
+/// Nanoseconds of UTC since 1970-01-01 in days of 86,400 s: the time of POSIX, and of timestamps in Parquet. It has no number for what is
+/// inside a leap second: that has the one of its end, so that time does not step back.
 ///
-/// Before 1972 as in [`format_utc`].
-pub fn unix_ms(time: Epoch) -> i64 {
+/// Before 1972 as in [`format_utc`]; saturates before 1677 and after 2262.
+pub fn unix_ns(time: Epoch) -> i64 {
     let tai_ns = tai_ns(time);
-    let unix_ns = tai_ns - utc_at(tai_ns).0 - UNIX_ORIGIN_NS;
-    // hifitime's epochs span a hundredth of the range of an i64.
-    unix_ns.div_euclid(1_000_000) as i64
+    let (offset_ns, inside_leap) = utc_at(tai_ns);
+    let unix_ns = tai_ns - offset_ns - UNIX_ORIGIN_NS;
+    let unix_ns = if inside_leap { unix_ns - unix_ns.rem_euclid(NS_PER_S) } else { unix_ns };
+    unix_ns.clamp(i64::MIN.into(), i64::MAX.into()) as i64
+}
+
+/// The instant of a [`unix_ns`].
+pub fn from_unix_ns(unix_ns: i64) -> Epoch {
+    let label_ns = i128::from(unix_ns) + UNIX_ORIGIN_NS;
+    epoch_of_tai(label_ns + tai_minus_utc_ns(label_ns))
+}
+
+/// The Julian date in UTC, days; it stands still inside a leap second as [`unix_ns`] does.
+pub(super) fn jd_utc(time: Epoch) -> f64 {
+    // Same scale in and out.
+    let label_ns = i128::from(unix_ns(time)) + UNIX_ORIGIN_NS;
+    Epoch::from_utc_duration(Duration::from_total_nanoseconds(label_ns)).to_jde_utc_days()
+}
+
+/// Whole milliseconds of [`unix_ns`], rounded down: the time of JavaScript's dates.
+pub fn unix_ms(time: Epoch) -> i64 {
+    unix_ns(time).div_euclid(1_000_000)
 }
 
 /// TT since J2000.0, s (resolution of the number: 0.2 µs).
@@ -161,7 +180,7 @@ impl Civil {
             second: two(second)?,
             nanosecond,
         };
-        (civil.year >= 1972).then_some(civil)
+        (1972..=2261).contains(&civil.year).then_some(civil)
     }
 
     /// The count of UTC from 1900-01-01 as if every day had 86,400 s: what hifitime calls a UTC duration.
@@ -349,6 +368,7 @@ mod tests {
             "2012-04-25T12:18:54.0123456789Z",
             "2012-04-25T12:18:-1Z",
             "1969-04-25T12:18:54Z",
+            "2262-01-01T00:00:00Z",
             "٢٠١٢-04-25T12:18:54Z",
         ] {
             assert!(parse_utc(text).is_err(), "{text} was read");
@@ -367,17 +387,44 @@ mod tests {
 
     #[test]
     fn milliseconds_since_1970_are_those_of_posix() {
-        // From `date --utc --date=TEXT +%s`.
+        // From `date --utc --date=TEXT +%s`; inside a leap second that of its end.
         for (text, ms) in [
             ("2012-04-23T00:00:00Z", 1_335_139_200_000),
             ("2012-04-25T12:18:54.123999999Z", 1_335_356_334_123),
             ("2012-06-30T23:59:59.5Z", 1_341_100_799_500),
-            ("2012-06-30T23:59:60.5Z", 1_341_100_800_500),
+            ("2012-06-30T23:59:60.5Z", 1_341_100_800_000),
             ("2012-07-01T00:00:00.5Z", 1_341_100_800_500),
             ("2026-01-01T00:00:00Z", 1_767_225_600_000),
         ] {
             assert_eq!(unix_ms(parse_utc(text).unwrap()), ms, "{text}");
         }
+    }
+
+    #[test]
+    fn time_in_nanoseconds_comes_back_over_a_leap_second_and_does_not_step_back() {
+        let start = parse_utc("2016-12-31T23:58:00.5Z").unwrap();
+        let mut before = i64::MIN;
+        for half_seconds in 0..480 {
+            let time = start + Duration::from_total_nanoseconds(half_seconds * NS_PER_S / 2);
+            let unix_ns = unix_ns(time);
+            assert!(unix_ns >= before, "{}", format_utc(time));
+            before = unix_ns;
+            let text = format_utc(time);
+            if text.contains(":60.") {
+                assert_eq!(format_utc(from_unix_ns(unix_ns)), "2017-01-01T00:00:00.000000000Z");
+            } else {
+                assert_eq!(from_unix_ns(unix_ns), time, "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_julian_date_is_that_of_the_calendar_up_to_a_leap_second() {
+        let at = |text| jd_utc(parse_utc(text).unwrap());
+        assert_eq!(at("2000-01-01T12:00:00Z"), 2_451_545.0);
+        // A second is 1.2e-5 days, and the number known to 5e-10.
+        assert!((at("2016-12-31T23:59:50Z") - (2_457_754.5 - 10.0 / 86_400.0)).abs() < 1e-9);
+        assert_eq!(at("2016-12-31T23:59:60.5Z"), 2_457_754.5);
     }
 
     #[test]

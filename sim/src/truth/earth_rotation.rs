@@ -4,10 +4,12 @@ use contract::Angle;
 use hifitime::Epoch;
 use nalgebra::Vector3;
 
+use super::clock::jd_utc;
+
 /// The Earth rotation angle (IERS Conventions 2010, Eq. 5.15), radians from 0 to 2π. UTC stands for UT1, from which it
 /// differs by less than 0.9 s, 0.004°.
 fn earth_rotation_angle(time: Epoch) -> f64 {
-    let days = time.to_jde_utc_days() - 2_451_545.0;
+    let days = jd_utc(time) - 2_451_545.0;
     let turns = 0.779_057_273_264_0 + 0.002_737_811_911_354_48 * days + (days - days.floor());
     2.0 * std::f64::consts::PI * (turns - turns.floor())
 }

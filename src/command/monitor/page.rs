@@ -10,13 +10,15 @@ use scenario::BUILT_IN;
 use serde_json::json;
 
 use super::MonitorArguments;
+use crate::command::Answer;
 use crate::command::options::FrameRange;
 use crate::command::output::Output;
-use crate::command::{Answer, scratch_directory};
+use crate::command::scratch_directory::ScratchDirectory;
 
 pub(in crate::command) fn monitor(arguments: &MonitorArguments, output: &Output) -> Result<Answer, Failure> {
     let directory = Path::new(&arguments.selection.scenario);
-    let scratch = scratch_directory()?;
+    // Its server ends on signals by itself.
+    let scratch = ScratchDirectory::create(&std::env::temp_dir())?;
     // As in `run`, a built-in scenario is itself beside a folder of its name: that is `./NAME`.
     let is_built_in = BUILT_IN.iter().any(|built_in| built_in.name == arguments.selection.scenario);
     let (name, feed) = if directory.is_dir() && !is_built_in {

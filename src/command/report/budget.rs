@@ -2,14 +2,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use files::{Failure, FileError, RunDirectory, WholeFile, toml_file};
+use files::{Earlier, Failure, FileError, RunDirectory, WholeFile, toml_file};
 use report::{FarRangeRun, check_budget};
 use run::pipeline_choice::PipelineChoice;
 use run::{Expectation, Flight, Options, ScenarioSource};
 use scenario::Stage;
 
+use crate::command::interrupt::clean_up_when_interrupted;
 use crate::command::options::default_jobs;
 use crate::command::output::Output;
+use crate::command::scratch_directory::ScratchDirectory;
 
 /// Flies what is missing of the error budget of a far-range run, and keeps of each stage `run.toml` and `score.json` in
 /// `budget/STAGE`: its frames are those of the run, and their truth is there already. Gives the directories.
@@ -56,8 +58,8 @@ fn fly(
         |path: &Path, source| Failure::from(FileError::Io { path: path.to_owned(), doing: "create", source });
     std::fs::create_dir_all(folder).map_err(|error| create(folder, error))?;
     // Beside what is kept of it: the truth of a long run may be more than a folder for temporary files can hold.
-    let scratch = tempfile::Builder::new().prefix("flight-").tempdir_in(folder);
-    let scratch = scratch.map_err(|error| create(folder, error))?;
+    clean_up_when_interrupted();
+    let scratch = ScratchDirectory::create(folder)?;
     let prepared = source.prepare(Options { inject: Some(stage), ..Options::default() })?;
     let choice = PipelineChoice { word: None, timeout_s: 0.0, memory_mb: 0 };
     let factory = prepared.factory(&choice, scratch.path())?;
@@ -78,7 +80,10 @@ fn fly(
             doing: "read",
             source,
         })?;
-        WholeFile::with_text(&folder.join(name), &text)?.replace()?;
+        // Of a stage that was not done.
+        let earlier =
+            Earlier { what: "that of an earlier flight", is: &|beginning| beginning.starts_with(b"name = ") };
+        WholeFile::with_text(&folder.join(name), &text)?.replace(earlier)?;
     }
     Ok(())
 }

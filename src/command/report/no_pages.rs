@@ -13,6 +13,10 @@ pub(super) fn write_report(_: &Path, _: &[PathBuf], _: &Path, _: &Output) -> Res
     Err(missing_feature("report"))
 }
 
+pub(super) fn check_place(_: &Path) -> Result<(), Failure> {
+    Err(missing_feature("report"))
+}
+
 pub(in crate::command) fn write_beside_run(_: &Path, _: &mut dyn AnyScored, output: &Output) {
     note(output);
 }

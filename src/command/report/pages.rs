@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use files::Failure;
 use gate::GateReport;
 use report::{
-    FlippedFrames, Page, gate_page, report_of, report_of_run, report_with_budget, visibility_page, write_page,
+    FlippedFrames, Page, REPORTS, gate_page, report_of, report_of_run, report_with_budget, visibility_page,
+    write_page,
 };
 use run::AnyScored;
 use visibility::VisibilityReport;
@@ -73,6 +74,14 @@ pub(in crate::command) fn write_visibility(report: &VisibilityReport, path: &Pat
 pub(in crate::command) fn write_gate(report: &GateReport, result: &Path, path: &Path) -> Result<(), Failure> {
     let flipped = FlippedFrames::render(report, result)?;
     write_page(&gate_page(report, flipped), path).map(|_| ())
+}
+
+/// Refuses a place where something else is than an earlier report.
+///
+/// # Errors
+/// A [`Failure`] that names it.
+pub(super) fn check_place(path: &Path) -> Result<(), Failure> {
+    Ok(REPORTS.check(path)?)
 }
 
 /// Writes `report.html` into a directory whose results are complete without it: a failure is only noted.

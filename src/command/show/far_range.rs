@@ -53,7 +53,7 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Fai
 
     let truths = rows_of::<FrameTruth>(source.file("truth/frames.parquet").as_deref(), numbers)?;
     let objects = rows_of::<ObjectTruth>(source.file("truth/objects.parquet").as_deref(), numbers)?;
-    let mut answers = answers(source, numbers)?;
+    let mut answers = answers(source, &camera.camera, numbers)?;
     let images = images(source, &camera, &rows)?;
     source.check()?;
 
@@ -82,10 +82,15 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Fai
 }
 
 /// The answers to some frames, each with its clusters; `None` where there are no measurements.
-fn answers(source: &Source, numbers: &[u64]) -> Result<Option<BTreeMap<u64, Outcome>>, FileError> {
+fn answers(
+    source: &Source,
+    camera: &Camera,
+    numbers: &[u64],
+) -> Result<Option<BTreeMap<u64, Outcome>>, FileError> {
     let Some(path) = &source.measurements else { return Ok(None) };
     let wanted = |(frame, _): &(u64, Outcome)| numbers.contains(frame);
-    let mut answers: BTreeMap<u64, Outcome> = read_measurements(path)?.into_iter().filter(wanted).collect();
+    let mut answers: BTreeMap<u64, Outcome> =
+        read_measurements(path, camera)?.into_iter().filter(wanted).collect();
     let clusters = source.beside_measurements("clusters.parquet");
     for (frame, rows) in rows_of::<FrameCluster>(clusters.as_deref(), numbers)? {
         if let Some(answer) = answers.get_mut(&frame) {

@@ -1,15 +1,16 @@
 //! The file of a picture: where it goes, and what it may replace.
 use std::fs;
-use std::io::{ErrorKind, Read, Write};
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use files::{Failure, FileError, WholeFile};
+use files::{Earlier, Failure, FileError, WholeFile};
 use show::is_own_picture;
 
 /// Folder of pictures in a run directory. Not beside the images of a dataset: every image there must have a row in `telemetry.csv`.
 const FOLDER: &str = "show";
-/// Bytes in which a picture of ours names its program.
-const HEADER_BYTES: u64 = 1 << 16;
+/// What a picture may replace.
+const PICTURES: Earlier<'static> =
+    Earlier { what: "an earlier picture of `boresight show` (--out FILE.png)", is: &is_own_picture };
 
 /// A file that may be written.
 pub(super) struct PictureFile {
@@ -33,7 +34,7 @@ impl PictureFile {
                 path.display()
             )));
         }
-        check_replaceable(&path)?;
+        PICTURES.check(&path)?;
         Ok(Self { path, is_default: out.is_none() })
     }
 
@@ -55,32 +56,7 @@ impl PictureFile {
             doing: "write",
             source,
         })?;
-        // It may have come while the picture was drawn.
-        check_replaceable(&path)?;
-        file.replace()?;
+        file.replace(PICTURES)?;
         Ok(path)
-    }
-}
-
-/// Refuses a path where something else is than an earlier picture of this command.
-fn check_replaceable(path: &Path) -> Result<(), Failure> {
-    let refused = |what: &str| {
-        Err(Failure::Usage(format!(
-            "{} {what}, expected a free name or that of an earlier picture of `boresight show` (--out FILE.png)",
-            path.display()
-        )))
-    };
-    let error = |source| FileError::Io { path: path.to_owned(), doing: "open", source };
-    match path.symlink_metadata() {
-        // Of a folder that is missing or no folder, the writer tells.
-        Err(source) if matches!(source.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Ok(()),
-        Err(source) => Err(error(source).into()),
-        Ok(metadata) if !metadata.is_file() => refused("exists and is not a regular file"),
-        Ok(_) => {
-            let mut bytes = Vec::new();
-            let file = sim::regular_file::open(path).map_err(error)?;
-            file.take(HEADER_BYTES).read_to_end(&mut bytes).map_err(error)?;
-            if is_own_picture(&bytes) { Ok(()) } else { refused("exists and is another file") }
-        }
     }
 }

@@ -20,6 +20,11 @@ fn a_mistake_in_the_camera_is_named() {
     check("bit_depth = 12", "bit_depth = 20", &["camera.toml:1:", "bit_depth: is 20", "1 to 16"]);
     check("magnitude_limit = 7.5", "magnitude_limit = 70.0", &["magnitude_limit: is 70", "-2 to 15"]);
     check("star_epoch_utc = \"2012", "star_epoch_utc = \"20-12", &["star_epoch_utc: is 20-12"]);
+    check(
+        "tangential = [",
+        "tangential = [0.1, ",
+        &["camera.tangential", "3, expected an array of length 2"],
+    );
     check("low_sigmas = 3.0", "low_sigmas = -3.0", &["low_sigmas", "-3", "expected"]);
 }
 

@@ -3,6 +3,7 @@
 use std::fs;
 
 use super::{check_refused, dataset, dataset_of};
+use crate::support::Bench;
 
 /// The second image of a dataset replaced by these bytes.
 fn check(format: &str, bytes: impl FnOnce(Vec<u8>) -> Vec<u8>, parts: &[&str]) {
@@ -55,6 +56,56 @@ fn a_fits_header_that_contradicts_itself_is_refused() {
         with_card("EXPTIME", "NAXIS1  =                  751"),
         &["NAXIS1", "there 2 times", "once"],
     );
+}
+
+#[test]
+fn a_fits_header_that_makes_all_pixels_the_same_is_refused() {
+    check("fits", with_card("BSCALE", "BSCALE  =                  0.0"), &["BSCALE", "`0`"]);
+}
+
+/// The sum of the data alone, where that of header and data is missing.
+#[test]
+fn fits_data_that_changed_are_told_by_their_own_sum() {
+    let damaged = |bytes: Vec<u8>| {
+        let mut bytes = with_card("SEED", "COMMENT")(bytes);
+        let last = bytes.len() - 2880;
+        bytes[last - 1] ^= 1;
+        bytes
+    };
+    check("fits", damaged, &["DATASUM", "damaged"]);
+}
+
+/// Two images of a dataset swapped: names can be wrong, what the images tell of themselves is held against the telemetry.
+#[test]
+fn an_image_of_another_frame_is_told_by_its_header() {
+    for (format, field) in [("fits", "`FRAMENO` is `22`"), ("exr", "`boresight.frame` is `22`")] {
+        let bench = dataset_of(format);
+        let path = |name: &str| bench.path(&format!("set/frames/{name}.{format}"));
+        for (from, to) in [("000021", "kept"), ("000022", "000021"), ("kept", "000022")] {
+            fs::rename(path(from), path(to)).unwrap();
+        }
+        let name = format!("set/frames/000021.{format}");
+        check_refused(&bench, "process set", &[&name, field, "expected 21, that of frame 21"]);
+    }
+    check("fits", with_card("EXPTIME", "EXPTIME =                 99.0"), &["`EXPTIME` is `99`", "frame 21"]);
+    let time = "DATE-AVG= '2013-01-01T00:00:00'";
+    check("fits", with_card("DATE-AVG", time), &["`DATE-AVG` is `2013-01-01T00:00:00.0", "frame 21"]);
+    check("fits", with_card("DATE-AVG", "DATE-AVG= 'yesterday'"), &["`DATE-AVG` is `yesterday`", "UTC"]);
+}
+
+#[test]
+fn an_image_that_belongs_to_two_frames_is_refused() {
+    let bench = dataset();
+    bench.edit("set/telemetry.csv", "000021.png", "000020.png");
+    fs::remove_file(bench.path("set/frames/000021.png")).unwrap();
+    check_refused(&bench, "process set", &["telemetry.csv", "frame 21", "frame 20 has it too"]);
+    let bench = Bench::new();
+    bench.boresight("render docking --frames 20000..20003 --out set").done();
+    bench.unseal("set");
+    let first = bench.csv("set/telemetry.csv")[0]["file"].clone();
+    let second = bench.csv("set/telemetry.csv")[1]["file"].clone();
+    bench.edit("set/telemetry.csv", &second, &first);
+    check_refused(&bench, "process set", &["telemetry.csv", "field 20001", "field 20000 has it too"]);
 }
 
 #[test]

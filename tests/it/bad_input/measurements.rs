@@ -33,7 +33,10 @@ fn a_cell_that_is_none_is_named() {
     check(&["20,detected,NaN,1"], &["line 2", "`x_px` is `NaN`", "finite number"]);
     check(&["20,detected,1,"], &["line 2", "`y_px` is ``", "finite number"]);
     check(&["20,,1,1"], &["line 2", "`status`"]);
-    check(&["20,detcted,1,1"], &["line 2", "`x_px` is `1`", "`detcted`"]);
+    check(&["20,detcted,1,1"], &["line 2", "`status` is `detcted`", "`detected`"]);
+    check(&["20,no_target,,", "21,ok,,"], &["line 3", "`status` is `ok`", "`no_target`"]);
+    check(&["20,detected,4000,4"], &["line 2", "`x_px` is `4000`", "752 × 580"]);
+    check(&["20,no_target,1,1"], &["line 2", "`x_px` is `1`", "`no_target`"]);
     check(&["twenty,detected,1,1"], &["line 2", "`frame` is `twenty`"]);
     check(&["20,detected,1"], &["line 2", "number of cells"]);
 }
@@ -44,6 +47,19 @@ fn a_table_that_is_not_there_or_lacks_a_column_is_named() {
     check_refused(&bench, "score set nowhere.csv", &["nowhere.csv", "No such file"]);
     bench.write("mine.csv", "frame,status,x_px\n");
     check_refused(&bench, "score set mine.csv", &["mine.csv", "column `y_px` is missing"]);
+}
+
+#[test]
+fn a_run_of_a_later_version_is_refused() {
+    let bench = dataset();
+    bench.write("mine.csv", format!("{HEADER}\n20,no_target,,\n"));
+    let version = env!("CARGO_PKG_VERSION");
+    for other in ["99", "99.0.0", "one"] {
+        bench.edit("set/run.toml", &format!("version = \"{version}\""), &format!("version = \"{other}\""));
+        let parts = ["set/run.toml:2:11: version", other, "or earlier"];
+        check_refused(&bench, "score set mine.csv", &parts);
+        bench.edit("set/run.toml", &format!("version = \"{other}\""), &format!("version = \"{version}\""));
+    }
 }
 
 #[test]

@@ -102,6 +102,40 @@ fn a_value_out_of_its_range_is_named_with_its_line_and_its_range() {
 }
 
 #[test]
+fn an_array_of_fixed_length_has_exactly_its_values() {
+    for (old, new, parts) in [
+        (
+            "radial = [2.6e-8, 0.0, 0.0]",
+            "radial = [2.6e-8, 0.0, 0.1, 0.1, 0.0]",
+            ["camera.radial", "OpenCV's order is k1, k2, p1, p2, k3"],
+        ),
+        (
+            "tangential = [0.0, 0.0]",
+            "tangential = [0.0, 0.0, 0.0]",
+            ["camera.tangential", "3, expected an array of length 2"],
+        ),
+        (
+            "noise_arcsec = [20.0, 20.0, 20.0]",
+            "noise_arcsec = [20.0, 20.0, 20.0, 5.0]",
+            ["knowledge.noise_arcsec", "4, expected an array of length 3"],
+        ),
+        (
+            "nominal = { phi_deg = -90.0, theta_deg = 0.0, psi_deg = 0.0 }",
+            "nominal = [-90.0, 0.0, 0.0]",
+            ["mounting.nominal", "expected a table"],
+        ),
+    ] {
+        check_edited(old, new, &parts);
+    }
+    // Within a table whose kind says what it has, the place is that of the table.
+    check_mistake(
+        "kind = \"gaussian\" # or one of these, each line in place of the two here:\nsigma_px = 0.8",
+        "kind = \"airy\"\nlambda_n_px = [1.2, 1.2, 0.3]",
+        &["psf", "invalid length 3"],
+    );
+}
+
+#[test]
 fn a_time_that_is_none_is_refused() {
     check_edited(
         "start_utc = \"2012-04-25T00:10:00Z\"",

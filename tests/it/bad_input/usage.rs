@@ -21,6 +21,25 @@ fn a_range_of_frames_that_is_empty_or_none_is_refused() {
 }
 
 #[test]
+fn where_nothing_is_required_nothing_is_met() {
+    let bench = Bench::new();
+    let text = include_str!("../../../scenarios/requirements/uasc-far-range.toml");
+    bench.write("none.toml", text.split("[[requirements]]").next().unwrap());
+    check_refused(&bench, "visibility none.toml", &["none.toml", "[[requirements]]", "at least one"]);
+}
+
+/// Names are of anybody's making; what they order of a terminal is shown as numbers.
+#[test]
+fn a_name_orders_nothing_of_a_terminal() {
+    let bench = Bench::new();
+    let name = "\u{1b}[2J\u{1b}]0;mine\u{7}day";
+    bench.scenario("mine.toml", "argon", |table| table["schedule"][0]["name"] = name.into());
+    let answer = bench.boresight("run mine.toml --frames 1620..1650 --out run --no-report").done();
+    assert!(!answer.stdout.contains('\u{1b}') && !answer.stdout.contains('\u{7}'), "{}", answer.stdout);
+    assert!(answer.stdout.contains("\\u{1b}[2J"), "{}", answer.stdout);
+}
+
+#[test]
 fn a_pipeline_that_is_unknown_gets_the_nearest() {
     let bench = Bench::new();
     let words = "run argon --frames 0..2 --out run --pipeline far_rnage";

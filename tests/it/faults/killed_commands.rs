@@ -188,6 +188,38 @@ fn a_gate_that_is_killed_leaves_nothing_half_written() {
     assert!(killed >= 2, "of three kills {killed} came in time");
 }
 
+/// A process that is asked to end removes its temporary directory, and of one that was killed the next one does.
+#[cfg(unix)]
+#[test]
+fn temporary_directories_go_with_their_process() {
+    let bench = small_bench();
+    std::fs::create_dir(bench.path("tmp")).unwrap();
+    let left = || {
+        std::fs::read_dir(bench.path("tmp")).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>()
+    };
+    for (signal, count) in [("INT", 0), ("TERM", 0), ("KILL", 1)] {
+        let mut command = command(&bench, &format!("run small.toml --frames 0..400 --out {signal}"));
+        let mut child = command.env("TMPDIR", bench.path("tmp")).spawn().unwrap();
+        while left().is_empty() {
+            assert!(child.try_wait().unwrap().is_none(), "it ended too soon");
+        }
+        let kill =
+            std::process::Command::new("kill").args([format!("-{signal}"), child.id().to_string()]).status();
+        assert!(kill.unwrap().success() && !child.wait().unwrap().success());
+        assert_eq!(left().len(), count, "{signal}");
+    }
+    let next = |out: &str| {
+        let mut command = command(&bench, &format!("run small.toml --frames 0..1 --out {out}"));
+        assert!(command.env("TMPDIR", bench.path("tmp")).status().unwrap().success());
+    };
+    next("young");
+    assert_eq!(left().len(), 1, "it may not have locked it yet");
+    let hours_ago = std::time::SystemTime::now() - std::time::Duration::from_secs(7200);
+    std::fs::File::open(&left()[0]).unwrap().set_modified(hours_ago).unwrap();
+    next("old");
+    assert_eq!(left().len(), 0);
+}
+
 #[test]
 fn an_unfinished_run_says_that_it_is_one() {
     let bench = small_bench();

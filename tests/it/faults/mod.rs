@@ -54,7 +54,9 @@ fn stderr(output: &Output) -> String {
 
 /// The files of a directory that have their names; what a killed process left unfinished is none of them.
 fn whole_files(bench: &Bench, directory: &str) -> BTreeMap<PathBuf, Vec<u8>> {
-    let is_partial =
-        |path: &Path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".partial-"));
+    let is_partial = |path: &Path| {
+        let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+        name.is_some_and(|name| name.starts_with(".partial-") || name.starts_with(".rows-"))
+    };
     bench.tree(directory).into_iter().filter(|(path, _)| !is_partial(path)).collect()
 }

@@ -48,7 +48,7 @@ table! {
         /// number of the field; ascending, each once
         field: u64,
         /// `measured`; `range_only`; or why not: `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`,
-        /// `too_few_features`, `inconsistent`, `failed: ` and a reason. Any other text is a failure with that reason
+        /// `too_few_features`, `inconsistent`, `failed`, `failed: ` and a reason
         status: String,
         /// the pose; empty unless `measured`
         pose: Option<Pose> = POSE,
@@ -68,8 +68,11 @@ table! {
 
 /// The status of a row that has a pose.
 const MEASURED: &str = "measured";
-/// The status of a row that has a range alone; any other text is the reason why there is nothing.
+/// The status of a row that has a range alone.
 const RANGE_ONLY: &str = "range_only";
+/// What is expected in place of any other word.
+const STATUS: &str = "`measured`, `range_only`, `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`, \
+                      `too_few_features`, `inconsistent`, `failed`, or `failed: ` and a reason";
 
 /// From metres and radians to metres and degrees.
 fn scale() -> Vector6<f64> {
@@ -142,10 +145,8 @@ pub fn read_field_measurements(path: &Path) -> Result<Vec<(u64, DockingOutcome)>
 }
 
 fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
-    // Not trimmed for the reason of none: it is kept to the letter.
     let status = row.text("status");
     match status.trim() {
-        "" => Err(row.error("status", "`measured`, `range_only`, or the reason why there is nothing")),
         MEASURED => {
             row.check_empty(RANGE)?;
             let line = FieldMeasurementLine::read(row)?;
@@ -159,6 +160,9 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
         RANGE_ONLY => {
             row.check_empty(POSE)?;
             let range_m = row.cell(RANGE[0])?;
+            if range_m <= 0.0 {
+                return Err(row.error(RANGE[0], "greater than 0"));
+            }
             let told = !row.text(RANGE[1]).trim().is_empty();
             let sigma_m = if told { row.cell(RANGE[1])? } else { 0.0 };
             if sigma_m < 0.0 {
@@ -167,9 +171,11 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
             Ok(DockingSolution::RangeOnly { range_m, sigma_m })
         }
         _ => {
+            // What stands behind `failed: ` is kept to the letter.
+            let reason = NoPose::parse(status.trim_start()).ok_or_else(|| row.error("status", STATUS))?;
             row.check_empty(POSE)?;
             row.check_empty(RANGE)?;
-            Ok(DockingSolution::NoSolution(NoPose::parse(status)))
+            Ok(DockingSolution::NoSolution(reason))
         }
     }
 }
@@ -282,7 +288,10 @@ mod tests {
             ("0,range_only,,,,,,,,,,,,,,", "range_m"),
             ("0,range_only,,,,,,,9,-1,,,,,,", "sigma_range_m"),
             ("0,range_only,,,5,,,,9,1,,,,,,", "d3_m"),
-            ("0,Measured,0,0,5,0,0,0,,,,,,,,", "d1_m"),
+            ("0,Measured,0,0,5,0,0,0,,,,,,,,", "status"),
+            ("0,ok,,,,,,,,,,,,,,", "status"),
+            ("0,no_target,,,5,,,,,,,,,,,", "d3_m"),
+            ("0,range_only,,,,,,,0,1,,,,,,", "range_m"),
             ("0,,0,0,5,0,0,0,,,,,,,,", "status"),
             ("x,no_target,,,,,,,,,,,,,,", "field"),
         ] {

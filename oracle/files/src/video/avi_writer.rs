@@ -62,7 +62,7 @@ pub(super) fn check_frames(
     (columns, rows): (usize, usize),
     frame_rate_hz: f64,
 ) -> Result<(), FileError> {
-    super::super::raw_image::checked_size(path, columns as u64, rows as u64)?;
+    super::super::raw_image::checked_size(path, columns as u64, rows as u64, None)?;
     if (0.001..=1000.0).contains(&frame_rate_hz) {
         return Ok(());
     }

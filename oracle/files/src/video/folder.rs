@@ -7,10 +7,11 @@ use contract::Camera;
 use contract::docking::{DockingSetup, Field, FieldTelemetry};
 
 use super::super::FileError;
-use super::super::dataset::{locate_alone, locate_image};
+use super::super::dataset::{locate_alone, locate_image, refuse_twice};
 use super::super::error::Place;
 use super::super::field_telemetry::FieldRow;
 use super::super::frame_file::read_image;
+use super::super::raw_image::Size;
 use super::whole_frame::{Format, WholeFrame};
 
 /// A field of a folder, not read yet.
@@ -41,7 +42,9 @@ pub(super) fn listed(
             }),
         }
     };
-    rows.into_iter().map(locate).collect()
+    let fields: Vec<ListedField> = rows.into_iter().map(locate).collect::<Result<_, _>>()?;
+    refuse_twice(&table, "field", fields.iter().map(|field| (field.row.field, field.path.as_path())))?;
+    Ok(fields)
 }
 
 /// Reads the image of a field that a row of a folder's `telemetry.csv` names; `None` where the row names none. Other images of the
@@ -85,9 +88,9 @@ impl ListedField {
     /// Reads the image.
     pub(super) fn read(&self, setup: &DockingSetup) -> Result<(Field, FieldTelemetry), FileError> {
         let camera = &self.camera;
-        let image = read_image(&self.path)?;
-        let rows = self.row.lines.rows(camera.rows);
-        check_size(&self.path, (image.columns, image.rows), (camera.columns, rows), "lines of the camera")?;
+        let (columns, rows) = (camera.columns, self.row.lines.rows(camera.rows));
+        let size = Size { columns, rows, whose: "the size of lines of the camera" };
+        let image = read_image(&self.path, Some(size))?;
         let frame = image.into_frame(&self.path, self.row.field, setup.bit_depth, None)?;
         let field = Field::new(frame, self.row.lines, camera.rows);
         field
@@ -119,19 +122,11 @@ pub(super) fn by_name(directory: &Path) -> Result<Vec<PathBuf>, FileError> {
 
 /// Reads an image as a whole frame.
 pub(super) fn read_whole(path: &Path, index: u64, format: &Format) -> Result<WholeFrame, FileError> {
-    let image = read_image(path)?;
-    let size = (format.columns, format.rows);
-    check_size(path, (image.columns, image.rows), size, "of the camera; fields need a telemetry.csv")?;
+    let &Format { columns, rows, .. } = format;
+    let whose = "the size of the camera; fields need a telemetry.csv";
+    let image = read_image(path, Some(Size { columns, rows, whose }))?;
     let frame = image.into_frame(path, index, format.bit_depth, None)?;
     Ok(WholeFrame { index, dn: frame.dn().to_vec() })
-}
-
-fn check_size(path: &Path, got: (usize, usize), size: (usize, usize), whose: &str) -> Result<(), FileError> {
-    if got == size {
-        return Ok(());
-    }
-    let expected = format!("{} × {}, the size {whose}", size.0, size.1);
-    Err(FileError::value(path, Place::Header, "image size", format!("{} × {}", got.0, got.1), expected))
 }
 
 /// A part of a name: text, or a number by length and digits (longer is larger once leading zeros are gone).

@@ -75,7 +75,7 @@ impl FarRangeRun {
         for frame in TableReader::<FrameTruth>::open(&directory.join("truth/frames.parquet"))? {
             truths.extend(frame?.1);
         }
-        let mut answers = read_measurements(&measurements)?.into_iter().peekable();
+        let mut answers = read_measurements(&measurements, &run_file.scenario.camera)?.into_iter().peekable();
         let mut rows = read_telemetry(&directory.join("telemetry.csv"))?.into_iter().peekable();
         let mut telemetry = Vec::with_capacity(verdicts.len());
         let mut outcomes = Vec::with_capacity(verdicts.len());

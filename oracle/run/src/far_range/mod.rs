@@ -20,7 +20,7 @@ use indexmap::IndexMap;
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
 use scenario::run_file::RunFile;
 use scenario::{FarRangeScenario, STARTING_POINT, is_argon};
-use score::{ARGON_TABLE_2, Figure, Score, ScoreContext, Scored, UnitTable, names};
+use score::{ARGON_TABLE_2, Figure, Score, ScoreContext, ScoreError, Scored, UnitTable, names};
 use serde_json::{Value, json};
 use sim::catalog::Catalog;
 use sim::onboard::image_bytes;
@@ -238,10 +238,16 @@ impl World for Prepared {
         let projection = Projection::new(&run_file.scenario.camera)?;
         let mut scorer = Scorer::new(&run_file, &projection);
         let truth = directory.join(Self::TRUTH_FILE);
-        let mut objects = TableReader::<ObjectTruth>::open(&directory.join("truth/objects.parquet"))?;
+        let table = directory.join("truth/objects.parquet");
+        let mut objects = TableReader::<ObjectTruth>::open(&table)?;
         let frames = TableReader::<FrameTruth>::open(&truth)?;
         let mut clusters = clusters.map(TableReader::<FrameCluster>::open).transpose()?;
-        let mut answers = ByNumber::new(read_measurements(measurements)?, measurements, "frame", &truth);
+        let mut answers = ByNumber::new(
+            read_measurements(measurements, &run_file.scenario.camera)?,
+            measurements,
+            "frame",
+            &truth,
+        );
         for frame in frames {
             let (number, truths) = frame?;
             let objects = objects.rows_of(number)?;
@@ -249,8 +255,15 @@ impl World for Prepared {
             if let Some((outcome, table)) = outcome.as_mut().zip(clusters.as_mut()) {
                 outcome.clusters = table.rows_of(number)?.into_iter().map(|row| row.cluster).collect();
             }
-            for truth in &truths {
-                scorer.scorer.add(truth, &objects, outcome.as_ref()).map_err(unscorable)?;
+            for of_frame in &truths {
+                scorer.scorer.add(of_frame, &objects, outcome.as_ref()).map_err(|error| {
+                    let is_of_frames = matches!(
+                        error,
+                        ScoreError::Order { .. } | ScoreError::Impossible { field: "range_km", .. }
+                    );
+                    let path = if is_of_frames { &truth } else { &table };
+                    Failure::Usage(format!("{}: {}", path.display(), unscorable(error)))
+                })?;
             }
         }
         answers.end()?;
