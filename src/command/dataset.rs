@@ -108,10 +108,10 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     let is_plain = sequence.given().is_none() && arguments.out.as_deref() != Some(Path::new("-"));
     match dataset {
         Some(world) if is_plain => process_dataset(world, arguments, output),
-        Some(_) if !is_docking && !sequence.names_cameras() => Err(Failure::Usage(format!(
-            "{}, expected with docking alone",
-            sequence.given().map_or("--out is -".to_owned(), |option| format!("{option} is given"))
-        ))),
+        Some(_) if !is_docking && !sequence.names_cameras() => Err(Failure::Usage(match sequence.given() {
+            Some(option) => format!("{option} is given, expected with docking alone"),
+            None => "--out is -, expected the name of a place: only docking writes to standard output (`./-` is a file)".to_owned(),
+        })),
         None if !is_stream && path.is_dir() && !sequence.names_cameras() => Err(Failure::Usage(format!(
             "{}: expected camera.toml (far range) or setup.toml (docking) in it, or --scenario SCENARIO for a folder of docking \
              images",

@@ -33,7 +33,7 @@ impl Output {
 
     /// Prints a document that is JSON already, or `text` for a person.
     pub(super) fn answer_json(&self, json: &str, text: impl Display) -> Result<(), Failure> {
-        if self.json { print_line(json) } else { print_line(text) }
+        if self.json { print_line(json) } else { print_line(harmless_but_styled(&text.to_string())) }
     }
 
     /// Prints `document` where `--json` asks for it: of a command that has nothing else for stdout.
