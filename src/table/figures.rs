@@ -3,7 +3,7 @@
 use comfy_table::Cell;
 use run::AnyScored;
 use run::docking::ScoredFields;
-use score::{Kind, Scored, sense};
+use score::{FigureLabel, Kind, Scored, sense};
 
 use crate::table::far_range::{finish, percent, plain_table};
 use crate::table::{TableStyle, docking, far_range};
@@ -29,7 +29,7 @@ fn figures(scored: &dyn AnyScored, styled: bool) -> String {
             _ => figure.value.map(|value| format!("{value:.4}")),
         };
         table.add_row([
-            Cell::new(name.replace('_', " ")),
+            Cell::new(FigureLabel::of(name).beside_percent()),
             Cell::new(value.unwrap_or_else(|| "–".to_owned())),
             Cell::new(figure.count),
             Cell::new(figure.of),

@@ -1,6 +1,6 @@
 //! What a person reads of a study.
 use comfy_table::{Attribute, Cell};
-use score::{Kind, sense};
+use score::{FigureLabel, Kind, sense};
 use study::{CaseFigure, CaseRow, Estimate, Study, Summary, overall};
 
 use crate::table::far_range::{finish, percent, plain_table};
@@ -21,7 +21,7 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         }
         let show = |estimate: &Option<Estimate>| shown(name, estimate.as_ref());
         table.add_row([
-            name.clone(),
+            label(name),
             figure.cases.to_string(),
             show(&figure.all),
             show(&figure.p05),
@@ -41,10 +41,11 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
          cases (bootstrap). Quantiles are of the cases, theirs by bootstrap.\n",
     );
     let by = &summary.worst_by;
+    let by_label = label(by);
     if let Some(first) = summary.sweep.first() {
         let mut table = plain_table(styled);
         let paths = first.at.keys().map(String::as_str);
-        table.set_header(paths.chain(["cases", by]).map(bold));
+        table.set_header(paths.chain(["cases", &by_label]).map(bold));
         for point in &summary.sweep {
             let figure = point.figures.get(by).and_then(|figure| figure.all.as_ref());
             let cells = point.at.values().cloned().chain([point.cases.to_string(), shown(by, figure)]);
@@ -62,7 +63,7 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         .collect();
     if !rows.is_empty() {
         let mut table = plain_table(styled);
-        table.set_header([&format!("{by} goes with"), "rank correlation", "95 %"].map(bold));
+        table.set_header([&format!("{by_label} goes with"), "rank correlation", "95 %"].map(bold));
         rows.into_iter().for_each(|row| {
             table.add_row(row);
         });
@@ -72,7 +73,9 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     let indices: Vec<_> = summary.indices.iter().filter(|index| &index.figure == by).collect();
     if !indices.is_empty() {
         let mut table = plain_table(styled);
-        table.set_header([&format!("variance of {by} by"), "alone", "95 %", "with others", "95 %"].map(bold));
+        table.set_header(
+            [&format!("variance of {by_label} by"), "alone", "95 %", "with others", "95 %"].map(bold),
+        );
         for index in indices {
             let interval = |[low, high]: [f64; 2]| format!("{low:.2} to {high:.2}");
             table.add_row([
@@ -88,7 +91,7 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     }
     if !summary.worst.is_empty() {
         let mut table = plain_table(styled);
-        table.set_header(["worst cases", by, "again, with its frames"].map(bold));
+        table.set_header(["worst cases", &by_label, "again, with its frames"].map(bold));
         for case in &summary.worst {
             table.add_row([format!("case {}", case.case), number(by, case.value), case.replay.clone()]);
         }
@@ -123,8 +126,13 @@ impl LiveFigure {
         }
         self.next = self.cases.len() + (self.cases.len() / 20).max(1);
         let estimate = overall(&self.name, &self.cases, self.seed, 0);
-        Some(format!("{} {}", self.name, shown(&self.name, estimate.as_ref())))
+        Some(format!("{} {}", label(&self.name), shown(&self.name, estimate.as_ref())))
     }
+}
+
+/// What a figure is called beside its values.
+fn label(key: &str) -> String {
+    FigureLabel::of(key).beside_percent()
 }
 
 fn shown(name: &str, estimate: Option<&Estimate>) -> String {

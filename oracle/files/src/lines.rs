@@ -6,7 +6,7 @@ use std::io::{Error, ErrorKind, Read, Result};
 /// Longest record, bytes.
 const LONGEST: usize = 1 << 20;
 
-/// A reader that fails at a record of more than [`LONGEST`] bytes.
+/// A reader that fails at a record of more than a megabyte.
 #[derive(Debug)]
 pub struct Lines<R> {
     inner: R,

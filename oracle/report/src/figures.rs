@@ -1,6 +1,6 @@
 //! Figures of a score as words and as a table.
 use indexmap::IndexMap;
-use score::{Figure, Kind, sense};
+use score::{Figure, FigureLabel, Kind, sense};
 
 use super::data_table::DataTable;
 
@@ -72,7 +72,7 @@ pub(super) fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
             value => cell(value),
         };
         table.push([
-            name.clone(),
+            FigureLabel::of(name).words,
             number(figure.value),
             number(figure.low),
             number(figure.high),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use files::Failure;
 use gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
-use score::{Kind, sense};
+use score::{FigureLabel, Kind, sense};
 
 use super::chart::{Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
 use super::data_table::DataTable;
@@ -14,7 +14,7 @@ use super::figures::{cell, significant};
 use super::page::{Page, Section};
 use super::picture::Picture;
 use super::plotly::{Layout, Trace};
-use super::words::{capital, figure_label, spoken};
+use super::words::{capital, spoken};
 
 /// Flipped frames that are shown as pictures, at most.
 const MOST_PICTURES: usize = 12;
@@ -104,7 +104,7 @@ fn change(flip: &Flip) -> String {
 
 /// The page of a gate.
 pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
-    let worse: Vec<&str> = report.worse().collect();
+    let worse: Vec<String> = report.worse().map(|name| FigureLabel::of(name).words).collect();
     let lead = if worse.is_empty() {
         format!("No figure is worse than in the baseline, of {} compared.", report.figures.len())
     } else {
@@ -172,7 +172,7 @@ fn effects(report: &GateReport) -> Section {
             value => cell(value),
         };
         table.push([
-            name.clone(),
+            FigureLabel::of(name).to_string(),
             figure.verdict.words().to_owned(),
             number(figure.baseline),
             number(figure.result),
@@ -209,8 +209,7 @@ fn effects(report: &GateReport) -> Section {
 
 /// A figure's name without its unit, which the axis of differences has not.
 fn plain_label(name: &str) -> String {
-    let label = figure_label(name);
-    label.split_once(", ").map_or(label.clone(), |(words, _)| words.to_owned())
+    FigureLabel::of(name).words
 }
 
 /// A figure of the gate by its name.

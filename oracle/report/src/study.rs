@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use files::{Failure, FileError};
-use score::{Better, Kind, sense};
+use score::{Better, FigureLabel, Kind, sense};
 use study::{CaseTable, Estimate, FigureSummary, Summary};
 
 use super::chart::{
@@ -15,7 +15,7 @@ use super::page::{Page, Section};
 use super::plotly::{Axis, ColourScale, Layout, Trace};
 use super::read::read_json;
 use super::thin::{bins, drawn, summary as summed};
-use super::words::{capital, figure_label, spoken};
+use super::words::capital;
 
 /// Cases that a chart shows one by one in the table behind it; of more, a summary.
 const TABLE_BINS: usize = 60;
@@ -57,9 +57,10 @@ impl StudyResult {
 pub fn study_page(study: &StudyResult) -> Page {
     let summary = &study.summary;
     let worst_by = &summary.worst_by;
+    let by = FigureLabel::of(worst_by).words;
     let lead = match summary.figures.get(worst_by).and_then(|figure| figure.all) {
         Some(all) => format!(
-            "{} cases; {worst_by}, by which the worst are the worst, is {}.",
+            "{} cases; {by}, by which the worst are the worst, is {}.",
             summary.cases,
             shown(worst_by, &all)
         ),
@@ -117,6 +118,11 @@ fn shown(name: &str, estimate: &Estimate) -> String {
     format!("{}{}", number(name, estimate.value), interval.unwrap_or_default())
 }
 
+/// What a figure is called beside its values.
+fn label(key: &str) -> String {
+    FigureLabel::of(key).beside_percent()
+}
+
 /// Every figure: over all cases, and its quantiles over them.
 fn figures(study: &StudyResult) -> Section {
     let summary = &study.summary;
@@ -128,7 +134,7 @@ fn figures(study: &StudyResult) -> Section {
             estimate.as_ref().map_or_else(|| "–".to_owned(), |e| shown(name, e))
         };
         table.push([
-            name.clone(),
+            label(name),
             figure.cases.to_string(),
             estimate(&figure.all),
             estimate(&figure.p05),
@@ -148,8 +154,7 @@ fn figures(study: &StudyResult) -> Section {
     let column = |pick: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
         rates.iter().rev().map(|(_, all, figure)| rounded(100.0 * pick(all, figure), 4)).collect()
     };
-    let names: Vec<String> =
-        rates.iter().rev().map(|(name, _, _)| figure_label(name).replace(", %", "")).collect();
+    let names: Vec<String> = rates.iter().rev().map(|(name, _, _)| FigureLabel::of(name).words).collect();
     let quantile = |estimate: Option<Estimate>| estimate.map_or(f64::NAN, |estimate| estimate.value);
     let traces = vec![
         intervals_across(
@@ -184,29 +189,32 @@ fn figures(study: &StudyResult) -> Section {
 fn sweep(study: &StudyResult) -> Section {
     let summary = &study.summary;
     let name = &summary.worst_by;
-    let label = |at: &indexmap::IndexMap<String, String>| {
+    let point_label = |at: &indexmap::IndexMap<String, String>| {
         at.iter().map(|(path, value)| format!("{path} = {value}")).collect::<Vec<_>>().join(", ")
     };
-    let mut data = DataTable::new(["point", "cases", name.as_str()]);
+    let mut data = DataTable::new(["point", "cases", &label(name)]);
     let (mut x, mut y, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for point in &summary.sweep {
         let estimate = point.figures.get(name).and_then(|figure| figure.all);
         let text = estimate.as_ref().map_or_else(|| "–".to_owned(), |estimate| shown(name, estimate));
-        data.push([label(&point.at), point.cases.to_string(), text]);
+        data.push([point_label(&point.at), point.cases.to_string(), text]);
         if let Some(estimate) = estimate {
-            x.push(plain(&label(&point.at)));
+            x.push(plain(&point_label(&point.at)));
             y.push(rounded(scale(name) * estimate.value, 9));
             low.push(scale(name) * estimate.low.unwrap_or(estimate.value));
             high.push(scale(name) * estimate.high.unwrap_or(estimate.value));
         }
     }
-    let traces = vec![intervals(name, x, y, &low, &high, MEASURED)];
+    let traces = vec![intervals(&FigureLabel::of(name).words, x, y, &low, &high, MEASURED)];
     Section::new("sweep", "Sweep").chart(Chart::new(
-        format!("{name} at every point of the sweep, with 95 % intervals."),
+        format!(
+            "{} at every point of the sweep, with 95 % intervals.",
+            capital(&FigureLabel::of(name).words)
+        ),
         420,
         data,
         traces,
-        axes("", &plain(&figure_label(name))),
+        axes("", &plain(&FigureLabel::of(name).to_string())),
     ))
 }
 
@@ -239,7 +247,8 @@ fn sensitivities(study: &StudyResult) -> Section {
         .map(|figure| parameters.iter().map(|parameter| of(figure, parameter)).collect())
         .collect();
     let names: Vec<String> = parameters.iter().map(|name| plain(name)).collect();
-    let labels: Vec<String> = figures.iter().rev().map(|name| plain(&figure_label(name))).collect();
+    let labels: Vec<String> =
+        figures.iter().rev().map(|name| plain(&FigureLabel::of(name).to_string())).collect();
     let map = Trace::heat_map(names, labels, &z)
         .colour_range([-1.0, 1.0])
         .colour_scale(ColourScale::BlueToRed)
@@ -247,7 +256,7 @@ fn sensitivities(study: &StudyResult) -> Section {
     let mut data = DataTable::new(["figure", "drawn value", "correlation", "low", "high", "cases"]);
     for c in correlations {
         data.push([
-            c.figure.clone(),
+            label(&c.figure),
             c.parameter.clone(),
             format!("{:.3}", c.correlation),
             format!("{:.3}", c.low),
@@ -278,7 +287,7 @@ fn indices(study: &StudyResult) -> Section {
             index.total_interval[0],
             index.total_interval[1],
         ];
-        let mut cells = vec![index.figure.clone(), index.parameter.clone()];
+        let mut cells = vec![label(&index.figure), index.parameter.clone()];
         cells.extend(numbers.map(|number| format!("{number:.3}")));
         data.push(cells);
     }
@@ -304,7 +313,7 @@ fn indices(study: &StudyResult) -> Section {
     Section::new("indices", "Sobol indices").chart(Chart::new(
         format!(
             "Of {}: the part of its variance that is a value's alone, and with all in which it takes part.",
-            summary.worst_by
+            FigureLabel::of(&summary.worst_by).words
         ),
         400,
         data,
@@ -317,7 +326,8 @@ fn indices(study: &StudyResult) -> Section {
 fn scatter(study: &StudyResult) -> Section {
     let (summary, table) = (&study.summary, &study.table);
     let name = &summary.worst_by;
-    let section = Section::new("scatter", format!("{} against what was drawn", capital(&spoken(name))));
+    let section =
+        Section::new("scatter", format!("{} against what was drawn", capital(&FigureLabel::of(name).words)));
     let Some(values) = table.figure(name) else { return section.text("No case has the figure.") };
     let mut charts = Vec::new();
     for parameter in table.drawn.keys() {
@@ -345,13 +355,13 @@ fn scatter(study: &StudyResult) -> Section {
         charts.push(Chart::new(
             format!(
                 "{} against {parameter}, a point a case. {}",
-                figure_label(name),
+                FigureLabel::of(name),
                 drawn(&[(rows.len(), "cases")], true)
             ),
             260,
             data,
             traces,
-            axes(&plain(parameter), &plain(&figure_label(name))).legend(!is_drawn_whole),
+            axes(&plain(parameter), &plain(&FigureLabel::of(name).to_string())).legend(!is_drawn_whole),
         ));
     }
     let left_out = charts.len().saturating_sub(MOST_SCATTERS);
@@ -383,7 +393,7 @@ fn worst(study: &StudyResult) -> Section {
         return section.text("No case has the figure by which they would be the worst.");
     }
     let drawn: Vec<&String> = summary.worst[0].drawn.keys().collect();
-    let mut head = vec!["case".to_owned(), summary.worst_by.clone()];
+    let mut head = vec!["case".to_owned(), label(&summary.worst_by)];
     head.extend(drawn.iter().map(|name| (*name).clone()));
     head.push("runs it again".to_owned());
     let mut table = DataTable::new(head).wordy();
@@ -396,5 +406,5 @@ fn worst(study: &StudyResult) -> Section {
         cells.push(case.replay.clone());
         table.push(cells);
     }
-    section.text(format!("Those whose {} is {way}.", summary.worst_by)).table(table)
+    section.text(format!("Those whose {} is {way}.", FigureLabel::of(&summary.worst_by).words)).table(table)
 }

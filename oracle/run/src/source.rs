@@ -56,7 +56,7 @@ impl ScenarioSource {
         Ok(Self { name, folder, scenario, file, text })
     }
 
-    /// The same scenario with other values, from [`AnyScenario::to_json`], and another seed. `label` is what mistakes are told of.
+    /// The same scenario with other values, from [`AnyScenario::to_json`](crate::AnyScenario::to_json), and another seed. `label` is what mistakes are told of.
     ///
     /// # Errors
     /// A [`Failure`] with the path of a value of the wrong type, or of one that there is not.

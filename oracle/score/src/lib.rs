@@ -34,6 +34,7 @@ mod definition;
 pub mod docking;
 #[cfg(test)]
 mod hand_made;
+mod label;
 mod report;
 mod sense;
 mod verdict;
@@ -44,6 +45,7 @@ pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
 pub use belonging::belonging_to;
 pub use cause::Cause;
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
+pub use label::FigureLabel;
 pub use report::{Figure, GroupScore, Score, names};
 pub use sense::{Better, Kind, Sense, sense};
 pub use verdict::{FrameVerdict, Taken, Unproject, Verdict, VerdictRow};
