@@ -86,7 +86,8 @@ const PROGRAMS: [Faulty; 14] = [
     faulty("answers far too late", "hello()\nn = ask()\ntime.sleep(3)\nnone(n)\ntime.sleep(100)", LATE),
     faulty(
         "speaks before it is asked",
-        "hello()\nsay('{}')\nsay('{}')\ntime.sleep(100)",
+        // In one piece with the greeting's answer: later, it could be taken for the answer to the first question.
+        "ask()\nsay('{\"boresight_pipeline\": 1, \"name\": \"faulty\"}\\n{}\\n{}')\ntime.sleep(100)",
         "it wrote a line without being asked",
     ),
     faulty(
