@@ -15,8 +15,8 @@ pub(super) fn scratch_directory() -> Result<ScratchDirectory, Failure> {
     ScratchDirectory::create(&std::env::temp_dir())
 }
 
-/// Ends the programs of pipelines on SIGINT, SIGTERM and SIGHUP, removes temporary directories, and then ends this process, with the status
-/// of a shell: 128 and the number. Asked again, it does nothing.
+/// Ends the programs of pipelines on SIGINT, SIGTERM and SIGHUP, removes temporary directories, and then ends this process as the signal
+/// would have: whoever waits for it sees the signal. Asked again, it does nothing.
 #[cfg(unix)]
 pub(super) fn clean_up_when_interrupted() {
     static STARTED: std::sync::Once = std::sync::Once::new();
@@ -26,6 +26,8 @@ pub(super) fn clean_up_when_interrupted() {
             if let Ok(number) = first_signal() {
                 pipeline::external::end_all();
                 remove_all();
+                // It does not come back from any of the three.
+                let _ = signal_hook::low_level::emulate_default_handler(number);
                 std::process::exit(128 + number);
             }
         });
