@@ -9,7 +9,9 @@ use files::Failure;
 use tempfile::TempDir;
 
 /// How the names of these directories begin.
-const PREFIX: &str = "boresight-";
+const PREFIX: &str = "boresight-scratch-";
+/// The file in each that its process holds a lock on. A directory without it is somebody's, whatever its name.
+const MARK: &str = ".boresight-scratch";
 /// A process that has made one locks it at once.
 const UNLOCKED: Duration = Duration::from_secs(3600);
 
@@ -30,11 +32,13 @@ impl ScratchDirectory {
     /// [`Failure::Usage`] when none can be made there.
     pub(super) fn create(folder: &Path) -> Result<Self, Failure> {
         remove_abandoned(folder);
+        // Held meanwhile: whoever removes them all knows this one too.
+        let mut places = places();
         let directory = tempfile::Builder::new().prefix(PREFIX).tempdir_in(folder).map_err(|error| {
             Failure::Usage(format!("a temporary directory cannot be made in {}: {error}", folder.display()))
         })?;
-        let lock = File::open(directory.path()).ok().filter(|file| file.try_lock().is_ok());
-        places().push(directory.path().to_owned());
+        let lock = File::create_new(directory.path().join(MARK)).ok().filter(|file| file.try_lock().is_ok());
+        places.push(directory.path().to_owned());
         Ok(Self { directory, _lock: lock })
     }
 
@@ -71,8 +75,43 @@ fn remove_abandoned(folder: &Path) {
         let is_old = entry.file_name().to_string_lossy().starts_with(PREFIX)
             && entry.file_type().is_ok_and(|kind| kind.is_dir())
             && age.is_some_and(|age| age > UNLOCKED);
-        if is_old && File::open(&path).is_ok_and(|file| file.try_lock().is_ok()) {
+        if is_old && File::open(path.join(MARK)).is_ok_and(|file| file.try_lock().is_ok()) {
             let _ = std::fs::remove_dir_all(&path);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Makes a directory of two hours ago.
+    fn old_directory(folder: &Path, name: &str, file: &str) -> PathBuf {
+        let path = folder.join(name);
+        std::fs::create_dir(&path).unwrap();
+        std::fs::write(path.join(file), "kept").unwrap();
+        File::open(&path).unwrap().set_modified(SystemTime::now() - 2 * UNLOCKED).unwrap();
+        path
+    }
+
+    #[test]
+    fn what_a_process_left_is_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let old = |name: &str, file: &str| old_directory(folder.path(), name, file);
+        let left = old("boresight-scratch-left", MARK);
+        let kept = [
+            old("boresight-scratch-results", "score.json"),
+            old("boresight-run-1", "score.json"),
+            old("results", MARK),
+        ];
+        let used = old("boresight-scratch-used", MARK);
+        let lock = File::open(used.join(MARK)).unwrap();
+        lock.lock().unwrap();
+        let own = ScratchDirectory::create(folder.path()).unwrap();
+        assert!(!left.exists());
+        assert!(kept.iter().chain([&used]).all(|path| path.exists()));
+        let path = own.path().to_owned();
+        drop(own);
+        assert!(!path.exists());
     }
 }
