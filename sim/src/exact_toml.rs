@@ -23,11 +23,11 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Exact<D> {
     type Error = D::Error;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
-        self.0.deserialize_any(Shaped(visitor, Shape::Any))
+        self.0.deserialize_any(ShapeVisitor(visitor, Shape::Any))
     }
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
-        self.0.deserialize_option(Shaped(visitor, Shape::Any))
+        self.0.deserialize_option(ShapeVisitor(visitor, Shape::Any))
     }
 
     fn deserialize_newtype_struct<V: Visitor<'de>>(
@@ -35,11 +35,11 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Exact<D> {
         name: &'static str,
         visitor: V,
     ) -> Result<V::Value, D::Error> {
-        self.0.deserialize_newtype_struct(name, Shaped(visitor, Shape::Any))
+        self.0.deserialize_newtype_struct(name, ShapeVisitor(visitor, Shape::Any))
     }
 
     fn deserialize_tuple<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, D::Error> {
-        self.0.deserialize_tuple(len, Shaped(visitor, Shape::Array(len)))
+        self.0.deserialize_tuple(len, ShapeVisitor(visitor, Shape::Array(len)))
     }
 
     fn deserialize_tuple_struct<V: Visitor<'de>>(
@@ -48,7 +48,7 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Exact<D> {
         len: usize,
         visitor: V,
     ) -> Result<V::Value, D::Error> {
-        self.0.deserialize_tuple_struct(name, len, Shaped(visitor, Shape::Array(len)))
+        self.0.deserialize_tuple_struct(name, len, ShapeVisitor(visitor, Shape::Array(len)))
     }
 
     fn deserialize_struct<V: Visitor<'de>>(
@@ -57,7 +57,7 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Exact<D> {
         fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, D::Error> {
-        self.0.deserialize_struct(name, fields, Shaped(visitor, Shape::Table))
+        self.0.deserialize_struct(name, fields, ShapeVisitor(visitor, Shape::Table))
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
@@ -66,7 +66,7 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Exact<D> {
         variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, D::Error> {
-        self.0.deserialize_enum(name, variants, Shaped(visitor, Shape::Any))
+        self.0.deserialize_enum(name, variants, ShapeVisitor(visitor, Shape::Any))
     }
 
     // TOML tells these types by itself.
@@ -85,7 +85,7 @@ enum Shape {
 }
 
 /// A type's visitor, whose values are read exactly.
-struct Shaped<V>(V, Shape);
+struct ShapeVisitor<V>(V, Shape);
 
 macro_rules! hand_on {
     ($($method:ident: $value:ty),*) => {
@@ -95,7 +95,7 @@ macro_rules! hand_on {
     };
 }
 
-impl<'de, V: Visitor<'de>> Visitor<'de> for Shaped<V> {
+impl<'de, V: Visitor<'de>> Visitor<'de> for ShapeVisitor<V> {
     type Value = V::Value;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -209,7 +209,7 @@ impl<'de, A: VariantAccess<'de>> VariantAccess<'de> for Exact<A> {
     }
 
     fn tuple_variant<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, A::Error> {
-        self.0.tuple_variant(len, Shaped(visitor, Shape::Array(len)))
+        self.0.tuple_variant(len, ShapeVisitor(visitor, Shape::Array(len)))
     }
 
     fn struct_variant<V: Visitor<'de>>(
@@ -217,7 +217,7 @@ impl<'de, A: VariantAccess<'de>> VariantAccess<'de> for Exact<A> {
         fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, A::Error> {
-        self.0.struct_variant(fields, Shaped(visitor, Shape::Table))
+        self.0.struct_variant(fields, ShapeVisitor(visitor, Shape::Table))
     }
 }
 

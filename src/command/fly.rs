@@ -9,7 +9,7 @@ use super::report::write_beside_run;
 use crate::table::score_table;
 
 /// How a run is shown.
-pub(super) struct Shown<'a> {
+pub(super) struct Presentation<'a> {
     /// What was run, for the progress bar.
     pub(super) name: &'a str,
     /// Whether the report is written into the directory.
@@ -24,7 +24,7 @@ pub(super) fn fly(
     flight: &Flight<String>,
     factory: &AnyFactory,
     directory: &RunDirectory,
-    shown: Shown<'_>,
+    shown: Presentation<'_>,
     output: &Output,
 ) -> Result<Answer, Failure> {
     let frames = flight.frames.end - flight.frames.start;

@@ -8,7 +8,7 @@ use run::{Expectation, Flight, Options};
 use scenario::Stage;
 
 use super::Answer;
-use super::fly::{Shown, fly};
+use super::fly::{Presentation, fly};
 use super::options::{PipelineOptions, RendererOptions, Selection, place};
 use super::output::Output;
 
@@ -84,6 +84,6 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
     let note = arguments
         .inject
         .map(|stage| format!("the truth was injected for {stage}: this is no result of the pipeline"));
-    let shown = Shown { name: &source.name, has_report: !arguments.no_report, note };
+    let shown = Presentation { name: &source.name, has_report: !arguments.no_report, note };
     fly(prepared.as_ref(), &flight, &factory, &directory, shown, output)
 }

@@ -14,7 +14,7 @@ use study::{
 };
 
 use super::Answer;
-use super::fly::{Shown, fly};
+use super::fly::{Presentation, fly};
 use super::options::{PipelineOptions, default_jobs, place};
 use super::output::Output;
 use super::report::write_beside_results;
@@ -385,7 +385,7 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
         Some(path) => RunDirectory::create(path)?,
         None => RunDirectory::create_numbered(Path::new(super::run::RUNS), &name)?,
     };
-    let shown = Shown { name: &name, has_report: !arguments.no_report, note: None };
+    let shown = Presentation { name: &name, has_report: !arguments.no_report, note: None };
     fly(prepared.as_ref(), &flight, &factory, &directory, shown, output)
 }
 

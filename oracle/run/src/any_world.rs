@@ -19,7 +19,7 @@ use sim::SimError;
 use crate::docking::renderer::DockingRenderer;
 use crate::flight::Flight;
 use crate::pipeline_choice::PipelineChoice;
-use crate::ran::{FirstFailure, Ran};
+use crate::run_result::{FirstFailure, RunResult};
 
 /// What a run is asked for beside its scenario. A world refuses what it does not have.
 #[derive(Debug, Default)]
@@ -310,13 +310,17 @@ pub trait AnyPrepared: Send + Sync {
         flight: &Flight<String>,
         factory: &AnyFactory,
         go_on: &dyn Fn() -> Result<(), Failure>,
-    ) -> Result<Ran<Box<dyn AnyScored>>, Failure>;
+    ) -> Result<RunResult<Box<dyn AnyScored>>, Failure>;
 
     /// [`World::score`](crate::World::score).
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
-    fn score(&self, frames: Range<u64>, factory: &AnyFactory) -> Result<Ran<Box<dyn AnyScored>>, Failure>;
+    fn score(
+        &self,
+        frames: Range<u64>,
+        factory: &AnyFactory,
+    ) -> Result<RunResult<Box<dyn AnyScored>>, Failure>;
 
     /// What is prepared, with its type.
     fn into_any(self: Box<Self>) -> Box<dyn Any>;

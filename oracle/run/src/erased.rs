@@ -23,7 +23,7 @@ use crate::any_world::{
 };
 use crate::flight::Flight;
 use crate::pipeline_choice::PipelineChoice;
-use crate::ran::Ran;
+use crate::run_result::RunResult;
 use crate::world::{Answers, Scored, World, process};
 
 impl<S: Scored + Send + 'static> AnyScored for S {
@@ -273,11 +273,15 @@ impl<W: World> AnyPrepared for W {
         flight: &Flight<String>,
         factory: &AnyFactory,
         go_on: &dyn Fn() -> Result<(), Failure>,
-    ) -> Result<Ran<Box<dyn AnyScored>>, Failure> {
+    ) -> Result<RunResult<Box<dyn AnyScored>>, Failure> {
         Ok(World::run(self, directory, &flight.parse()?, factory.of()?, go_on)?.boxed())
     }
 
-    fn score(&self, frames: Range<u64>, factory: &AnyFactory) -> Result<Ran<Box<dyn AnyScored>>, Failure> {
+    fn score(
+        &self,
+        frames: Range<u64>,
+        factory: &AnyFactory,
+    ) -> Result<RunResult<Box<dyn AnyScored>>, Failure> {
         Ok(World::score(self, frames, factory.of()?)?.boxed())
     }
 
@@ -286,9 +290,9 @@ impl<W: World> AnyPrepared for W {
     }
 }
 
-impl<S: Scored + Send + 'static> Ran<S> {
-    fn boxed(self) -> Ran<Box<dyn AnyScored>> {
-        Ran { scored: Box::new(self.scored), first_failure: self.first_failure }
+impl<S: Scored + Send + 'static> RunResult<S> {
+    fn boxed(self) -> RunResult<Box<dyn AnyScored>> {
+        RunResult { scored: Box::new(self.scored), first_failure: self.first_failure }
     }
 }
 

@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 
 use crate::any_world::{Options, ScenarioSource};
 use crate::flight::{Flight, in_order};
-use crate::ran::{FirstFailure, Ran};
+use crate::run_result::{FirstFailure, RunResult};
 
 /// The setup that pipelines of a world are built with.
 pub type SetupOf<W> = <<W as World>::Interface as Interface>::Setup;
@@ -284,7 +284,7 @@ pub trait World: Sized + Send + Sync + 'static {
         flight: &Flight<Self::Images>,
         factory: &dyn PipelineFactory<Self::Interface>,
         go_on: impl Fn() -> Result<(), Failure>,
-    ) -> Result<Ran<Self::Scored>, Failure> {
+    ) -> Result<RunResult<Self::Scored>, Failure> {
         let mut dataset = self.dataset(directory, flight)?;
         let mut running = Running::build(self, factory)?;
         let mut answers = Self::Answers::create(&Self::Answers::files(&directory.measurements()))?;
@@ -307,7 +307,7 @@ pub trait World: Sized + Send + Sync + 'static {
             .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?;
         WholeFile::with_text(&directory.score(), &(json + "\n"))?.commit_new()?;
         directory.seal()?;
-        Ok(Ran { scored, first_failure })
+        Ok(RunResult { scored, first_failure })
     }
 
     /// Makes frames on `jobs` threads, has a fresh pipeline process them, and hands each with its answer to `take`, in order, on
@@ -336,7 +336,7 @@ pub trait World: Sized + Send + Sync + 'static {
         &self,
         frames: Range<u64>,
         factory: &dyn PipelineFactory<Self::Interface>,
-    ) -> Result<Ran<Self::Scored>, Failure> {
+    ) -> Result<RunResult<Self::Scored>, Failure> {
         let mut running = Running::build(self, factory)?;
         let mut first_failure = None;
         let mut scorer = self.scorer();
@@ -348,7 +348,7 @@ pub trait World: Sized + Send + Sync + 'static {
             scorer.add(&processed.truth, &processed.outcome)?;
             Self::reuse(&mut workspace, processed.image);
         }
-        Ok(Ran { scored: scorer.finish(), first_failure })
+        Ok(RunResult { scored: scorer.finish(), first_failure })
     }
 }
 

@@ -4,7 +4,7 @@ use contract::Interface;
 
 /// What a run gave.
 #[derive(Debug)]
-pub struct Ran<S> {
+pub struct RunResult<S> {
     /// Score and verdicts.
     pub scored: S,
     /// The first failure of the pipeline, if it failed at all.
