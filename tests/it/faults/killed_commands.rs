@@ -193,12 +193,16 @@ fn a_gate_that_is_killed_leaves_nothing_half_written() {
 #[test]
 fn temporary_directories_go_with_their_process() {
     let bench = small_bench();
+    // So long that no run ends before it is killed.
+    let long =
+        std::fs::read_to_string(bench.path("small.toml")).unwrap().replace("count = 400", "count = 1000000");
+    bench.write("long.toml", &long);
     std::fs::create_dir(bench.path("tmp")).unwrap();
     let left = || {
         std::fs::read_dir(bench.path("tmp")).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>()
     };
     for (signal, count) in [("INT", 0), ("TERM", 0), ("KILL", 1)] {
-        let mut command = command(&bench, &format!("run small.toml --frames 0..400 --out {signal}"));
+        let mut command = command(&bench, &format!("run long.toml --out {signal}"));
         let mut child = command.env("TMPDIR", bench.path("tmp")).spawn().unwrap();
         // With its mark: without, it could be anybody's.
         while !left().iter().any(|path| path.join(".boresight-scratch").exists()) {
