@@ -50,7 +50,7 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
         path.is_file().then_some(path)
     };
     let evidence = evidence.or_else(beside);
-    let scored = world.score_files(&arguments.directory, &arguments.measurements, evidence.as_deref())?;
+    let scored = world.score(&arguments.directory, &arguments.measurements, evidence.as_deref())?;
     Checksums::check(&arguments.directory, |_| true)?;
     output.answer_json(&scored.json()?, score_table(scored.as_ref(), output.is_terminal()))?;
     Ok(Answer::Yes)

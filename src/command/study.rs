@@ -95,6 +95,9 @@ pub(super) struct ReplayArguments {
     /// Number of the case
     #[arg(long, value_name = "K")]
     case: u64,
+    /// Refuse a study that has another hash, or begins with other digits: one of other files, values or pipeline than the rows
+    #[arg(long, value_name = "HEX")]
+    hash: Option<String>,
     /// A new or empty directory for the run; default: the next free `runs/STUDY-case-K-001`
     #[arg(short, long, value_name = "DIR", value_parser = place())]
     out: Option<PathBuf>,
@@ -363,6 +366,13 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
             arguments.case,
             study.cases(),
             study.cases() - 1
+        )));
+    }
+    let hash = study.hash_with(&arguments.pipeline.choice());
+    if let Some(expected) = arguments.hash.as_ref().filter(|expected| !hash.starts_with(*expected)) {
+        return Err(Failure::Usage(format!(
+            "--hash is {expected}, the study's is {hash}: expected the same, as the case is not the one of the rows (the study, a file that it \
+             reads, the pipeline or Boresight was changed)"
         )));
     }
     let case = study.case(arguments.case)?;

@@ -47,7 +47,7 @@ struct Detector {
 scenario_file!(Scene, "blinking_dot");
 
 impl Scene {
-    fn paths(&mut self) -> Vec<&mut String> {
+    fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
         Vec::new()
     }
 
@@ -170,7 +170,7 @@ impl World for BlinkingDot {
     type Scored = Judge;
 
     fn prepare(source: &ScenarioSource, scene: &Scene, _: Options) -> Result<Self, Failure> {
-        Ok(Self(RunFile::new(&source.name, scene, None, None)?))
+        Ok(Self(RunFile::new(&source.name, scene, source.files()?, None, None)?))
     }
 
     fn run_file(&self) -> &RunFile<Scene> {
@@ -199,8 +199,7 @@ impl World for BlinkingDot {
         Ok(OpenDataset { setup: COLUMNS, config, count, images: Box::new(images.into_iter()) })
     }
 
-    fn known_of_frames(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
-        text(&directory.join(Self::TRUTH_FILE))?.lines().for_each(|row| add(&row));
+    fn telemetry_rows(_: &Path, _: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
         Ok(())
     }
 
@@ -417,7 +416,8 @@ fn a_world_of_its_own_runs_through_everything() {
     let summary: Value = serde_json::from_str(&bench.read("study/summary.json")).unwrap();
     assert_eq!(summary["cases"], 8);
     let words = format!("study replay {} --case 0 --save-frames csv --out {}", at("study.toml"), at("case"));
-    assert!(summary.to_string().contains("--case 0 --save-frames csv"));
+    let replayed = summary.to_string();
+    assert!(replayed.contains("--case 0 --hash ") && replayed.contains(" --save-frames csv"));
     assert_eq!(boresight(&words), 0);
     assert_eq!(boresight(&format!("report {} -o {}", at("study"), at("study.html"))), 0);
 

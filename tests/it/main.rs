@@ -28,6 +28,7 @@ mod files_truth;
 mod frozen;
 mod gate;
 mod golden_docking;
+mod identity;
 mod import_circles;
 mod inject;
 #[cfg(unix)]

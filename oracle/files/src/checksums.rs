@@ -41,7 +41,7 @@ impl Checksums {
     pub fn write(directory: &Path, names: &[&str]) -> Result<(), FileError> {
         let mut lines = String::new();
         for name in names {
-            if let Some(sum) = sha256(&directory.join(name))? {
+            if let Some(sum) = file_sha256(&directory.join(name))? {
                 lines += &format!("{sum}  {name}\n");
             }
         }
@@ -87,7 +87,7 @@ impl Checksums {
                 continue;
             }
             let file = directory.join(name);
-            if let Some(found) = sha256(&file)?.filter(|found| found != told) {
+            if let Some(found) = file_sha256(&file)?.filter(|found| found != told) {
                 let expected = format!(
                     "{told}, that of {}: the file was damaged, or changed since it was written; if on purpose, take its line out of there",
                     path.display()
@@ -123,8 +123,11 @@ fn is_sum(text: &str) -> bool {
     text.len() == 64 && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'))
 }
 
-/// SHA-256 of a file, hexadecimal; `None` when it is not there.
-fn sha256(path: &Path) -> Result<Option<String>, FileError> {
+/// SHA-256 of a regular file, hexadecimal; `None` when it is not there.
+///
+/// # Errors
+/// [`FileError`] for a file that cannot be read, is no regular file or has more than 2^38 bytes.
+pub fn file_sha256(path: &Path) -> Result<Option<String>, FileError> {
     let file = match sim::regular_file::open(path) {
         Ok(file) => file,
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),

@@ -39,11 +39,17 @@ pub(super) struct CsvReader {
 impl CsvReader {
     /// Opens a table and checks its header: every required column, no unknown one, none twice.
     pub(super) fn open<T: Table>(path: &Path) -> Result<Self, FileError> {
+        Self::open_with::<T>(path, &[])
+    }
+
+    /// [`CsvReader::open`] of a table that may have the columns `others` as well.
+    pub(super) fn open_with<T: Table>(path: &Path, others: &[&'static str]) -> Result<Self, FileError> {
         let file = Lines::new(open_regular(path)?);
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(file);
         let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
         let column = |(name, is_optional)| CsvColumn { name, is_optional, position: None };
-        let mut columns: Vec<CsvColumn> = layout::<T>().map(column).collect();
+        let mut columns: Vec<CsvColumn> =
+            layout::<T>().chain(others.iter().map(|name| (*name, true))).map(column).collect();
         for (position, name) in header.iter().enumerate() {
             let Some(column) = columns.iter_mut().find(|column| column.name == name) else {
                 return Err(unknown_column(path, name, &columns));

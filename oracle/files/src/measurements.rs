@@ -10,6 +10,7 @@ use contract::{
 use super::FileError;
 use super::csv_table::{CsvLine, CsvReader, CsvRow, CsvWriter};
 use super::field::Atom;
+use super::origin;
 use super::table::{optional, table};
 
 const POSITION: [&str; 2] = ["x_px", "y_px"];
@@ -73,12 +74,14 @@ impl MeasurementWriter {
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be.
 pub fn read_measurements(path: &Path, camera: &Camera) -> Result<Vec<(u64, Outcome)>, FileError> {
-    CsvReader::open::<MeasurementLine>(path)?.read_rows(|row, previous: Option<&(u64, Outcome)>| {
-        let reason = reason(row)?;
-        let line = MeasurementLine::read(row)?;
-        row.check_ascends("frame", line.frame, previous.map(|(frame, _)| *frame))?;
-        Ok((line.frame, outcome(row, line, reason, camera)?))
-    })
+    CsvReader::open_with::<MeasurementLine>(path, &origin::COLUMNS)?.read_rows(
+        |row, previous: Option<&(u64, Outcome)>| {
+            let reason = reason(row)?;
+            let line = MeasurementLine::read(row)?;
+            row.check_ascends("frame", line.frame, previous.map(|(frame, _)| *frame))?;
+            Ok((line.frame, outcome(row, line, reason, camera)?))
+        },
+    )
 }
 
 /// Why a row has no target; `None` of a detection.

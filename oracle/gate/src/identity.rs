@@ -1,6 +1,6 @@
 //! What was run, and whether two runs can be compared.
 use files::Failure;
-use files::sha256::sha256_hex;
+use scenario::identity::first_difference;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
@@ -48,10 +48,11 @@ pub struct Identity {
     /// What drew the scene, where the fast renderer did not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub renderer: Option<String>,
-    /// SHA-256 of the resolved scenario without its title, its seed and the pipeline's own parameters.
+    /// SHA-256 of the resolved scenario without its title, its seed and the pipeline's own parameters; the content of every file that it
+    /// reads stands in the place of its path.
     pub scenario_sha256: String,
     /// SHA-256 of what is known of every frame besides its pixels: telemetry as a pipeline gets it, regions that were transmitted included,
-    /// and the truth; of a study, of all seeds and drawn values.
+    /// and all files of the truth; of a study, of all seeds and drawn values.
     pub frames_sha256: String,
     /// The pipeline's own parameters.
     pub pipeline: Table,
@@ -67,26 +68,6 @@ pub enum Pairing {
     Frames,
     /// The scenario is the same, the noise is not: each block of the one is held against the same stretch of the other.
     Blocks,
-}
-
-/// A scenario, apart from what says who measures it and with which noise.
-pub(super) struct Split {
-    pub(super) pipeline: Table,
-    pub(super) scenario: Table,
-    pub(super) scenario_sha256: String,
-}
-
-/// Takes title, seed and the parameters of the pipeline of `world` out of a resolved scenario.
-pub(super) fn split(world: &str, mut scenario: Table) -> Result<Split, Failure> {
-    scenario.remove("title");
-    scenario.remove("seed");
-    let pipeline = match scenario.remove(world) {
-        Some(Value::Table(table)) => table,
-        _ => Table::new(),
-    };
-    let text = toml::to_string(&scenario)
-        .map_err(|error| Failure::Usage(format!("the scenario cannot be written: {error}")))?;
-    Ok(Split { pipeline, scenario, scenario_sha256: sha256_hex(&text) })
 }
 
 impl Identity {
@@ -133,42 +114,16 @@ impl Identity {
     }
 }
 
-/// Where two values differ first, as `.psf.sigma_px` or `.schedule[2].count`, and what stands there.
-fn first_difference(a: &Value, b: &Value) -> Option<(String, String, String)> {
-    let missing = || "none".to_owned();
-    match (a, b) {
-        (Value::Table(a), Value::Table(b)) => {
-            let mut keys: Vec<&String> =
-                a.keys().chain(b.keys().filter(|key| !a.contains_key(*key))).collect();
-            keys.sort();
-            keys.into_iter().find_map(|key| match (a.get(key), b.get(key)) {
-                (Some(a), Some(b)) => first_difference(a, b).map(|(at, a, b)| (format!(".{key}{at}"), a, b)),
-                (a, b) => {
-                    let shown = |value: Option<&Value>| value.map_or_else(missing, ToString::to_string);
-                    Some((format!(".{key}"), shown(a), shown(b)))
-                }
-            })
-        }
-        (Value::Array(a), Value::Array(b)) => {
-            (0..a.len().max(b.len())).find_map(|i| match (a.get(i), b.get(i)) {
-                (Some(a), Some(b)) => first_difference(a, b).map(|(at, a, b)| (format!("[{i}]{at}"), a, b)),
-                (a, b) => {
-                    let shown = |value: Option<&Value>| value.map_or_else(missing, ToString::to_string);
-                    Some((format!("[{i}]"), shown(a), shown(b)))
-                }
-            })
-        }
-        (a, b) => (a != b).then(|| (String::new(), a.to_string(), b.to_string())),
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use scenario::identity::split;
+    use scenario::run_file::FileDigests;
+
     use super::*;
 
     fn identity(scenario: &str) -> Identity {
         let seed = scenario.parse::<Table>().unwrap()["seed"].as_integer().unwrap() as u64;
-        let split = split("far_range", scenario.parse().unwrap()).unwrap();
+        let split = split("far_range", scenario.parse().unwrap(), &FileDigests::new()).unwrap();
         Identity {
             kind: SourceKind::Run,
             world: "far_range".to_owned(),
@@ -218,27 +173,6 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_first_is_named_down_to_its_place() {
-        let value = |text: &str| Value::Table(text.parse().unwrap());
-        for (a, b, at, of_a, of_b) in [
-            // Neither has what the other has; by name, not by place.
-            ("b = 1\na = 1", "b = 2\na = 2", ".a", "1", "2"),
-            ("a = 1", "a = 1\nb = 2", ".b", "none", "2"),
-            ("a = 1\nb = 2", "a = 1", ".b", "2", "none"),
-            ("a = [1, 2]", "a = [1, 2, 3]", ".a[2]", "none", "3"),
-            ("a = [1, 2, 3]", "a = [1, 2]", ".a[2]", "3", "none"),
-            ("a = [{ b = 1 }, { b = 2 }]", "a = [{ b = 1 }, { b = 3 }]", ".a[1].b", "2", "3"),
-            ("a = 1", "a = \"1\"", ".a", "1", "\"1\""),
-            ("a.b = 1", "a = 1", ".a", "{ b = 1 }", "1"),
-        ] {
-            let expected = (at.to_owned(), of_a.to_owned(), of_b.to_owned());
-            assert_eq!(first_difference(&value(a), &value(b)), Some(expected), "{a} and {b}");
-        }
-        let table = value("a = [1, { b = 2.5 }]\nc = true");
-        assert_eq!(first_difference(&table, &table), None);
-    }
-
-    #[test]
     fn what_was_run_must_be_the_same_in_all_but_pipeline_and_noise() {
         let text = |text: &str| Some(text.to_owned());
         let base = identity(SCENARIO);
@@ -279,19 +213,6 @@ mod tests {
         assert_eq!(base.pairing(&named).unwrap(), Pairing::Frames);
         // The same frames of another seed are no pairs: what the pipeline draws is not the same.
         assert_eq!(base.pairing(&Identity { seed: 2, ..base.clone() }).unwrap(), Pairing::Blocks);
-    }
-
-    #[test]
-    fn the_scenario_is_parted_from_its_title_its_seed_and_its_pipeline() {
-        let table: Table = SCENARIO.parse().unwrap();
-        let split = split("far_range", table.clone()).unwrap();
-        assert_eq!(split.pipeline, "threshold = 4".parse().unwrap());
-        let scenario: Table = "[psf]\nsigma_px = 0.8\n[[schedule]]\ncount = 3\n".parse().unwrap();
-        assert_eq!(split.scenario, scenario);
-        assert_eq!(split.scenario_sha256, sha256_hex(toml::to_string(&scenario).unwrap()));
-        // Of the other world's pipeline it is no part.
-        let other = super::split("docking", table).unwrap();
-        assert!(other.pipeline.is_empty() && other.scenario.contains_key("far_range"));
     }
 
     #[test]

@@ -3,15 +3,16 @@
 use std::path::Path;
 
 use files::sha256::{hex, sha256_hex};
-use files::{Checksums, Failure, FileError, toml_file};
+use files::{Checksums, Failure, FileError, file_sha256, table_sha256, toml_file};
 use run::{world_of_run, worlds};
+use scenario::identity::split;
 use scenario::run_file::RunFile;
 use score::{FigureTerms, Kind, Reduction, Term, UnitTable, UnitVerdict, sense};
 use sha2::{Digest, Sha256};
 use study::{CaseFigure, CaseTable, StudyRecord};
 use toml::Table;
 
-use super::identity::{Identity, SourceKind, split};
+use super::identity::{Identity, SourceKind};
 use super::sample::Sample;
 
 /// Reads a run directory (its measurements are scored anew), or the directory of a study that is complete.
@@ -45,17 +46,21 @@ fn scenario_of(path: &Path, text: &str) -> Result<Table, Failure> {
 
 fn run(directory: &Path, path: &Path) -> Result<Sample, Failure> {
     let world = world_of_run(path)?;
-    let RunFile { name, version, catalog_sha256, inject, mitsuba, scenario, .. } = world.read_run(path)?;
+    let RunFile { name, version, catalog_sha256, inject, files, mitsuba, scenario, .. } =
+        world.read_run(path)?;
     let evidence = world.evidence_file().map(|name| directory.join(name)).filter(|path| path.is_file());
-    let scored = world.score_files(directory, &directory.join("measurements.csv"), evidence.as_deref())?;
+    let scored = world.score(directory, &directory.join("measurements.csv"), evidence.as_deref())?;
     let mut digest = FrameDigest::default();
-    world.known_of_frames(directory, &mut |row| digest.add(row))?;
+    world.telemetry_rows(directory, &mut |row| digest.add(row))?;
+    for (name, sha256) in truth_digests(&directory.join("truth"))? {
+        digest.add(&(name, sha256));
+    }
     let text = toml_file::read_text(path).map_err(|source| FileError::Io {
         path: path.to_owned(),
         doing: "read",
         source,
     })?;
-    let split = split(world.code(), scenario_of(path, &text)?)?;
+    let split = split(world.code(), scenario_of(path, &text)?, &files)?;
     let identity = Identity {
         kind: SourceKind::Run,
         world: world.code().to_owned(),
@@ -73,6 +78,24 @@ fn run(directory: &Path, path: &Path) -> Result<Sample, Failure> {
     Ok(Sample::new(identity, scored.units()))
 }
 
+/// The names of all files of the truth, in their order, each with the digest of its content.
+fn truth_digests(folder: &Path) -> Result<Vec<(String, String)>, Failure> {
+    let unreadable = |source| FileError::io(folder, "read", source);
+    let mut digests = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let sha256 = match path.extension() {
+            _ if !path.is_file() || name.starts_with('.') => None,
+            Some(extension) if extension == "parquet" => Some(table_sha256(&path)?),
+            _ => file_sha256(&path)?,
+        };
+        digests.extend(sha256.map(|sha256| (name, sha256)));
+    }
+    digests.sort();
+    Ok(digests)
+}
+
 fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
     let record = StudyRecord::read(&directory.join("study.json"))?;
     let (table, _) = CaseTable::columns_of(path)?.read(path)?;
@@ -81,7 +104,7 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
         digest.add(&(row.case, row.seed, &row.drawn));
     }
     let world = record.world;
-    let mut split = split(&world, record.scenario)?;
+    let mut split = split(&world, record.scenario, &record.files)?;
     split.scenario = Table::from_iter([
         ("study".to_owned(), toml::Value::Table(record.study)),
         ("base".to_owned(), toml::Value::Table(split.scenario)),

@@ -1,6 +1,7 @@
 //! Worlds behind one face: all that commands, studies and gates need of any of them.
 
 use std::any::{Any, TypeId};
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -126,11 +127,11 @@ pub trait AnyWorld: Sync {
         evidence: Option<&Path>,
     ) -> Result<Box<dyn AnyScored>, Failure>;
 
-    /// [`World::known_of_frames`](crate::World::known_of_frames).
+    /// [`World::telemetry_rows`](crate::World::telemetry_rows).
     ///
     /// # Errors
     /// A [`Failure`] for a file that cannot be read.
-    fn known_of_frames(&self, directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure>;
+    fn telemetry_rows(&self, directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure>;
 }
 
 impl dyn AnyWorld {
@@ -201,8 +202,8 @@ pub trait AnyScenario: Debug + Send + Sync {
     /// Gives it another seed.
     fn set_seed(&mut self, seed: u64);
 
-    /// The paths of files in it.
-    fn paths(&mut self) -> Vec<&mut String>;
+    /// [`ScenarioFile::paths`].
+    fn paths(&mut self) -> Vec<(&'static str, &mut String)>;
 
     /// All its values, defaults included.
     ///
@@ -358,6 +359,8 @@ pub struct ScenarioSource {
     pub scenario: Box<dyn AnyScenario>,
     pub(crate) file: PathBuf,
     pub(crate) text: String,
+    /// SHA-256 of files as they were when the scenario was read, by absolute path. A file that changes before it is used is refused.
+    pub(crate) contents: BTreeMap<PathBuf, String>,
 }
 
 impl ScenarioSource {

@@ -176,8 +176,8 @@ impl<W: World> AnyWorld for Of<W> {
         Ok(Box::new(W::score_files(directory, measurements, evidence)?))
     }
 
-    fn known_of_frames(&self, directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
-        W::known_of_frames(directory, add)
+    fn telemetry_rows(&self, directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
+        W::telemetry_rows(directory, add)
     }
 }
 
@@ -204,7 +204,7 @@ impl<W: World> AnyScenario for ScenarioOf<W> {
         self.0.set_seed(seed);
     }
 
-    fn paths(&mut self) -> Vec<&mut String> {
+    fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
         self.0.paths()
     }
 

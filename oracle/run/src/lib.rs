@@ -18,6 +18,7 @@ mod erased;
 pub mod far_range;
 pub mod flight;
 pub mod pipeline_choice;
+mod provenance;
 mod run_result;
 mod source;
 pub mod world;

@@ -1,13 +1,14 @@
 //! Reading scenarios, of whatever world.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use files::{Failure, FileError, toml_file};
+use files::{Failure, FileError, file_sha256, toml_file};
 use scenario::BUILT_IN;
-use scenario::run_file::RunFile;
+use scenario::run_file::{FileDigests, RunFile, content};
 use serde_json::Value;
 
-use crate::any_world::{AnyWorld, ScenarioSource};
+use crate::any_world::{AnyScenario, AnyWorld, ScenarioSource};
 use crate::worlds::world_called;
 
 impl ScenarioSource {
@@ -32,8 +33,13 @@ impl ScenarioSource {
             ))
         })?;
         if file.file_name().is_some_and(|name| name == "run.toml") {
-            let RunFile { name, scenario, .. } = world_in(&file, &text, "scenario.world")?.read_run(&file)?;
-            return Ok(Self { name, folder: PathBuf::new(), scenario, file, text });
+            let RunFile { name, mut scenario, files, .. } =
+                world_in(&file, &text, "scenario.world")?.read_run(&file)?;
+            let recorded = |(role, path): (&str, &mut String)| {
+                files.get(role).map(|sha256| (PathBuf::from(&*path), sha256.clone()))
+            };
+            let contents = scenario.paths().into_iter().filter_map(recorded).collect();
+            return Ok(Self { name, folder: PathBuf::new(), scenario, file, text, contents });
         }
         let name =
             file.file_stem().map_or_else(|| word.to_owned(), |stem| stem.to_string_lossy().into_owned());
@@ -47,13 +53,57 @@ impl ScenarioSource {
     /// A [`Failure`] with the place of the first mistake.
     pub fn parse(name: String, folder: PathBuf, file: PathBuf, text: String) -> Result<Self, Failure> {
         let mut scenario = world_in(&file, &text, "world")?.parse(&file, &text)?;
-        for path in scenario.paths() {
+        let mut contents = BTreeMap::new();
+        for (_, path) in scenario.paths() {
             // So that run.toml can be run from anywhere.
             if let Ok(absolute) = std::path::absolute(folder.join(&*path)) {
                 *path = absolute.to_string_lossy().into_owned();
+                contents.extend(content_of(absolute));
             }
         }
-        Ok(Self { name, folder, scenario, file, text })
+        Ok(Self { name, folder, scenario, file, text, contents })
+    }
+
+    /// Notes the content of the file at a path, as a value of the scenario may name it later; `None` where there is no file.
+    pub fn note_file(&mut self, path: &str) -> Option<&str> {
+        let path = self.folder.join(path);
+        if !self.contents.contains_key(&path) {
+            self.contents.extend(content_of(path.clone()));
+        }
+        self.contents.get(&path).map(String::as_str)
+    }
+
+    /// SHA-256 of the files that the scenario reads, by their roles.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a file that cannot be read, or is not what it was when the scenario was read; of a `run.toml`, when it was run.
+    pub fn files(&self) -> Result<FileDigests, Failure> {
+        let mut digests = FileDigests::new();
+        for (role, path) in self.scenario.clone().paths() {
+            let path = self.folder.join(&*path);
+            let missing = || FileError::io(&path, "read", std::io::ErrorKind::NotFound.into());
+            let sha256 = file_sha256(&path)?.ok_or_else(missing)?;
+            if let Some(earlier) = self.contents.get(&path).filter(|earlier| **earlier != sha256) {
+                let message = format!(
+                    "is {}, whose SHA-256 is {sha256}, expected {earlier}: the file was changed since",
+                    path.display()
+                );
+                return Err(self.refuse(role, message));
+            }
+            digests.insert(role.to_owned(), sha256);
+        }
+        Ok(digests)
+    }
+
+    /// The scenario with the content of every file, as it was when the scenario was read, in the place of its path.
+    pub fn identity(&self) -> Box<dyn AnyScenario> {
+        let mut scenario = self.scenario.clone();
+        for (_, path) in scenario.paths() {
+            if let Some(sha256) = self.contents.get(&self.folder.join(&*path)) {
+                *path = content(sha256);
+            }
+        }
+        scenario
     }
 
     /// The same scenario with other values, from [`AnyScenario::to_json`](crate::AnyScenario::to_json), and another seed. `label` is what mistakes are told of.
@@ -68,8 +118,14 @@ impl ScenarioSource {
             parsed.map_err(|error| Failure::Usage(format!("{label}: {}: {}", error.path, error.message)))?;
         scenario.set_seed(seed);
         let text = scenario.to_toml()?;
-        Ok(Self { name: self.name.clone(), folder: self.folder.clone(), scenario, file: label.into(), text })
+        Ok(Self { scenario, file: label.into(), text, ..self.clone() })
     }
+}
+
+/// A path with the SHA-256 of its file; none where no file can be read, which is refused when it is used.
+fn content_of(path: PathBuf) -> Option<(PathBuf, String)> {
+    let sha256 = file_sha256(&path).ok()??;
+    Some((path, sha256))
 }
 
 /// The world of a run or dataset, by its `run.toml`.

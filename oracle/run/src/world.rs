@@ -164,11 +164,11 @@ pub trait World: Sized + Send + Sync + 'static {
     /// A [`Failure`] with the first thing that is missing or wrong.
     fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure>;
 
-    /// Hands over all that is known of the frames of a run beside the pipeline's answers: what two runs of the same frames have alike.
+    /// Hands over what pipelines were told of every frame of a run besides its image: telemetry, transmitted regions.
     ///
     /// # Errors
     /// A [`Failure`] for a file that cannot be read.
-    fn known_of_frames(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure>;
+    fn telemetry_rows(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure>;
 
     /// Names of the figures of a score.
     fn figure_names() -> Vec<String>;

@@ -52,10 +52,10 @@ pub enum DockingWorld {
 scenario_file!(DockingScenario, "docking");
 
 impl DockingScenario {
-    fn paths(&mut self) -> Vec<&mut String> {
+    fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
         match TargetFile::built_in(&self.target) {
             Some(_) => Vec::new(),
-            None => vec![&mut self.target],
+            None => vec![("target", &mut self.target)],
         }
     }
 

@@ -98,13 +98,13 @@ pub struct StarListConfig {
 scenario_file!(FarRangeScenario, "far_range");
 
 impl FarRangeScenario {
-    fn paths(&mut self) -> Vec<&mut String> {
+    fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
         let catalog = match &mut self.catalog.source {
-            CatalogSource::File(path) => Some(path),
+            CatalogSource::File(path) => Some(("catalog.source", path)),
             CatalogSource::Hipparcos2 => None,
         };
         let psf = match &mut self.psf {
-            PsfConfig::Sampled { path, .. } => Some(path),
+            PsfConfig::Sampled { path, .. } => Some(("psf.path", path)),
             _ => None,
         };
         catalog.into_iter().chain(psf).collect()

@@ -15,6 +15,7 @@ mod builtin;
 mod cameras;
 mod docking;
 mod far_range;
+pub mod identity;
 pub mod run_file;
 mod stage;
 

@@ -1,4 +1,5 @@
 //! `run.toml`: enough to repeat a run.
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::path::Path;
 
@@ -18,6 +19,14 @@ pub use {
     serde_json::Value,
 };
 
+/// SHA-256 of the files that a scenario reads, hexadecimal, by their roles ([`ScenarioFile::paths`]).
+pub type FileDigests = BTreeMap<String, String>;
+
+/// What stands for a file where only its content matters.
+pub fn content(sha256: &str) -> String {
+    format!("sha256:{sha256}")
+}
+
 /// What was run: the resolved scenario of one world with all defaults, and what else the frames depend on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -29,11 +38,15 @@ pub struct RunFile<S = FarRangeScenario> {
     /// SHA-256 of the star catalogue's source, hexadecimal; absent in a world without stars.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub catalog_sha256: Option<String>,
-    /// SHA-256 of the resolved scenario as it stands below, hexadecimal.
+    /// SHA-256 of the resolved scenario as it stands below, the path of every file replaced by its content (`sha256:` and the digits),
+    /// hexadecimal: the same wherever the files lie.
     pub hash: String,
     /// The stage whose result was replaced by the truth; absent in an honest run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inject: Option<Stage>,
+    /// The files that the scenario reads: SHA-256 by role.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub files: FileDigests,
     /// How the scene was drawn, where the fast renderer did not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mitsuba: Option<MitsubaRecord>,
@@ -106,8 +119,9 @@ pub trait ScenarioFile: Clone + Debug + Send + Sync + 'static {
     /// Gives it another seed.
     fn set_seed(&mut self, seed: u64);
 
-    /// The paths of files in it, which start from the folder of its file.
-    fn paths(&mut self) -> Vec<&mut String>;
+    /// The paths of the files that it reads, which start from the folder of its file, each under its role: the place of its key, as in
+    /// `psf.path`.
+    fn paths(&mut self) -> Vec<(&'static str, &mut String)>;
 }
 
 /// Implements [`ScenarioFile`](crate::run_file::ScenarioFile) for a type with serde's traits, `JsonSchema`, fields `title` and `seed`, and a
@@ -163,7 +177,7 @@ macro_rules! scenario_file {
                 self.seed = seed;
             }
 
-            fn paths(&mut self) -> Vec<&mut String> {
+            fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
                 self.paths()
             }
         }
@@ -173,8 +187,8 @@ macro_rules! scenario_file {
 impl<S> RunFile<S> {
     /// The same run with its scenario in another form.
     pub fn map<T>(self, form: impl FnOnce(S) -> T) -> RunFile<T> {
-        let Self { name, version, catalog_sha256, hash, inject, mitsuba, scenario } = self;
-        RunFile { name, version, catalog_sha256, hash, inject, mitsuba, scenario: form(scenario) }
+        let Self { name, version, catalog_sha256, hash, inject, files, mitsuba, scenario } = self;
+        RunFile { name, version, catalog_sha256, hash, inject, files, mitsuba, scenario: form(scenario) }
     }
 }
 
@@ -186,6 +200,7 @@ impl<S: ScenarioFile> RunFile<S> {
     pub fn new(
         name: &str,
         scenario: &S,
+        files: FileDigests,
         catalog_sha256: Option<&str>,
         inject: Option<Stage>,
     ) -> Result<Self, Failure> {
@@ -193,11 +208,17 @@ impl<S: ScenarioFile> RunFile<S> {
             name: name.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             catalog_sha256: catalog_sha256.map(str::to_owned),
-            hash: sha256_hex(scenario.to_toml()?),
+            hash: sha256_hex(with_contents(scenario, &files).to_toml()?),
             inject,
+            files,
             mitsuba: None,
             scenario: scenario.clone(),
         })
+    }
+
+    /// The scenario with the content of every file in the place of its path: equal for runs of the same files, wherever they lie.
+    pub fn identity(&self) -> S {
+        with_contents(&self.scenario, &self.files)
     }
 
     /// Writes the file, at once or not at all.
@@ -226,7 +247,7 @@ impl<S: ScenarioFile> RunFile<S> {
                 format!("is `{}`, expected a version of Boresight, {version} or earlier", run_file.version);
             return Err(toml_file::refuse(path, &text, "version", message).into());
         }
-        if sha256_hex(run_file.scenario.to_toml()?) == run_file.hash {
+        if sha256_hex(run_file.identity().to_toml()?) == run_file.hash {
             Ok(run_file)
         } else {
             let message =
@@ -234,6 +255,17 @@ impl<S: ScenarioFile> RunFile<S> {
             Err(toml_file::refuse(path, &text, "hash", message).into())
         }
     }
+}
+
+/// A scenario with the content of every file of `files` in the place of its path.
+fn with_contents<S: ScenarioFile>(scenario: &S, files: &FileDigests) -> S {
+    let mut scenario = scenario.clone();
+    for (role, path) in scenario.paths() {
+        if let Some(sha256) = files.get(role) {
+            *path = content(sha256);
+        }
+    }
+    scenario
 }
 
 /// Whether a version is this one or one before it: what a later one writes may mean something else.

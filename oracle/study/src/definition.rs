@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use contract::bounds;
 use files::sha256::hex;
-use files::{Failure, toml_file};
+use files::{Failure, file_sha256, toml_file};
 use indexmap::IndexMap;
 use run::{AnyScenario, Options, ScenarioSource};
+use scenario::run_file::{FileDigests, content};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use sim::randomness::{Effect, Seed};
@@ -39,6 +40,7 @@ pub struct Study {
     design: Design,
     path: PathBuf,
     text: String,
+    identity: StudyFile,
     hash: String,
 }
 
@@ -90,11 +92,12 @@ impl Study {
         } else {
             beside.to_string_lossy().into_owned()
         };
-        let base = match ScenarioSource::read(&word) {
+        let mut base = match ScenarioSource::read(&word) {
             Err(Failure::Usage(message)) => return Err(refuse("scenario", message)),
             other => other?,
         };
         let base_values = base.scenario.to_json()?;
+        let identity = identity(&file, &folder, &mut base)?;
 
         let mut vary = Vec::new();
         let mut taken: Vec<ValuePath> = Vec::new();
@@ -157,6 +160,7 @@ impl Study {
             design,
             path: path.to_owned(),
             text,
+            identity,
             hash: String::new(),
         };
         study.hash = study.make_hash()?;
@@ -189,9 +193,23 @@ impl Study {
         Ok(())
     }
 
-    /// SHA-256 of all that the rows depend on but the pipeline: the study, its scenario, its tables; hexadecimal.
+    /// SHA-256 of all that the rows depend on but the pipeline: the study, its scenario, the content of the files that they read; hexadecimal.
     pub fn hash(&self) -> &str {
         &self.hash
+    }
+
+    /// The file of the study with the content of every file (`sha256:` and the digits) in the place of its path, and without the path of its
+    /// scenario.
+    pub(super) fn identity(&self) -> &StudyFile {
+        &self.identity
+    }
+
+    /// SHA-256 of the files that its scenario reads, by their roles.
+    ///
+    /// # Errors
+    /// As [`ScenarioSource::files`].
+    pub(super) fn files(&self) -> Result<FileDigests, Failure> {
+        self.base.files()
     }
 
     /// The scenario that the cases begin from.
@@ -345,15 +363,46 @@ impl Study {
 
     fn make_hash(&self) -> Result<String, Failure> {
         let mut hash = Sha256::new();
-        hash.update(serde_json::to_string(&self.file).map_err(unwritable)?);
-        hash.update(serde_json::to_string(&self.base_values).map_err(unwritable)?);
+        hash.update(serde_json::to_string(&self.identity).map_err(unwritable)?);
+        hash.update(serde_json::to_string(&self.base.identity().to_json()?).map_err(unwritable)?);
         hash.update(env!("CARGO_PKG_VERSION"));
-        for varied in &self.vary {
-            if let Drawable::Column(values) = &varied.law {
-                values.iter().for_each(|value| hash.update(value.to_bits().to_le_bytes()));
+        Ok(hex(hash.finalize()))
+    }
+}
+
+/// [`Study::identity`] of a file. Files that its values name are noted in `base`, so that a case refuses one that changed.
+fn identity(file: &StudyFile, folder: &Path, base: &mut ScenarioSource) -> Result<StudyFile, Failure> {
+    let mut identity = file.clone();
+    if scenario::BUILT_IN.iter().all(|built_in| built_in.name != file.scenario) {
+        identity.scenario.clear();
+    }
+    for dispersion in &mut identity.vary {
+        match &mut dispersion.law {
+            Law::Table { path, .. } => {
+                if let Some(sha256) = file_sha256(&folder.join(&*path))? {
+                    *path = content(&sha256);
+                }
+            }
+            Law::Choice { values, .. } => values.iter_mut().for_each(|value| replace_paths(value, base)),
+            _ => {}
+        }
+    }
+    let swept = identity.sweep.iter_mut().flat_map(|sweep| &mut sweep.values);
+    swept.for_each(|value| replace_paths(value, base));
+    Ok(identity)
+}
+
+/// Puts the content of a file in the place of every text that is the path of one, as the scenario would read it.
+fn replace_paths(value: &mut Value, base: &mut ScenarioSource) {
+    match value {
+        Value::String(text) => {
+            if let Some(sha256) = base.note_file(text) {
+                *text = content(sha256);
             }
         }
-        Ok(hex(hash.finalize()))
+        Value::Array(values) => values.iter_mut().for_each(|value| replace_paths(value, base)),
+        Value::Object(members) => members.values_mut().for_each(|value| replace_paths(value, base)),
+        Value::Null | Value::Bool(_) | Value::Number(_) => {}
     }
 }
 

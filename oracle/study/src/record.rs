@@ -2,6 +2,7 @@
 use std::path::Path;
 
 use files::{Failure, FileError};
+use scenario::run_file::FileDigests;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use toml::Table;
@@ -20,8 +21,12 @@ pub struct StudyRecord {
     pub seed: u64,
     /// Version of Boresight.
     pub version: String,
-    /// What its rows depend on of its file: design, laws, sweeps, frames, number of cases.
+    /// What its rows depend on of its file: design, laws, sweeps, frames, number of cases; `sha256:` and the digits in the place of the path
+    /// of a file.
     pub study: Table,
+    /// The files that the scenario reads: SHA-256 by role.
+    #[serde(default, skip_serializing_if = "FileDigests::is_empty")]
+    pub files: FileDigests,
     /// The scenario that its cases begin from, with all defaults.
     pub scenario: Table,
 }
@@ -32,7 +37,7 @@ impl StudyRecord {
     /// # Errors
     /// [`Failure::Usage`] when the study cannot be written.
     pub fn new(study: &Study) -> Result<Self, Failure> {
-        let file = serde_json::to_value(&study.file).map_err(unwritable)?;
+        let file = serde_json::to_value(study.identity()).map_err(unwritable)?;
         let mut definition = table(file)?;
         for key in ["title", "seed", "scenario", "record"] {
             definition.remove(key);
@@ -43,6 +48,7 @@ impl StudyRecord {
             seed: study.file.seed,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             study: definition,
+            files: study.files()?,
             scenario: table(study.scenario().to_json()?)?,
         })
     }

@@ -8,6 +8,9 @@ use run::{AnyFactory, AnyScenario, AnyWorld};
 
 use super::definition::Study;
 
+/// Digits of a study's hash in the line that replays a case.
+const SHORT_HASH: usize = 12;
+
 /// The pipeline that a study tries, built anew for every case: one that a command line can name ([`PipelineChoice`]), or one of the
 /// caller's own, alive in this process. Cases ask it from several threads at once.
 pub trait StudyPipeline: Sync {
@@ -54,6 +57,8 @@ impl StudyPipeline for PipelineChoice {
         let mut words = ["boresight", "study", "replay"].map(str::to_owned).to_vec();
         words.push(path.display().to_string());
         words.extend(["--case".to_owned(), case.to_string()]);
+        let hash: String = study.hash_with(self).chars().take(SHORT_HASH).collect();
+        words.extend(["--hash".to_owned(), hash]);
         let world = study.scenario().world();
         words.extend(self.arguments(world.code()));
         words.extend(["--save-frames", world.pictures()].map(str::to_owned));

@@ -10,6 +10,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 use super::super::FileError;
 use super::super::csv_table::{CsvLine, CsvReader, CsvRow, CsvWriter};
 use super::super::field::Atom;
+use super::super::origin;
 use super::super::table::{optional, table};
 use super::covariance::{self, CELLS};
 use super::pose::{self, POSE};
@@ -135,7 +136,7 @@ pub fn outcome_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
 /// # Errors
 /// A [`FileError`] that names line and column of the first cell that is not as it should be.
 pub fn read_field_measurements(path: &Path) -> Result<Vec<(u64, DockingOutcome)>, FileError> {
-    let table = CsvReader::open::<FieldMeasurementLine>(path)?;
+    let table = CsvReader::open_with::<FieldMeasurementLine>(path, &origin::COLUMNS)?;
     table.read_rows(|row, previous: Option<&(u64, DockingOutcome)>| {
         let field = row.cell("field")?;
         row.check_ascends("field", field, previous.map(|(field, _)| *field))?;

@@ -40,7 +40,7 @@ impl InjectedRun {
         let Some(stage) = run_file.inject else {
             return refuse("`inject` is missing, expected a run with --inject STAGE");
         };
-        let (own, mut scenario) = (honest, run_file.scenario);
+        let (own, mut scenario) = (honest, run_file.identity());
         if stage == Stage::Roi {
             scenario.roi.clone_from(&own.scenario.roi);
         }
@@ -49,7 +49,7 @@ impl InjectedRun {
                 "--budget is given, expected with the report of an honest run alone".to_owned(),
             ));
         }
-        if scenario != own.scenario {
+        if scenario != own.identity() || run_file.catalog_sha256 != own.catalog_sha256 {
             return refuse("`scenario` is another one, expected that of the honest run");
         }
         let score: Score = read_json(&directory.join("score.json"), "score")?;

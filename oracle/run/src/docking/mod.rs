@@ -159,16 +159,13 @@ impl World for PreparedDocking {
         Ok(OpenDataset { setup, config: file.docking, count: None, images })
     }
 
-    fn known_of_frames(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
+    fn telemetry_rows(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
         for FieldRow { field, lines, mut telemetry, .. } in
             read_field_telemetry(&directory.join("telemetry.csv"))?
         {
             // What the pipeline asked of the digitiser is its own doing.
             telemetry.digitiser = Digitiser::default();
             add(&(field, lines, telemetry));
-        }
-        for field in TableReader::<FieldTruth>::open(&directory.join(Self::TRUTH_FILE))? {
-            field?.1.iter().for_each(|truth| add(truth));
         }
         Ok(())
     }

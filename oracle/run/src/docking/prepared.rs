@@ -26,7 +26,7 @@ impl PreparedDocking {
     pub fn new(source: &ScenarioSource, renderer: DockingRenderer) -> Result<Self, Failure> {
         let scenario = source.typed::<DockingScenario>("docking")?;
         let simulator = simulator(source, scenario)?;
-        let mut run_file = RunFile::new(&source.name, scenario, None, None)?;
+        let mut run_file = RunFile::new(&source.name, scenario, source.files()?, None, None)?;
         run_file.mitsuba = renderer.record().cloned();
         Ok(Self { setup: simulator.setup(), simulator, renderer, run_file })
     }

@@ -140,14 +140,11 @@ impl World for Prepared {
         Ok(OpenDataset { setup, config, count, images: Box::new(images) })
     }
 
-    fn known_of_frames(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
+    fn telemetry_rows(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
         for TelemetryRow { frame, telemetry, windows, .. } in
             read_telemetry(&directory.join("telemetry.csv"))?
         {
             add(&(frame, telemetry, windows));
-        }
-        for frame in TableReader::<FrameTruth>::open(&directory.join(Self::TRUTH_FILE))? {
-            frame?.1.iter().for_each(|truth| add(truth));
         }
         Ok(())
     }

@@ -51,7 +51,13 @@ impl Prepared {
             )));
         }
         let simulator = simulator(source, &scenario)?;
-        let run_file = RunFile::new(&source.name, &scenario, Some(simulator.catalog().sha256()), inject)?;
+        let run_file = RunFile::new(
+            &source.name,
+            &scenario,
+            source.files()?,
+            Some(simulator.catalog().sha256()),
+            inject,
+        )?;
         let (_, star_epoch) = simulator
             .schedule()
             .frame(0)
