@@ -67,7 +67,7 @@ fn address() -> SocketAddr {
 #[expect(clippy::expect_used, reason = "built in, and no input")]
 fn docking() -> Feed {
     let source = ScenarioSource::read("docking").expect("a built-in scenario");
-    let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 2048 };
+    let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 2048, sandbox: None };
     let prepared = source.prepare(Options::default()).expect("a built-in scenario");
     let factory = prepared.factory(&choice, Path::new("")).expect("the built-in pipeline");
     let measurements = Measurements::Live { factory, frames: 24000..24002, jobs: 1 };

@@ -185,7 +185,7 @@ pub(crate) fn run(
         }
         word => {
             let word = word.map(|word| word.extract()).transpose()?;
-            Asked::Word(PipelineChoice { word, timeout_s, memory_mb: DEFAULT_MEMORY_MB })
+            Asked::Word(PipelineChoice { word, timeout_s, memory_mb: DEFAULT_MEMORY_MB, sandbox: None })
         }
     };
     let run = || {

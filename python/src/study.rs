@@ -89,6 +89,7 @@ pub(crate) fn study(
             word: word.map(|word| word.extract()).transpose()?,
             timeout_s,
             memory_mb: DEFAULT_MEMORY_MB,
+            sandbox: None,
         }),
     };
     let temporary = |error: std::io::Error| {

@@ -135,7 +135,7 @@ fn process_dataset(
     let processed = world.process(&ProcessingOrder {
         directory: path,
         measurements: &measurements,
-        choice: &arguments.pipeline.choice(),
+        choice: &arguments.pipeline.choice(&[path]),
         scratch: scratch.path(),
         begin: &|name, count| {
             progress.get_or_init(|| {
@@ -261,7 +261,7 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
         }
     };
     let scratch = super::scratch_directory()?;
-    let factory = arguments.pipeline.choice().factory::<PreparedDocking>(&config, scratch.path())?;
+    let factory = arguments.pipeline.choice(&[path]).factory::<PreparedDocking>(&config, scratch.path())?;
     let fields = FieldSource::open(path, &setup, &sequence.options())?;
     let of_setup = setup_file.as_deref().filter(|_| sequence.scenario.is_none()).and_then(Path::parent);
     for folder in [of_setup, Some(path.as_path()).filter(|path| path.is_dir())].into_iter().flatten() {

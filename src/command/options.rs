@@ -1,12 +1,12 @@
 //! Arguments that several commands share.
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use files::Failure;
-use pipeline::external::DEFAULT_MEMORY_MB;
+use pipeline::external::{DEFAULT_MEMORY_MB, Sandbox};
 use run::ScenarioSource;
 use run::docking::renderer::DockingRenderer;
 use run::pipeline_choice::PipelineChoice;
@@ -59,21 +59,44 @@ pub(super) struct PipelineOptions {
     /// Most memory of an `exec:` pipeline, and of each process that it starts, MB; heeded on Linux
     #[arg(long, value_name = "MB", default_value_t = DEFAULT_MEMORY_MB)]
     pub(super) memory_mb: u64,
+    /// Let an `exec:` pipeline read the system, the files beside it and its frames, write temporary files, and nothing else: no truth, no
+    /// scenario, no run, no network. Refused where the kernel has no Landlock
+    #[arg(long)]
+    pub(super) sandbox: bool,
+    /// A file or folder that an `exec:` pipeline may read in its sandbox as well; may be given for several
+    #[arg(long, value_name = "PATH", requires = "sandbox")]
+    pub(super) sandbox_read: Vec<PathBuf>,
 }
 
 impl PipelineOptions {
-    /// The pipeline asked for. If it is a program, it is ended with this process from now on, when that is asked to end.
-    pub(super) fn choice(&self) -> PipelineChoice {
+    /// The pipeline asked for. If it is a program, it is ended with this process from now on, when that is asked to end. A sandbox hides
+    /// `hidden` from it, though its own files may lie beside them.
+    pub(super) fn choice(&self, hidden: &[&Path]) -> PipelineChoice {
         if self.pipeline.as_deref().is_some_and(|word| word.starts_with("exec:")) {
             clean_up_when_interrupted();
         }
-        PipelineChoice { word: self.pipeline.clone(), timeout_s: self.timeout_s, memory_mb: self.memory_mb }
+        let sandbox = self.sandbox.then(|| Sandbox {
+            readable: self.sandbox_read.clone(),
+            hidden: hidden.iter().map(|path| path.to_path_buf()).collect(),
+        });
+        PipelineChoice {
+            word: self.pipeline.clone(),
+            timeout_s: self.timeout_s,
+            memory_mb: self.memory_mb,
+            sandbox,
+        }
     }
 }
 
 impl Default for PipelineOptions {
     fn default() -> Self {
-        Self { pipeline: None, timeout_s: 10.0, memory_mb: DEFAULT_MEMORY_MB }
+        Self {
+            pipeline: None,
+            timeout_s: 10.0,
+            memory_mb: DEFAULT_MEMORY_MB,
+            sandbox: false,
+            sandbox_read: Vec::new(),
+        }
     }
 }
 

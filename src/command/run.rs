@@ -54,7 +54,9 @@ impl RunArguments {
 
 pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     let source = arguments.selection.scenario()?;
-    let (world, choice) = (source.world(), arguments.pipeline.choice());
+    let out = arguments.out.as_deref().unwrap_or(Path::new(RUNS));
+    let hidden = [Path::new(&arguments.selection.scenario), Path::new(RUNS), out];
+    let (world, choice) = (source.world(), arguments.pipeline.choice(&hidden));
     if let Some(word) = &arguments.save_frames {
         world.check_images(word).map_err(|error| Failure::Usage(format!("--save-frames: {error}")))?;
     }

@@ -51,7 +51,9 @@ pub(super) enum ScenarioCommand {
 pub(super) fn scenario(command: &ScenarioCommand, output: &Output) -> Result<Answer, Failure> {
     match command {
         ScenarioCommand::List => list(output),
-        ScenarioCommand::Check { scenario, pipeline } => return check(scenario, &pipeline.choice(), output),
+        ScenarioCommand::Check { scenario, pipeline } => {
+            return check(scenario, &pipeline.choice(&[]), output);
+        }
         ScenarioCommand::Camera { name: None } => {
             let names: Vec<_> = CAMERAS.iter().map(|camera| camera.name).collect();
             output.answer(&names, names.join("\n"))

@@ -169,7 +169,7 @@ pub(super) fn study(command: &StudyCommand, output: &Output) -> Result<Answer, F
 
 fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
-    let choice = arguments.pipeline.choice();
+    let choice = arguments.pipeline.choice(&[&study.scenario_file(), &arguments.study, &arguments.out]);
     if arguments.shard.is_some() && study.file.stop.until.is_some() {
         return Err(Failure::Usage(format!(
             "--shard is given, expected with a study of a fixed number of cases: `{}` stops by a figure (stop.until), which no shard \
@@ -290,7 +290,7 @@ struct Piece {
 fn plan(arguments: &PlanArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
     refuse_until(&study)?;
-    let choice = arguments.pipeline.choice();
+    let choice = arguments.pipeline.choice(&[]);
     check_pipeline(&choice, &study)?;
     let plan = Plan::new(&study, study.hash_with(&choice), arguments.shards)?;
     let planned = planned(&study, &plan, &arguments.study, &choice)?;
@@ -353,7 +353,7 @@ fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> 
 
 fn merge(arguments: &MergeArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
-    let choice = arguments.pipeline.choice();
+    let choice = arguments.pipeline.choice(&[]);
     let campaign = Campaign::reopen(&study, &choice, &arguments.out)?;
     finish(&campaign, &arguments.study, &campaign.merge()?, output)
 }
@@ -368,7 +368,10 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
             study.cases() - 1
         )));
     }
-    let hash = study.hash_with(&arguments.pipeline.choice());
+    let runs = Path::new(super::run::RUNS);
+    let out = arguments.out.as_deref().unwrap_or(runs);
+    let choice = arguments.pipeline.choice(&[&study.scenario_file(), &arguments.study, runs, out]);
+    let hash = study.hash_with(&choice);
     if let Some(expected) = arguments.hash.as_ref().filter(|expected| !hash.starts_with(*expected)) {
         return Err(Failure::Usage(format!(
             "--hash is {expected}, the study's is {hash}: expected the same, as the case is not the one of the rows (the study, a file that it \
@@ -383,7 +386,7 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
     let scratch = super::scratch_directory()?;
     let name = format!("{}-case-{}", study.name, case.number);
     let prepared = case.source.prepare(Options::default())?;
-    let factory = prepared.factory(&arguments.pipeline.choice(), scratch.path())?;
+    let factory = prepared.factory(&choice, scratch.path())?;
     let flight = Flight {
         frames: study.frames(prepared.frame_count())?,
         jobs: default_jobs(),
@@ -401,7 +404,7 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
 
 fn check(arguments: &CheckArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
-    check_pipeline(&arguments.pipeline.choice(), &study)?;
+    check_pipeline(&arguments.pipeline.choice(&[]), &study)?;
     let document = serde_json::json!({
         "study": study.name, "title": study.file.title, "cases": study.cases(), "hash": study.hash(),
         "parameters": study.drawn_columns().keys().collect::<Vec<_>>(), "figures": study.figures(),

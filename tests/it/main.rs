@@ -40,6 +40,8 @@ mod real_images;
 mod report;
 mod round_trip;
 mod run;
+#[cfg(target_os = "linux")]
+mod sandbox;
 mod scenarios;
 mod shell;
 mod show;

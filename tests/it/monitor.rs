@@ -110,7 +110,7 @@ impl Answer {
 /// A run of a built-in scenario by its built-in pipeline.
 fn live(name: &str, frames: std::ops::Range<u64>) -> Feed {
     let source = ScenarioSource::read(name).unwrap();
-    let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 4000 };
+    let choice = PipelineChoice { word: None, timeout_s: 1.0, memory_mb: 4000, sandbox: None };
     let scratch = std::env::temp_dir();
     let prepared = source.prepare(Options::default()).unwrap();
     let factory = prepared.factory(&choice, &scratch).unwrap();

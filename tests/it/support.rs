@@ -1,6 +1,7 @@
 //! What the end-to-end suites share: the command in a directory of its own, what it answers, the truth it writes.
 
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -34,11 +35,18 @@ law = { kind = "whole", min = 0, max = 40 }
 /// An empty directory in which the command runs: relative paths in arguments start there.
 pub(crate) struct Bench {
     directory: TempDir,
+    /// Variables of the environment besides this process's.
+    variables: BTreeMap<&'static str, OsString>,
 }
 
 impl Bench {
     pub(crate) fn new() -> Self {
-        Self { directory: tempdir().unwrap() }
+        Self { directory: tempdir().unwrap(), variables: BTreeMap::new() }
+    }
+
+    /// Sets a variable of the environment of every command from now on.
+    pub(crate) fn set(&mut self, name: &'static str, value: impl Into<OsString>) {
+        self.variables.insert(name, value.into());
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
@@ -85,7 +93,8 @@ impl Bench {
     /// Runs the command with these words.
     pub(crate) fn boresight_words(&self, words: &[&str]) -> Answer {
         let mut command = assert_cmd::cargo::cargo_bin_cmd!("boresight");
-        let output = command.args(words).current_dir(self.directory.path()).timeout(HANGS).output().unwrap();
+        let command = command.args(words).current_dir(self.directory.path()).envs(&self.variables);
+        let output = command.timeout(HANGS).output().unwrap();
         Answer {
             words: words.join(" "),
             status: output.status.code(),

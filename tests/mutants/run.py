@@ -7,6 +7,7 @@ to the modules in question and what they need; a module sees the same code, and 
 
     python3 tests/mutants/run.py                  every group; exit 1 when a mutant survives
     python3 tests/mutants/run.py score sim        some
+    python3 tests/mutants/run.py --shard 0/8      every group, each eighth mutant: a sample in a part of the time
     python3 tests/mutants/run.py --list           the groups and how many mutants they have
 
 Needs cargo-mutants 27 (`cargo install --locked cargo-mutants@27.1.0`). What became of each mutant is in target/mutants/GROUP/mutants.out.
@@ -101,6 +102,7 @@ def run(group: str, tree: Path, arguments: list[str]) -> int:
 def main() -> int:
     parser = argparse.ArgumentParser(description="Mutation testing of score, gate, statistics, astrometry, cameras and attitude.")
     parser.add_argument("groups", nargs="*", metavar="GROUP", help=f"of {', '.join(GROUPS)} (all)")
+    parser.add_argument("--shard", metavar="K/N", help="each N-th mutant, from the K-th on, counted from 0 (all)")
     parser.add_argument("--list", action="store_true", help="only what there is to test")
     options = parser.parse_args()
     for group in options.groups:
@@ -114,7 +116,8 @@ def main() -> int:
         print(f"{group}:", flush=True)
         tree = folder / f"{group}-tree"
         prune(tree, group)
-        if run(group, tree, ["--list"] if options.list else []):
+        part = ["--shard", options.shard, "--sharding", "round-robin"] if options.shard else []
+        if run(group, tree, part + (["--list"] if options.list else [])):
             failed.append(group)
     if failed:
         print(f"mutants survive in: {', '.join(failed)}")

@@ -323,6 +323,7 @@ impl PipelineChoice {
         );
         factory.timeout_s = self.timeout_s;
         factory.memory_mb = self.memory_mb;
+        factory.sandbox.clone_from(&self.sandbox);
         // Now, while nothing has been written for it.
         factory.check()?;
         Ok(Box::new(factory))

@@ -2,6 +2,7 @@
 use std::path::Path;
 
 use files::{Failure, toml_file};
+use pipeline::external::Sandbox;
 use sha2::{Digest, Sha256};
 
 const EXEC: &str = "exec:";
@@ -17,6 +18,8 @@ pub struct PipelineChoice {
     pub timeout_s: f64,
     /// Most memory of a program, and of each process that it starts, MB (10⁶ bytes).
     pub memory_mb: u64,
+    /// What a program may reach of the file system and the network; none: all that this process may.
+    pub sandbox: Option<Sandbox>,
 }
 
 impl PipelineChoice {
@@ -30,9 +33,16 @@ impl PipelineChoice {
         match &self.word {
             Some(word) if !self.is_built_in(world) => {
                 let (timeout_s, memory_mb) = (self.timeout_s.to_string(), self.memory_mb.to_string());
-                ["--pipeline", word, "--timeout-s", &timeout_s, "--memory-mb", &memory_mb]
+                let mut words = ["--pipeline", word, "--timeout-s", &timeout_s, "--memory-mb", &memory_mb]
                     .map(str::to_owned)
-                    .to_vec()
+                    .to_vec();
+                if let Some(sandbox) = &self.sandbox {
+                    words.push("--sandbox".to_owned());
+                    for path in &sandbox.readable {
+                        words.extend(["--sandbox-read".to_owned(), path.display().to_string()]);
+                    }
+                }
+                words
             }
             _ => Vec::new(),
         }
@@ -50,6 +60,9 @@ impl PipelineChoice {
         part(word.as_bytes());
         part(&self.timeout_s.to_bits().to_le_bytes());
         part(&self.memory_mb.to_le_bytes());
+        if self.sandbox.is_some() {
+            part(b"sandbox");
+        }
         for file in shlex::split(word.strip_prefix(EXEC).unwrap_or(word)).into_iter().flatten() {
             // A word that names no file is a program of the search path, or an option.
             if let Ok(bytes) = sim::regular_file::read(Path::new(&file), MOST_BYTES) {

@@ -212,6 +212,11 @@ impl Study {
         self.base.files()
     }
 
+    /// The file of its scenario, as far as it has one.
+    pub fn scenario_file(&self) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(&self.file.scenario)
+    }
+
     /// The scenario that the cases begin from.
     pub fn scenario(&self) -> &dyn AnyScenario {
         self.base.scenario.as_ref()

@@ -17,9 +17,11 @@ mod exchange;
 mod group;
 mod process;
 pub mod protocol;
+mod sandbox;
 
 pub use exchange::{Protocol, WriteTime};
 pub use group::end_all;
+pub use sandbox::Sandbox;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -49,6 +51,8 @@ pub struct ExternalFactory<I: Protocol> {
     pub timeout_s: f64,
     /// Most memory of the process, and of each one that it starts, MB (10⁶ bytes), 1 to 1e6. Heeded on Linux alone.
     pub memory_mb: u64,
+    /// What the process may reach of the file system and the network; none: all that this process may.
+    pub sandbox: Option<Sandbox>,
     /// An existing directory for images; each is removed after its answer.
     pub scratch_dir: PathBuf,
     /// Writes an image.
@@ -67,20 +71,24 @@ impl<I: Protocol> ExternalFactory<I> {
     ) -> Self {
         let command = command.into();
         let (start_timeout_s, timeout_s, memory_mb) = (30.0, 10.0, DEFAULT_MEMORY_MB);
-        Self { command, start_timeout_s, timeout_s, memory_mb, scratch_dir, write_image, write_time }
+        let sandbox = None;
+        Self { command, start_timeout_s, timeout_s, memory_mb, sandbox, scratch_dir, write_image, write_time }
     }
 
     /// Checks the command and the limits, before anything is started.
     ///
     /// # Errors
-    /// [`ContractError::CannotBuild`] for a command that is empty or ends inside a quotation, a program that is not there, or a limit
-    /// outside its range.
+    /// [`ContractError::CannotBuild`] for a command that is empty or ends inside a quotation, a program that is not there, a limit
+    /// outside its range, or a sandbox that the system does not have.
     pub fn check(&self) -> Result<(), ContractError> {
-        self.plan()?.check_program()
+        self.plan()?.check_program()?;
+        let cannot_build = |reason| ContractError::CannotBuild { pipeline: name(&self.command), reason };
+        self.sandbox.as_ref().map_or(Ok(()), |_| Sandbox::check().map_err(cannot_build))
     }
 
     fn plan(&self) -> Result<Plan, ContractError> {
-        Plan::new(&self.command, self.start_timeout_s, self.timeout_s, self.memory_mb)
+        let plan = Plan::new(&self.command, self.start_timeout_s, self.timeout_s, self.memory_mb)?;
+        Ok(Plan { sandbox: self.sandbox.clone().map(|sandbox| (sandbox, self.scratch_dir.clone())), ..plan })
     }
 }
 
@@ -91,6 +99,7 @@ impl<I: Protocol> fmt::Debug for ExternalFactory<I> {
             .field("start_timeout_s", &self.start_timeout_s)
             .field("timeout_s", &self.timeout_s)
             .field("memory_mb", &self.memory_mb)
+            .field("sandbox", &self.sandbox)
             .field("scratch_dir", &self.scratch_dir)
             .finish_non_exhaustive()
     }
@@ -103,6 +112,8 @@ struct Plan {
     start_limit: Duration,
     frame_limit: Duration,
     memory_bytes: u64,
+    /// With the folder of the images.
+    sandbox: Option<(Sandbox, PathBuf)>,
 }
 
 impl Plan {
@@ -133,6 +144,7 @@ impl Plan {
             start_limit: limit("start_timeout_s", start_timeout_s)?,
             frame_limit: limit("timeout_s", timeout_s)?,
             memory_bytes: memory_mb * 1_000_000,
+            sandbox: None,
         })
     }
 
@@ -161,8 +173,9 @@ impl Plan {
     }
 
     fn greeted(&self, greeting: Result<Vec<u8>, String>) -> Result<Process, String> {
-        let mut process = Process::start(&self.program, &self.arguments, self.memory_bytes)
-            .map_err(|error| format!("`{}` does not start: {error}", self.program))?;
+        let mut process =
+            Process::start(&self.program, &self.arguments, self.memory_bytes, self.sandbox.as_ref())
+                .map_err(|error| format!("`{}` does not start: {error}", self.program))?;
         let greeted = greeting
             .map_err(Fault::Broken)
             .and_then(|line| process.exchange(line, self.start_limit))

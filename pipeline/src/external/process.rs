@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Read, Write};
+use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use super::group;
 use super::protocol::{MAX_LINE_BYTES, harmless};
+use super::sandbox::Sandbox;
 
 /// A running child. Three threads of its own move its lines, so that no pipe, full or empty, can stop the caller for
 /// longer than a limit.
@@ -40,6 +42,9 @@ pub(super) enum Fault {
     Closed(&'static str),
 }
 
+/// Beginning of the variables of the environment that are this program's own.
+const OWN_VARIABLES: &str = "BORESIGHT_";
+
 /// Unread lines kept at most: a child that floods its output is stopped by its full pipe.
 const UNREAD_LINES: usize = 4;
 
@@ -50,14 +55,28 @@ const GRACE: Duration = Duration::from_millis(300);
 const POLL: Duration = Duration::from_millis(2);
 
 impl Process {
-    /// Starts a program, whose memory is limited to so many bytes.
+    /// Starts a program, whose memory is limited to so many bytes; in a sandbox with the folder of the images, if there is one.
     ///
     /// # Errors
     /// That of the operating system, when it cannot be started or limited.
-    pub(super) fn start(program: &str, arguments: &[String], memory_bytes: u64) -> std::io::Result<Self> {
+    pub(super) fn start(
+        program: &str,
+        arguments: &[String],
+        memory_bytes: u64,
+        sandbox: Option<&(Sandbox, PathBuf)>,
+    ) -> std::io::Result<Self> {
         let mut command = Command::new(program);
         command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = group::spawn(&mut command)?;
+        for (name, _) in std::env::vars_os() {
+            // Ours may name scenarios, runs and caches.
+            if name.to_string_lossy().starts_with(OWN_VARIABLES) {
+                command.env_remove(name);
+            }
+        }
+        let mut child = match sandbox {
+            Some((sandbox, scratch)) => sandbox.spawn(&mut command, scratch, group::spawn)?,
+            None => group::spawn(&mut command)?,
+        };
         match group::limit_memory(&child, memory_bytes).and_then(|()| Pipes::connect(&mut child)) {
             Ok(Pipes { requests, events, errors, errors_reader }) => {
                 Ok(Self { child, requests: Some(requests), events, errors, errors_reader })

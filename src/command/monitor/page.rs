@@ -79,7 +79,8 @@ fn live(arguments: &MonitorArguments, scratch: &Path) -> Result<(String, Feed), 
     let source = arguments.selection.scenario()?;
     let prepared = source.prepare(Options::default())?;
     let (frames, jobs) = (arguments.frames(prepared.frame_count())?, arguments.selection.jobs());
-    let factory = prepared.factory(&arguments.pipeline.choice(), scratch)?;
+    let factory =
+        prepared.factory(&arguments.pipeline.choice(&[Path::new(&arguments.selection.scenario)]), scratch)?;
     Ok((source.name, Feed::new(prepared, Measurements::Live { factory, frames, jobs })?))
 }
 

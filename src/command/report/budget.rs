@@ -61,7 +61,7 @@ fn fly(
     clean_up_when_interrupted();
     let scratch = ScratchDirectory::create(folder)?;
     let prepared = source.prepare(Options { inject: Some(stage), ..Options::default() })?;
-    let choice = PipelineChoice { word: None, timeout_s: 0.0, memory_mb: 0 };
+    let choice = PipelineChoice { word: None, timeout_s: 0.0, memory_mb: 0, sandbox: None };
     let factory = prepared.factory(&choice, scratch.path())?;
     let flown = RunDirectory::create(&scratch.path().join("run"))?;
     let progress = output.progress(frames.end - frames.start, &format!("{}, true {stage}", source.name));

@@ -144,7 +144,7 @@ fn a_shard_with_any_bit_flipped_is_no_shard() {
     );
     bench.boresight("study run study.toml --out study --shards 1 --no-report").done();
     let study = Study::read(&bench.path("study.toml")).unwrap();
-    let choice = PipelineChoice { word: None, timeout_s: 10.0, memory_mb: 4000 };
+    let choice = PipelineChoice { word: None, timeout_s: 10.0, memory_mb: 4000, sandbox: None };
     let plan = Plan::new(&study, study.hash_with(&choice), Some(1)).unwrap();
     let store = ShardStore::open(&bench.path("study"), plan).unwrap();
     let empty = study.table();

@@ -11,7 +11,8 @@ use contract::docking::{Docking, DockingOutcome, DockingSetup, DockingSolution, 
 use contract::{Pipeline, PipelineFactory};
 use rayon::prelude::*;
 
-const PIPELINE: PipelineChoice = PipelineChoice { word: None, timeout_s: 10.0, memory_mb: 4000 };
+const PIPELINE: PipelineChoice =
+    PipelineChoice { word: None, timeout_s: 10.0, memory_mb: 4000, sandbox: None };
 
 /// The scenario of a gate of the project.
 fn source(name: &str, seed: u64) -> ScenarioSource {

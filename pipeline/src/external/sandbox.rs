@@ -1,0 +1,233 @@
+//! What an external pipeline may reach: its frames, its own files, the system; not the truth.
+//!
+//! The kernel enforces it (Landlock, Linux 5.13 and later) for the process and all that it starts.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command};
+
+/// Refuses a program all files but its own and the system's.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Sandbox {
+    /// Files and folders that it may read besides.
+    pub readable: Vec<PathBuf>,
+    /// Files and folders that it may not read although its own files lie beside them: scenarios, results.
+    pub hidden: Vec<PathBuf>,
+}
+
+/// Folders of the system: programs, libraries, their settings and what describes the machine.
+#[cfg(target_os = "linux")]
+const SYSTEM: [&str; 14] = [
+    "/usr",
+    "/bin",
+    "/sbin",
+    "/lib",
+    "/lib32",
+    "/lib64",
+    "/libx32",
+    "/etc",
+    "/opt",
+    "/nix",
+    "/sys",
+    "/proc/sys",
+    "/proc/cpuinfo",
+    "/proc/meminfo",
+];
+
+/// Devices that hold nothing, and those that compute.
+#[cfg(target_os = "linux")]
+const DEVICES: [&str; 8] = [
+    "/dev/null",
+    "/dev/zero",
+    "/dev/full",
+    "/dev/random",
+    "/dev/urandom",
+    "/dev/shm",
+    "/dev/dri",
+    "/dev/kfd",
+];
+
+/// Last part of the path of a folder of programs; what they need lies beside it.
+#[cfg(target_os = "linux")]
+const PROGRAMS: [&str; 4] = ["bin", "sbin", "shims", "scripts"];
+
+/// The file that says that a folder holds a run.
+#[cfg(target_os = "linux")]
+const RUN_FILE: &str = "run.toml";
+
+#[cfg(target_os = "linux")]
+mod landlocked {
+    use landlock::{
+        ABI, Access, AccessFs, AccessNet, CompatLevel, Compatible, LandlockStatus, PathBeneath, PathFd,
+        Ruleset, RulesetAttr, RulesetCreated, RulesetCreatedAttr, Scope,
+    };
+
+    use super::*;
+
+    impl Sandbox {
+        /// Whether the kernel can enforce it.
+        ///
+        /// # Errors
+        /// What is missing.
+        pub fn check() -> Result<(), String> {
+            rules().map(drop)
+        }
+
+        /// Starts a command in it. Images lie in `scratch`, where the command has a folder of its own for temporary files.
+        ///
+        /// # Errors
+        /// That of the operating system, when it cannot be started or restricted.
+        pub(in super::super) fn spawn(
+            &self,
+            command: &mut Command,
+            scratch: &Path,
+            spawn: impl FnOnce(&mut Command) -> std::io::Result<Child> + Send,
+        ) -> std::io::Result<Child> {
+            let temporary = scratch.join("tmp");
+            std::fs::create_dir_all(&temporary)?;
+            command.env("TMPDIR", &temporary);
+            let readable = self.grants(command, scratch);
+            // A restriction holds for a thread and what it starts, for good.
+            let restricted = || {
+                let mut rules = rules().map_err(std::io::Error::other)?;
+                for path in &readable.whole {
+                    rules = allow(rules, path, AccessFs::from_read(NEWEST))?;
+                }
+                // An interpreter lists the folder of a program to find its modules.
+                for path in &readable.listed {
+                    rules = allow(rules, path, AccessFs::ReadDir.into())?;
+                }
+                for path in DEVICES.map(Path::new).into_iter().chain([temporary.as_path()]) {
+                    rules = allow(rules, path, AccessFs::from_all(NEWEST))?;
+                }
+                let status = rules.restrict_self().map_err(std::io::Error::other)?;
+                match status.landlock {
+                    LandlockStatus::Available { .. } => spawn(command),
+                    _ => Err(std::io::Error::other(MISSING)),
+                }
+            };
+            let ended = || Err(std::io::Error::other("the thread that starts it ended"));
+            std::thread::scope(|scope| scope.spawn(restricted).join()).unwrap_or_else(|_| ended())
+        }
+
+        /// All that the command may read.
+        fn grants(&self, command: &Command, scratch: &Path) -> Readable {
+            let mut grants =
+                Readable { whole: SYSTEM.iter().map(PathBuf::from).collect(), listed: Vec::new() };
+            grants.whole.push(scratch.to_owned());
+            grants.whole.extend(self.readable.iter().cloned());
+            let search_path = std::env::var_os("PATH").unwrap_or_default();
+            let folders = std::env::split_paths(&search_path).filter(|path| path.is_absolute());
+            grants.whole.extend(folders.map(|path| prefix(&path)));
+            let program = which::which(command.get_program()).into_iter().flat_map(|program| {
+                let resolved = program.canonicalize().ok();
+                [Some(program), resolved].into_iter().flatten()
+            });
+            grants.whole.extend(program.filter_map(|program| Some(prefix(program.parent()?))));
+            for word in std::iter::once(command.get_program()).chain(command.get_args()) {
+                let path = Path::new(word);
+                match path.parent() {
+                    _ if path.is_dir() => self.grant_folder(path, &mut grants),
+                    Some(parent) if path.is_file() => {
+                        self.grant_folder(
+                            if parent == Path::new("") { Path::new(".") } else { parent },
+                            &mut grants,
+                        );
+                    }
+                    _ => {}
+                }
+            }
+            grants
+        }
+
+        /// Grants what lies in a folder, but for runs and what is hidden.
+        fn grant_folder(&self, folder: &Path, grants: &mut Readable) {
+            grants.listed.push(folder.to_owned());
+            let canonical = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+            let hidden: Vec<PathBuf> = self.hidden.iter().map(|path| canonical(path)).collect();
+            for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+                let path = canonical(&entry.path());
+                let holds_hidden = hidden.iter().any(|hidden| hidden.starts_with(&path));
+                let holds_run = path.join(RUN_FILE).exists()
+                    || std::fs::read_dir(&path).is_ok_and(|mut inner| {
+                        inner.any(|entry| entry.is_ok_and(|entry| entry.path().join(RUN_FILE).exists()))
+                    });
+                if !(holds_hidden || holds_run || path.ends_with(RUN_FILE)) {
+                    grants.whole.push(path);
+                }
+            }
+        }
+    }
+
+    /// What a command may read.
+    struct Readable {
+        /// With all that lies in them.
+        whole: Vec<PathBuf>,
+        /// Their names, and those in folders below.
+        listed: Vec<PathBuf>,
+    }
+
+    /// Newest rights that are known; a kernel that does not know them all enforces those that it knows.
+    const NEWEST: ABI = ABI::V6;
+    /// Oldest rights without which nothing is started.
+    const OLDEST: ABI = ABI::V1;
+    const MISSING: &str =
+        "the kernel has no Landlock (Linux 5.13 and later, switched on), expected it for a sandbox";
+
+    /// Nothing allowed yet: no file, no TCP, no signal to other processes.
+    fn rules() -> Result<RulesetCreated, String> {
+        let missing = |_| MISSING.to_owned();
+        Ruleset::default()
+            .set_compatibility(CompatLevel::HardRequirement)
+            .handle_access(AccessFs::from_all(OLDEST))
+            .map_err(missing)?
+            .set_compatibility(CompatLevel::BestEffort)
+            .handle_access(AccessFs::from_all(NEWEST))
+            .and_then(|rules| rules.handle_access(AccessNet::from_all(NEWEST)))
+            .and_then(|rules| rules.scope(Scope::from_all(NEWEST)))
+            .and_then(Ruleset::create)
+            .map_err(missing)
+    }
+
+    /// Allows a path that is there.
+    fn allow(
+        rules: RulesetCreated,
+        path: &Path,
+        access: landlock::BitFlags<AccessFs>,
+    ) -> std::io::Result<RulesetCreated> {
+        let Ok(place) = PathFd::new(path) else { return Ok(rules) };
+        let access = if path.is_dir() { access } else { access & AccessFs::from_file(NEWEST) };
+        rules.add_rule(PathBeneath::new(place, access)).map_err(std::io::Error::other)
+    }
+
+    /// What the programs of a folder need: its parent where the folder is called as those of programs are, unless that is a home or the root.
+    fn prefix(programs: &Path) -> PathBuf {
+        let is_of_programs = PROGRAMS.iter().any(|name| programs.ends_with(name));
+        let home = std::env::home_dir();
+        match programs.parent() {
+            Some(parent) if is_of_programs && parent != Path::new("/") && Some(parent) != home.as_deref() => {
+                parent.to_owned()
+            }
+            _ => programs.to_owned(),
+        }
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+impl Sandbox {
+    /// Whether the kernel can enforce it.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn check() -> Result<(), String> {
+        Err("this system has no Landlock, expected Linux 5.13 or later for a sandbox".to_owned())
+    }
+
+    pub(super) fn spawn(
+        &self,
+        _command: &mut Command,
+        _scratch: &Path,
+        _spawn: impl FnOnce(&mut Command) -> std::io::Result<Child> + Send,
+    ) -> std::io::Result<Child> {
+        Err(std::io::ErrorKind::Unsupported.into())
+    }
+}

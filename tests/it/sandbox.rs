@@ -1,0 +1,99 @@
+//! `--sandbox`: a program finds its frames and its own files, and no truth, wherever it looks.
+
+use crate::support::Bench;
+
+/// Answers every frame with what it could reach; the image and a module beside it are read in any case.
+const CURIOUS: &str = r#"
+import json, os, pathlib, socket, sys, tempfile
+import beside
+
+json.loads(sys.stdin.readline())
+print(json.dumps({"boresight_pipeline": 1, "name": "curious"}), flush=True)
+
+def attempts(image):
+    parent = f"/proc/{os.getppid()}"
+    yield "truth", lambda: any(path.read_bytes() for path in pathlib.Path("out").rglob("run.toml"))
+    yield "earlier truth", lambda: any(path.read_bytes() for path in pathlib.Path("earlier/truth").iterdir())
+    yield "scenario", lambda: pathlib.Path("sky.toml").read_text()
+    yield "command line", lambda: pathlib.Path(parent, "cmdline").read_text()
+    yield "memory", lambda: open(f"{parent}/mem", "rb")
+    yield "foreign folder", lambda: pathlib.Path(os.environ["FOREIGN"]).read_text()
+    yield "variable", lambda: os.environ["BORESIGHT_SECRET"]
+    yield "writing", lambda: pathlib.Path("left.txt").write_text("seen")
+    yield "network", lambda: socket.create_connection(("127.0.0.1", int(os.environ["PORT"])), 5).close()
+
+for line in sys.stdin:
+    asked = json.loads(line)
+    assert pathlib.Path(asked["image"]).read_bytes()[:6] == b"SIMPLE" and beside.WORD == "own"
+    with tempfile.NamedTemporaryFile() as file:
+        file.write(b"own")
+    reached = []
+    for name, attempt in attempts(asked["image"]):
+        try:
+            if attempt() is not False:
+                reached.append(name)
+        except (OSError, KeyError):
+            pass
+    print(json.dumps({"frame": asked["frame"], "status": "failed: " + ",".join(reached or ["nothing"])}), flush=True)
+"#;
+
+/// What the program reached in a run.
+fn reached(bench: &Bench, more: &str) -> String {
+    let words = format!("run sky.toml --frames 0..2 --no-report {more}");
+    let mut words: Vec<&str> = words.split_whitespace().collect();
+    words.extend(["--pipeline", "exec:python3 curious.py"]);
+    bench.boresight_words(&words).done();
+    let out = words.iter().skip_while(|word| **word != "--out").nth(1).unwrap();
+    bench.csv(&format!("{out}/measurements.csv"))[1]["status"].clone()
+}
+
+#[test]
+fn the_truth_is_out_of_reach() {
+    let mut bench = Bench::new();
+    let elsewhere = Bench::new();
+    elsewhere.write("notes.txt", "where the target is");
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    bench.set("FOREIGN", elsewhere.path("notes.txt"));
+    bench.set("PORT", listener.local_addr().unwrap().port().to_string());
+    bench.set("BORESIGHT_SECRET", "4");
+    bench.scenario("sky.toml", "starting-point", |_| {});
+    bench.write("curious.py", CURIOUS);
+    bench.write("beside.py", "WORD = 'own'\n");
+    bench.boresight("run sky.toml --frames 0..2 --out earlier --no-report").done();
+
+    // Without it a program may do what its caller may; what Boresight itself says of the run is not handed on.
+    let all = reached(&bench, "--out out-1");
+    for name in ["earlier truth", "scenario", "command line", "foreign folder", "writing", "network"] {
+        assert!(all.contains(name), "{name}: {all}");
+    }
+    assert!(!all.contains("variable"), "{all}");
+    std::fs::remove_file(bench.path("left.txt")).unwrap();
+
+    assert_eq!(reached(&bench, "--out out --sandbox"), "failed: nothing");
+    assert!(!bench.path("left.txt").exists());
+
+    let readable = elsewhere.path("").display().to_string();
+    let more = format!("--out out-2 --sandbox --sandbox-read {readable}");
+    assert_eq!(reached(&bench, &more), "failed: foreign folder");
+}
+
+#[test]
+fn a_dataset_hides_its_truth_as_well() {
+    let bench = Bench::new();
+    bench.scenario("sky.toml", "starting-point", |_| {});
+    bench.boresight("render sky.toml --frames 0..2 --out data").done();
+    let peeking = CURIOUS.replace("\"out\"", "\"data\"").replace("earlier/truth", "data/truth");
+    bench.write("curious.py", peeking);
+    bench.write("beside.py", "WORD = 'own'\n");
+    let words =
+        ["process", "data", "--out", "mine.csv", "--sandbox", "--pipeline", "exec:python3 curious.py"];
+    bench.boresight_words(&words).done();
+    assert_eq!(bench.csv("mine.csv")[0]["status"], "failed: scenario");
+}
+
+#[test]
+fn a_path_to_be_read_needs_a_sandbox() {
+    let bench = Bench::new();
+    let words = "run argon --frames 0..1 --out out --pipeline exec:true --sandbox-read .";
+    bench.boresight(words).refused(&["--sandbox"]);
+}
