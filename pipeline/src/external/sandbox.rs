@@ -35,7 +35,7 @@ const SYSTEM: [&str; 14] = [
 
 /// Devices that hold nothing, and those that compute.
 #[cfg(target_os = "linux")]
-const DEVICES: [&str; 8] = [
+const DEVICES: [&str; 11] = [
     "/dev/null",
     "/dev/zero",
     "/dev/full",
@@ -44,6 +44,9 @@ const DEVICES: [&str; 8] = [
     "/dev/shm",
     "/dev/dri",
     "/dev/kfd",
+    "/dev/nvidia0",
+    "/dev/nvidiactl",
+    "/dev/nvidia-uvm",
 ];
 
 /// Last part of the path of a folder of programs; what they need lies beside it.
