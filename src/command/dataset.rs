@@ -18,6 +18,7 @@ use scenario::DockingScenario;
 use serde_json::{Map, Value, json};
 
 use super::Answer;
+use super::fly::tell_of_unfinished;
 use super::options::{PipelineOptions, RendererOptions, Selection};
 use super::output::Output;
 
@@ -61,6 +62,7 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
     }
     prepared.check_flight(&flight)?;
     let directory = RunDirectory::create(&arguments.out)?;
+    tell_of_unfinished(&directory);
     let frames = flight.frames.end - flight.frames.start;
     let progress = output.progress(frames, &source.name);
     let rendered = prepared.render(&directory, &flight, &|| progress.inc(1));

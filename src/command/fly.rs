@@ -4,6 +4,7 @@ use files::{Failure, RunDirectory};
 use run::{AnyFactory, AnyPrepared, Flight};
 
 use super::Answer;
+use super::interrupt::tell_when_interrupted;
 use super::output::Output;
 use super::report::write_beside_run;
 use crate::table::score_table;
@@ -18,6 +19,16 @@ pub(super) struct Presentation<'a> {
     pub(super) note: Option<String>,
 }
 
+/// Has an interrupt tell what it leaves of a run directory.
+pub(super) fn tell_of_unfinished(directory: &RunDirectory) {
+    let path = directory.path().display().to_string();
+    tell_when_interrupted(move || {
+        format!(
+            "{path} holds an unfinished run, which is not continued: remove it, and run the command again"
+        )
+    });
+}
+
 /// Runs a scenario into a directory, writes the report if it is wanted, and shows the score.
 pub(super) fn fly(
     prepared: &dyn AnyPrepared,
@@ -28,6 +39,7 @@ pub(super) fn fly(
     output: &Output,
 ) -> Result<Answer, Failure> {
     let frames = flight.frames.end - flight.frames.start;
+    tell_of_unfinished(directory);
     let progress = output.progress(frames, &format!("{}, {}", shown.name, factory.name));
     let ran = prepared.run(directory, flight, factory, &|| {
         progress.inc(1);

@@ -3,11 +3,39 @@
 //! Programs run in process groups of their own, which the interrupt of a terminal does not reach, and one that hangs does not notice that its
 //! input is closed. A process that is killed (SIGKILL) cannot end them: then the closed input is all that they get.
 
+#[cfg(unix)]
+use std::io::Write;
+use std::sync::{Mutex, PoisonError};
+
 use files::Failure;
+#[cfg(unix)]
+use pipeline::external::protocol::harmless;
 
 use super::scratch_directory::ScratchDirectory;
 #[cfg(unix)]
 use super::scratch_directory::remove_all;
+
+/// What is told when the process is interrupted: what was kept, and how to go on.
+static KEPT: Mutex<Option<Box<dyn Fn() -> String + Send>>> = Mutex::new(None);
+
+/// What is told of a command that says nothing else.
+const NOTHING_HALF: &str = "no file was left half written; the same command begins anew";
+
+/// Has an interrupt tell from now on what the command keeps and how to go on; an empty text tells nothing.
+pub(super) fn tell_when_interrupted(kept: impl Fn() -> String + Send + 'static) {
+    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(kept));
+}
+
+/// Tells it.
+#[cfg(unix)]
+fn tell() {
+    let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    let text = kept.as_ref().map_or_else(|| NOTHING_HALF.to_owned(), |kept| kept());
+    if !text.is_empty() {
+        // Nobody may be there to read it.
+        let _ = writeln!(std::io::stderr(), "\ninterrupted: {}", harmless(&text));
+    }
+}
 
 /// A directory for files that nobody keeps; gone with the value, or when the process is asked to end.
 pub(super) fn scratch_directory() -> Result<ScratchDirectory, Failure> {
@@ -26,6 +54,7 @@ pub(super) fn clean_up_when_interrupted() {
             if let Ok(number) = first_signal() {
                 pipeline::external::end_all();
                 remove_all();
+                tell();
                 // It does not come back from any of the three.
                 let _ = signal_hook::low_level::emulate_default_handler(number);
                 std::process::exit(128 + number);

@@ -27,7 +27,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use files::Failure;
 
 use answer::Answer;
-use interrupt::scratch_directory;
+use interrupt::{clean_up_when_interrupted, scratch_directory};
 #[cfg(not(all(feature = "report", feature = "monitor", feature = "mitsuba")))]
 use missing_feature::missing_feature;
 
@@ -99,6 +99,10 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
         }
     };
     let output = output::Output::new(arguments.json);
+    if !matches!(arguments.command, Some(Command::Monitor(_))) {
+        // The monitor's server ends on signals by itself.
+        clean_up_when_interrupted();
+    }
     let answer = match arguments.command.unwrap_or_else(|| Command::Run(run::RunArguments::argon())) {
         Command::Run(arguments) => run::run(&arguments, &output),
         Command::Render(arguments) => dataset::render(&arguments, &output),

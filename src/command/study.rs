@@ -15,6 +15,7 @@ use study::{
 
 use super::Answer;
 use super::fly::{Presentation, fly};
+use super::interrupt::tell_when_interrupted;
 use super::options::{PipelineOptions, default_jobs, place};
 use super::output::Output;
 use super::report::write_beside_results;
@@ -197,6 +198,14 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
         ran?;
         return finish(&campaign, &arguments.study, &campaign.merge()?, output);
     }
+    let store = campaign.store().clone();
+    tell_when_interrupted(move || {
+        let (finished, plan, folder) = (store.finished_cases(), store.plan(), store.folder().display());
+        format!(
+            "{finished} of {} cases are kept in {folder}; the same command goes on from there",
+            plan.cases
+        )
+    });
     let cases = arguments.shard.map_or(0..plan.cases, |shard| plan.cases_of(shard.shard));
     let progress = output.progress_of(cases.end - cases.start, "cases", &study.name);
     let until = study.file.stop.until.as_ref().map(|until| until.figure.clone());

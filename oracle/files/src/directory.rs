@@ -4,7 +4,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::{Checksums, FileError, ImageFormat};
+use super::{Checksums, FileError, ImageFormat, WholeFile};
 
 /// The files of a run that have checksums.
 const SEALED: [&str; 13] = [
@@ -22,6 +22,14 @@ const SEALED: [&str; 13] = [
     "features.parquet",
     "score.json",
 ];
+
+/// The file that a run directory has until it is complete.
+const UNFINISHED: &str = "UNFINISHED.txt";
+const UNFINISHED_TEXT: &str = "\
+The run in this directory has not ended: it was interrupted or killed, it failed, or it still goes on.
+Tables appear when they are complete, telemetry.csv after the truth, score.json last; images are complete up to the last one.
+Nothing here passes for a result, and the run is not continued: remove the directory, and run it again.
+";
 
 /// A fresh directory for the output of a run, and the names of the files in it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -92,15 +100,18 @@ impl RunDirectory {
                 _ => FileError::io(&inner, "create", source),
             })?;
         }
+        WholeFile::with_text(&path.join(UNFINISHED), UNFINISHED_TEXT)?.commit_new()?;
         Ok(Self { path })
     }
 
-    /// Writes the checksums of everything in it that is complete now, images and report apart.
+    /// Writes the checksums of everything in it, images and report apart, and says no longer that it is unfinished.
     ///
     /// # Errors
     /// [`FileError::Io`] when a file cannot be read, or the checksums not be written.
     pub fn seal(&self) -> Result<(), FileError> {
-        Checksums::write(&self.path, &SEALED)
+        Checksums::write(&self.path, &SEALED)?;
+        let path = self.path.join(UNFINISHED);
+        fs::remove_file(&path).map_err(|source| FileError::io(&path, "remove", source))
     }
 
     /// The directory itself.
@@ -205,7 +216,7 @@ impl RunDirectory {
 
 /// Whether a directory holds the beginning of a run: its tables get their names when they are complete, that of the telemetry last.
 fn is_unfinished(path: &Path) -> bool {
-    path.join("run.toml").is_file() && !path.join("telemetry.csv").exists()
+    path.join(UNFINISHED).is_file()
 }
 
 /// The largest number that `NAME-…` has in the parent; 0 when there is none.

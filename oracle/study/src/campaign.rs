@@ -1,4 +1,5 @@
 //! A study in a folder: what is missing of it is made, shard by shard, until it is done.
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use files::Failure;
@@ -91,10 +92,20 @@ impl<'a> Campaign<'a> {
             table.rows.iter().for_each(|row| done(Known::Kept(row)));
             return Ok((table, manifest));
         }
-        let cases = self.store.plan().cases_of(shard);
-        let rows = run_cases(self.study, cases, self.pipeline, workers, |case| done(Known::Run(case)))?;
+        let mut cases: BTreeSet<u64> = self.store.plan().cases_of(shard).collect();
+        let (journal, kept) = self.store.journal(shard)?;
+        let mut rows: Vec<CaseRow> = kept.into_iter().filter(|row| cases.remove(&row.case)).collect();
+        rows.iter().for_each(|row| done(Known::Kept(row)));
+        let cases = cases.into_iter().collect();
+        rows.extend(run_cases(self.study, cases, self.pipeline, workers, |case| {
+            journal.add(&case.row)?;
+            done(Known::Run(case));
+            Ok(())
+        })?);
+        rows.sort_by_key(|row| row.case);
         let table = empty.with_rows(rows);
         let manifest = self.store.write(shard, &table)?;
+        journal.remove();
         Ok((table, manifest))
     }
 

@@ -8,10 +8,11 @@ use files::{
     Cell, Cells, Column, ColumnType, ColumnValues, FileError, ParquetFile, TableOptions, write_table,
 };
 use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 /// A drawn value.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Drawn {
     /// A number.
     Number(f64),
@@ -30,7 +31,7 @@ impl Drawn {
 }
 
 /// A figure of a case.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CaseFigure {
     /// The value; `None` when it is counted over nothing.
     pub value: Option<f64>,
@@ -41,7 +42,7 @@ pub struct CaseFigure {
 }
 
 /// A case and what came of it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseRow {
     /// Number of the case.
     pub case: u64,

@@ -1,5 +1,4 @@
 //! Runs the cases of a shard on the threads of this machine.
-use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -19,7 +18,7 @@ pub struct Workers<'a> {
     pub jobs: usize,
     /// A program finds its images in folders of its own below this one.
     pub scratch: &'a Path,
-    /// Set from outside, it ends the campaign: no other case is begun, and those of a shard that is not whole are lost.
+    /// Set from outside, it ends the campaign: no other case is begun.
     pub ended: Option<&'a AtomicBool>,
 }
 
@@ -27,13 +26,13 @@ pub struct Workers<'a> {
 /// neither. A program finds its images in folders of its own below `scratch`.
 ///
 /// # Errors
-/// The failure of the first case, in order, that has one; [`Failure::Interrupted`] of those that were not done when it was ended.
+/// The failure of the first case, in order, that has one, and that of `done`; [`Failure::Interrupted`] of those that were not done when it was ended.
 pub(super) fn run_cases(
     study: &Study,
-    cases: Range<u64>,
+    cases: Vec<u64>,
     pipeline: &dyn StudyPipeline,
     Workers { jobs, scratch, ended }: Workers<'_>,
-    done: impl Fn(&Evaluated) + Sync,
+    done: impl Fn(&Evaluated) -> Result<(), Failure> + Sync,
 ) -> Result<Vec<CaseRow>, Failure> {
     let pool = ThreadPoolBuilder::new()
         .num_threads(jobs)
@@ -50,7 +49,7 @@ pub(super) fn run_cases(
         let evaluated = evaluate(study, case, pipeline, own.path())?;
         // What a pipeline answered while it was ended is no result.
         go_on()?;
-        done(&evaluated);
+        done(&evaluated)?;
         Ok(evaluated.row)
     };
     let rows: Vec<Result<CaseRow, Failure>> = pool.install(|| cases.into_par_iter().map(one).collect());

@@ -35,6 +35,7 @@ mod engine;
 mod estimate;
 mod evaluate;
 mod file;
+mod journal;
 mod law;
 mod overlay;
 mod record;

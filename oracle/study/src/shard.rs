@@ -12,12 +12,15 @@ use files::{Checksums, Earlier, Failure, FileError, WholeFile};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-use super::cases::CaseTable;
+use super::cases::{CaseRow, CaseTable};
 use super::definition::Study;
+use super::journal::{self, Journal};
 use super::record::StudyRecord;
 
 /// Cases of a shard, about, when their number is not given.
 const CASES_PER_SHARD: u64 = 32;
+/// Extension of the journal of a shard that is not whole.
+const JOURNAL: &str = "journal";
 /// Most shards of a study, when their number is not given.
 const MOST_SHARDS: u64 = 1000;
 
@@ -168,7 +171,10 @@ impl ShardStore {
         let io = |source| FileError::io(&folder, "read", source);
         for entry in std::fs::read_dir(&folder).map_err(io)? {
             let path = entry.map_err(io)?.path();
-            if !WholeFile::is_partial(&path) && !known.contains(&path) {
+            let is_journal = path.extension().is_some_and(|extension| extension == JOURNAL);
+            let is_known =
+                known.contains(&path) || is_journal && known.contains(&path.with_extension("parquet"));
+            if !WholeFile::is_partial(&path) && !is_known {
                 return Err(Failure::Usage(format!(
                     "{}: is none of the {} shards of `{}`, expected nothing else there",
                     path.display(),
@@ -188,6 +194,27 @@ impl ShardStore {
     pub fn path(&self, shard: u64) -> PathBuf {
         let width = self.plan.shards.to_string().len();
         self.shards().join(format!("{shard:0width$}-of-{}.parquet", self.plan.shards))
+    }
+
+    /// The journal of a shard that is not whole, with the rows that it keeps.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] for a file that cannot be read or added to.
+    pub(super) fn journal(&self, shard: u64) -> Result<(Journal, Vec<CaseRow>), FileError> {
+        Journal::open(self.path(shard).with_extension(JOURNAL), &self.plan.hash)
+    }
+
+    /// How many cases are finished, in whole shards and in others.
+    pub fn finished_cases(&self) -> u64 {
+        let finished = |shard| {
+            let cases = self.plan.cases_of(shard);
+            let path = self.path(shard);
+            if path.is_file() {
+                return cases.end - cases.start;
+            }
+            journal::count(&path.with_extension(JOURNAL), &self.plan.hash) as u64
+        };
+        (1..=self.plan.shards).map(finished).sum()
     }
 
     /// The rows of a shard when its file is there, whole, and of this study.

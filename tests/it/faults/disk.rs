@@ -49,7 +49,7 @@ fn check_stopped_anywhere(bench: &Bench, making: &str, reader: &str) -> u32 {
         } else {
             stopped += 1;
             check_no_room(&output, "short");
-            for (path, bytes) in bench.tree("short") {
+            for (path, bytes) in whole_files(&bench, "short") {
                 let is_image = path.starts_with("frames");
                 assert!(
                     is_image || whole[&path] == bytes,
@@ -113,7 +113,7 @@ fn a_study_that_has_no_room_is_gone_on_with_when_there_is() {
             stopped += 1;
             check_no_room(&output, "out");
         }
-        for (path, bytes) in bench.tree("out") {
+        for (path, bytes) in whole_files(&bench, "out") {
             assert!(bench.tree("whole")[&path] == bytes, "{blocks} blocks: {} is not whole", path.display());
         }
     }

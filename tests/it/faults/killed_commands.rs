@@ -225,6 +225,56 @@ fn temporary_directories_go_with_their_process() {
     assert_eq!(left().len(), 0);
 }
 
+/// Whoever interrupts a command learns what is left of it and how to go on.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_command_says_what_it_kept() {
+    let bench = small_bench();
+    let long =
+        std::fs::read_to_string(bench.path("small.toml")).unwrap().replace("count = 400", "count = 1000000");
+    bench.write("long.toml", &long);
+    let study =
+        "title = \"t\"\nscenario = \"small.toml\"\nseed = 5\nframes = \"0..40\"\n[stop]\ncases = 100000\n";
+    bench.write("study.toml", study);
+    let interrupted = |words: &str, has_begun: &dyn Fn() -> bool| {
+        let mut child = command(&bench, words).stderr(std::process::Stdio::piped()).spawn().unwrap();
+        while !has_begun() {
+            assert!(child.try_wait().unwrap().is_none(), "it ended too soon");
+        }
+        let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        let output = child.wait_with_output().unwrap();
+        assert!(kill.unwrap().success() && !output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let unfinished = |out: &str| bench.path(out).join("UNFINISHED.txt").exists();
+    for words in ["run long.toml --out", "render long.toml --out"] {
+        let out = words.split(' ').next().unwrap();
+        let told = interrupted(&format!("{words} {out}"), &|| bench.path(out).join("run.toml").exists());
+        assert!(told.contains(&format!("interrupted: {out} holds an unfinished run")), "{told}");
+        assert!(unfinished(out) && bench.read(&format!("{out}/UNFINISHED.txt")).contains("is not continued"));
+        bench.boresight(&format!("{words} {out}")).refused(&[out, "killed, failed, or still goes on"]);
+    }
+
+    // Of a shard of 32 cases or more, those that are finished are not made again.
+    let journal = || std::fs::read_dir(bench.path("study/shards")).into_iter().flatten().flatten().next();
+    let lines = |path: PathBuf| std::fs::read_to_string(path).unwrap_or_default().lines().count();
+    let begun = || journal().is_some_and(|entry| lines(entry.path()) > 6);
+    let told = interrupted("study run study.toml --shards 1 --out study", &begun);
+    let kept =
+        told.split("interrupted: ").nth(1).and_then(|text| text.split(' ').next()?.parse::<u64>().ok());
+    assert!(kept.unwrap() >= 3 && told.contains("the same command goes on"), "{told}");
+    let before = bench.read(&format!("study/shards/{}", journal().unwrap().file_name().display()));
+    let told = interrupted("study run study.toml --shards 1 --out study", &|| {
+        lines(journal().unwrap().path()) > before.lines().count() + 6
+    });
+    let after = bench.read(&format!("study/shards/{}", journal().unwrap().file_name().display()));
+    assert!(after.starts_with(&before), "{told}");
+    let cases: Vec<&str> =
+        after.lines().filter_map(|line| line.split_once(' ')?.1.split(',').next()).collect();
+    let distinct: std::collections::BTreeSet<&&str> = cases.iter().collect();
+    assert_eq!(distinct.len(), cases.len(), "no case was made twice");
+}
+
 #[test]
 fn an_unfinished_run_says_that_it_is_one() {
     let bench = small_bench();

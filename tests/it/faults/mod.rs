@@ -56,7 +56,12 @@ fn stderr(output: &Output) -> String {
 fn whole_files(bench: &Bench, directory: &str) -> BTreeMap<PathBuf, Vec<u8>> {
     let is_partial = |path: &Path| {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-        name.is_some_and(|name| name.starts_with(".partial-") || name.starts_with(".rows-"))
+        name.is_some_and(|name| {
+            name.starts_with(".partial-")
+                || name.starts_with(".rows-")
+                || name == "UNFINISHED.txt"
+                || name.ends_with(".journal")
+        })
     };
     bench.tree(directory).into_iter().filter(|(path, _)| !is_partial(path)).collect()
 }
