@@ -117,6 +117,7 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
     match answer {
         Ok(Answer::Yes) => 0,
         Ok(Answer::No) => 1,
+        Ok(Answer::Part) => Failure::EXIT_STATUS,
         Err(failure) => {
             output.failure(failure);
             Failure::EXIT_STATUS

@@ -292,7 +292,8 @@ impl<W: World> AnyPrepared for W {
 
 impl<S: Scored + Send + 'static> RunResult<S> {
     fn boxed(self) -> RunResult<Box<dyn AnyScored>> {
-        RunResult { scored: Box::new(self.scored), first_failure: self.first_failure }
+        let Self { scored, first_failure, not_flown } = self;
+        RunResult { scored: Box::new(scored), first_failure, not_flown }
     }
 }
 

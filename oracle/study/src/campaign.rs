@@ -1,5 +1,6 @@
 //! A study in a folder: what is missing of it is made, shard by shard, until it is done.
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use files::Failure;
 
@@ -18,6 +19,32 @@ pub struct Campaign<'a> {
     study: &'a Study,
     pipeline: &'a dyn StudyPipeline,
     store: ShardStore,
+    starts: Starts,
+}
+
+/// Cases in which the pipeline does not start, before it starts in any, that end a study: it would start in none.
+const MOST_FAILED_CASES: u64 = 10;
+
+/// What is known of the pipeline's starts in the cases that were run.
+#[derive(Debug, Default)]
+struct Starts {
+    has_started: AtomicBool,
+    failed_cases: AtomicU64,
+}
+
+impl Starts {
+    /// Counts a case, and refuses to go on where there were too many without a start.
+    fn add(&self, case: &Evaluated) -> Result<(), Failure> {
+        if case.has_started || self.has_started.load(Ordering::Relaxed) {
+            self.has_started.store(true, Ordering::Relaxed);
+        } else if self.failed_cases.fetch_add(1, Ordering::Relaxed) + 1 >= MOST_FAILED_CASES {
+            let reason = case.first_failure.as_ref().map_or("", |first| &first.reason);
+            return Err(Failure::Usage(format!(
+                "the pipeline did not start in any of the first {MOST_FAILED_CASES} cases: {reason}"
+            )));
+        }
+        Ok(())
+    }
 }
 
 /// A case that a campaign knows.
@@ -54,7 +81,7 @@ impl<'a> Campaign<'a> {
         pipeline.check(study.scenario())?;
         let shards = shards.or_else(|| ShardStore::planned_shards(out));
         let plan = Plan::new(study, study.hash_with(pipeline), shards)?;
-        Ok(Self { study, pipeline, store: ShardStore::open(out, plan)? })
+        Ok(Self { study, pipeline, store: ShardStore::open(out, plan)?, starts: Starts::default() })
     }
 
     /// Opens a folder that holds a plan of the study.
@@ -79,7 +106,7 @@ impl<'a> Campaign<'a> {
     /// A shard, made if it is missing or damaged; `done` is told of each of its cases.
     ///
     /// # Errors
-    /// The [`Failure`] of the first case that has one, or of files.
+    /// The [`Failure`] of the first case that has one, or of files; [`Failure::Usage`] where the pipeline starts in none of the first cases.
     pub fn shard(
         &self,
         shard: u64,
@@ -92,7 +119,10 @@ impl<'a> Campaign<'a> {
             return Ok((table, manifest));
         }
         let cases = self.store.plan().cases_of(shard);
-        let rows = run_cases(self.study, cases, self.pipeline, workers, |case| done(Known::Run(case)))?;
+        let rows = run_cases(self.study, cases, self.pipeline, workers, |case| {
+            done(Known::Run(case));
+            self.starts.add(case)
+        })?;
         let table = empty.with_rows(rows);
         let manifest = self.store.write(shard, &table)?;
         Ok((table, manifest))
