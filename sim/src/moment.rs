@@ -5,7 +5,7 @@ use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 
 use crate::optics::Projection;
-use crate::scene::{Appearance, CameraMotion, Lighting, Source, moon::LitMoon};
+use crate::scene::{Appearance, CameraMotion, Lighting, Outline, Source, moon::LitMoon};
 use crate::switch::Switch;
 use crate::truth::{ObjectKind, Observer, States, clock, shadow};
 use crate::{SimError, Simulator};
@@ -32,6 +32,7 @@ impl Moment {
     /// Where everything is at `time`, with the attitude of frame `number`.
     pub(crate) fn at(simulator: &Simulator, time: Epoch, number: u64) -> Result<Self, SimError> {
         let states = simulator.trajectory.at(time);
+        simulator.target.check_separation(&states, number)?;
         let body_from_icrs = simulator.attitude.truth(&states, number);
         let camera_from_icrs = simulator.camera_from_body * body_from_icrs;
         let observer = Observer::new(time, states.chaser.position_km, states.chaser.velocity_km_s)?;
@@ -78,6 +79,11 @@ impl Moment {
             appearance,
             moon,
         })
+    }
+
+    /// The target as something that stands in the way; `None` of a point of light.
+    pub(crate) fn outline<'a>(&self, simulator: &'a Simulator) -> Option<Outline<'a>> {
+        simulator.target.outline(&-self.states.line_of_sight_km(), self.target_from_icrs)
     }
 
     /// How the camera turns during the exposure about this moment, its middle, and where its target is at both ends.

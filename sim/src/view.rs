@@ -103,20 +103,23 @@ impl View {
                 sources,
             );
         }
-        // What is behind the Earth or the Moon is not seen.
+        // What is behind the Earth, the Moon or the target is not seen.
         let earth = simulator
             .background
             .as_ref()
             .is_some_and(Background::has_earth)
             .then(|| EarthDisk::seen_from(&moment.states.chaser.position_km));
         let moon = moment.moon.as_ref();
+        let target = moment.outline(simulator);
         let is_hidden = |astrometric: Direction<Icrs>| {
             let near_earth = earth.as_ref().filter(|earth| earth.is_near(&astrometric));
             let near_moon = moon.filter(|moon| moon.is_near(&astrometric));
-            (near_earth.is_some() || near_moon.is_some()) && {
+            let near_target = target.as_ref().filter(|target| target.is_near(&astrometric));
+            (near_earth.is_some() || near_moon.is_some() || near_target.is_some()) && {
                 let apparent = moment.observer.apparent_of(astrometric);
                 near_earth.is_some_and(|earth| earth.hides(&apparent))
                     || near_moon.is_some_and(|moon| moon.hides(&apparent))
+                    || near_target.is_some_and(|target| target.hides(&apparent))
             }
         };
         sources.retain(|source| {
@@ -134,7 +137,7 @@ impl View {
 }
 
 /// Keeps the sources that are in all three lists, each in its order. What is missing in one has no light in any of the
-/// exposures, because each list was asked for all that comes near enough; or the Earth or the Moon hides it at one of the three
+/// exposures, because each list was asked for all that comes near enough; or something hides it at one of the three
 /// moments: a star at its very limb is then left out of both fields, image and truth.
 fn keep_common(mut lists: [&mut Vec<Source>; 3]) {
     let names =

@@ -262,7 +262,10 @@ fn in_a_study_each_is_a_failed_case_and_the_study_goes_on() {
 const NEVER_GREET: [(&str, &str); 3] = [
     ("exec:python3 missing.py", "missing.py"),
     ("exec:python3 -c 'raise SystemExit(\"no film\")'", "no film"),
-    ("exec:echo '{\"boresight_pipeline\": 2, \"name\": \"x\"}'", "version 2"),
+    (
+        r#"exec:sh -c 'read line; echo "{\"boresight_pipeline\": 2, \"name\": \"x\"}"; read line'"#,
+        "version 2",
+    ),
 ];
 
 /// A program that does not start ends a run after three frames: they are scored, the others are not flown, and none of them is a miss.
@@ -352,7 +355,11 @@ fn cases_without_a_start_are_failed_rows_and_the_first_ten_end_a_study() {
     };
     let summary = run(9, "nine", &[]).done().json();
     assert_eq!((&summary["cases"], &summary["failed_cases"]), (&9.into(), &9.into()));
-    assert_eq!(summary["figures"]["hit_rate"]["all"]["of"], 27, "{summary}");
+    let replay =
+        ["study", "replay", "study.toml", "--case", "8", "--out", "replay", "--no-report", "--pipeline"];
+    let replay = bench.boresight_words(&[replay.as_slice(), &["exec:python3 missing.py"]].concat());
+    replay.refused(&["did not start, 3 times in a row", "1 were not flown"]);
+    assert_eq!(bench.json("replay/score.json")["frames"], 3);
     for (out, more) in [("whole", [].as_slice()), ("pieces", &["--shards", "6"]), ("one", &["--jobs", "1"])] {
         run(12, out, more).refused(&["did not start in any of the first 10 cases", "missing.py"]);
         assert!(!bench.path(&format!("{out}/cases.parquet")).exists(), "{out}");

@@ -6,7 +6,11 @@
 
 use std::ops::RangeInclusive;
 
+use contract::OutOfRange;
+use hifitime::Epoch;
 use nalgebra::Vector3;
+
+use super::clock;
 
 /// The instants that the table holds, in s of TDB since J2000.0: 1990-01-01 00:00 to 2050-01-06 00:00 TDB.
 pub const COVERAGE: RangeInclusive<f64> = START_S..=END_S;
@@ -44,6 +48,18 @@ impl EarthState {
     /// The Sun from the centre of the Earth, km: geometric, at the same instant (no light time, no aberration).
     pub fn sun_geocentric_km(&self) -> Vector3<f64> {
         self.sun_position_km - self.position_km
+    }
+}
+
+/// Refuses an instant outside [`COVERAGE`]; `path` and `value` are those of the time in the scenario.
+///
+/// # Errors
+/// [`OutOfRange`] with the path.
+pub fn check_covered(path: impl Into<String>, value: &str, time: Epoch) -> Result<(), OutOfRange> {
+    if COVERAGE.contains(&clock::tdb_j2000_s(time)) {
+        Ok(())
+    } else {
+        Err(OutOfRange::new(path, value, format!("a time of the ephemerides, {COVERAGE_TEXT}")))
     }
 }
 

@@ -1,6 +1,7 @@
 //! The target spacecraft as a source of light.
 
 mod body;
+mod outline;
 mod plate;
 mod polygon;
 mod sphere;
@@ -22,7 +23,8 @@ use crate::constants::AU_KM;
 use crate::optics::{ImagePoint, SUN_V_MAG_AT_1_AU};
 use crate::truth::{States, TargetAttitudeConfig};
 use body::LitBody;
-use plate::Plate;
+pub(crate) use outline::Outline;
+use plate::{Brick, Plate};
 use sphere::{LitSphere, lambert_phase};
 
 /// Plates that a body may have, those of boxes included: each is held against each.
@@ -108,7 +110,7 @@ pub struct Spacecraft {
 enum Model {
     Beacon { magnitude_at_1_km: f64 },
     Sphere { radius_m: f64, albedo: f64 },
-    Plates { attitude: TargetAttitudeConfig, plates: Vec<Plate> },
+    Plates { attitude: TargetAttitudeConfig, plates: Vec<Plate>, bricks: Vec<Brick> },
 }
 
 impl Spacecraft {
@@ -133,7 +135,11 @@ impl Spacecraft {
                 require("target.plates", all.len() as f64, "1 to 200, a box counting six", |n| {
                     n >= 1.0 && n <= MAX_PLATES as f64
                 })?;
-                Model::Plates { attitude: attitude.clone(), plates: all }
+                Model::Plates {
+                    attitude: attitude.clone(),
+                    plates: all,
+                    bricks: boxes.iter().map(BoxConfig::brick).collect(),
+                }
             }
         };
         Ok(Self { model })
