@@ -176,6 +176,11 @@ impl Simulator {
         &self.schedule
     }
 
+    /// The shortest and the longest exposure that the shutter control may choose, s.
+    pub fn exposures_s(&self) -> [f64; 2] {
+        [self.shutter.shortest_s(), self.shutter.longest_s()]
+    }
+
     /// The true camera model.
     pub fn projection(&self) -> &Projection {
         &self.projection

@@ -27,6 +27,7 @@ pub(super) fn fly(
     shown: Presentation<'_>,
     output: &Output,
 ) -> Result<Answer, Failure> {
+    output.warn(&prepared.warnings());
     let frames = flight.frames.end - flight.frames.start;
     let progress = output.progress(frames, &format!("{}, {}", shown.name, factory.name));
     let ran = prepared.run(directory, flight, factory, &|| {

@@ -24,6 +24,7 @@ use crate::any_world::{
 use crate::flight::Flight;
 use crate::pipeline_choice::PipelineChoice;
 use crate::run_result::RunResult;
+use crate::slips::slips;
 use crate::world::{Answers, Scored, World, process};
 
 impl<S: Scored + Send + 'static> AnyScored for S {
@@ -236,6 +237,11 @@ impl<W: World> AnyPrepared for W {
 
     fn summary(&self) -> (Value, String) {
         World::summary(self)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let scenario = self.scenario().to_json().unwrap_or_default();
+        World::warnings(self).into_iter().chain(slips(&scenario)).collect()
     }
 
     fn factory(&self, choice: &PipelineChoice, scratch: &Path) -> Result<AnyFactory, Failure> {

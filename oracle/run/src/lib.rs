@@ -13,12 +13,14 @@
 
 pub mod any_world;
 mod by_number;
+mod derived;
 pub mod docking;
 mod erased;
 pub mod far_range;
 pub mod flight;
 pub mod pipeline_choice;
 mod run_result;
+mod slips;
 mod source;
 pub mod world;
 pub mod worlds;

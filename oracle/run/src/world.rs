@@ -106,6 +106,11 @@ pub trait World: Sized + Send + Sync + 'static {
         (json!({ "scenario": name, "ok": true, "world": Self::CODE, "frames": frames }), text)
     }
 
+    /// What is allowed and may not be meant, beside numbers that look wrong by a factor of a thousand.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Parameters of the built-in pipeline in a scenario.
     fn config(scenario: &Self::Scenario) -> &Self::Config;
 

@@ -162,8 +162,8 @@ mod tests {
     fn the_sun_stands_at_the_equinox_when_the_almanac_says_so() {
         // March equinox 2012: 2012-03-20 05:14 UTC (to the minute), apparent longitude of date 0.
         // In ICRS axes, precession of 12.2 years × 50.3″ = 614″, and 20.5″ of aberration, stand between.
-        let time = super::super::clock::parse_utc("2012-03-20T05:14:00Z").unwrap();
-        let sun = earth(super::super::clock::tdb_j2000_s(time)).unwrap().sun_geocentric_km();
+        let time = clock::parse_utc("2012-03-20T05:14:00Z").unwrap();
+        let sun = earth(clock::tdb_j2000_s(time)).unwrap().sun_geocentric_km();
         let ra_arcsec = libm::atan2(sun.y, sun.x).to_degrees() * 3_600.0;
         // Right ascension there is longitude × cos ε: (−614 + 20.5) × 0.9175 = −545. A minute is 2.5″, nutation 16″.
         assert!((ra_arcsec + 545.0).abs() < 20.0, "{ra_arcsec}");
