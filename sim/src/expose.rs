@@ -10,6 +10,7 @@ use crate::onboard::{RoiExtractor, downlink_in};
 use crate::optics::{ImagePoint, Stamp};
 use crate::painter::Painter;
 use crate::scene::{CameraMotion, Source, planets};
+use crate::screens::Screens;
 use crate::sensor::{Collected, FlatLaws, Opening, Sensor, SparseImage, Track};
 use crate::switch::Switch;
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility, clock, shadow};
@@ -193,11 +194,13 @@ impl<'a> SimulatedCamera<'a> {
         let peak_share = self.painter.psf().peak_share();
         let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
         let spread = moment.appearance.peak_share(&place, peak_share) / peak_share;
+        let screens = Screens::at(simulator, moment);
         let mut brightest = simulator.stars.brightest(
             &moment.observer,
             moment.camera_from_icrs,
             &simulator.projection,
             target.map_or(0.0, |_| moment.target.electrons_per_s * spread),
+            |astrometric| screens.hide(astrometric),
         );
         if simulator.solar_system == Switch::On {
             brightest = planets::brightest(
@@ -207,6 +210,7 @@ impl<'a> SimulatedCamera<'a> {
                 &simulator.projection,
                 &simulator.radiometry,
                 brightest,
+                |astrometric| screens.hide(astrometric),
             );
         }
         let peak = (brightest * peak_share).max(self.moon_peak_e_per_s(moment));

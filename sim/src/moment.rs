@@ -5,7 +5,7 @@ use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 
 use crate::optics::Projection;
-use crate::scene::{Appearance, CameraMotion, Lighting, Outline, Source, moon::LitMoon};
+use crate::scene::{Appearance, CameraMotion, Lighting, Source, moon::LitMoon};
 use crate::switch::Switch;
 use crate::truth::{ObjectKind, Observer, States, clock, shadow};
 use crate::{SimError, Simulator};
@@ -79,11 +79,6 @@ impl Moment {
             appearance,
             moon,
         })
-    }
-
-    /// The target as something that stands in the way; `None` of a point of light.
-    pub(crate) fn outline<'a>(&self, simulator: &'a Simulator) -> Option<Outline<'a>> {
-        simulator.target.outline(&-self.states.line_of_sight_km(), self.target_from_icrs)
     }
 
     /// How the camera turns during the exposure about this moment, its middle, and where its target is at both ends.

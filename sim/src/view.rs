@@ -2,13 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use contract::{Direction, Icrs};
 use hifitime::{Epoch, Unit};
 
 use crate::moment::Moment;
 use crate::optics::Psf;
-use crate::scene::earth::EarthDisk;
-use crate::scene::{Background, BackgroundField, CameraMotion, Source, planets};
+use crate::scene::{BackgroundField, CameraMotion, Source, planets};
+use crate::screens::Screens;
 use crate::sensor::InterlaceConfig;
 use crate::switch::Switch;
 use crate::truth::{ObjectKind, clock};
@@ -103,30 +102,12 @@ impl View {
                 sources,
             );
         }
-        // What is behind the Earth, the Moon or the target is not seen.
-        let earth = simulator
-            .background
-            .as_ref()
-            .is_some_and(Background::has_earth)
-            .then(|| EarthDisk::seen_from(&moment.states.chaser.position_km));
-        let moon = moment.moon.as_ref();
-        let target = moment.outline(simulator);
-        let is_hidden = |astrometric: Direction<Icrs>| {
-            let near_earth = earth.as_ref().filter(|earth| earth.is_near(&astrometric));
-            let near_moon = moon.filter(|moon| moon.is_near(&astrometric));
-            let near_target = target.as_ref().filter(|target| target.is_near(&astrometric));
-            (near_earth.is_some() || near_moon.is_some() || near_target.is_some()) && {
-                let apparent = moment.observer.apparent_of(astrometric);
-                near_earth.is_some_and(|earth| earth.hides(&apparent))
-                    || near_moon.is_some_and(|moon| moon.hides(&apparent))
-                    || near_target.is_some_and(|target| target.hides(&apparent))
-            }
-        };
+        let screens = Screens::at(simulator, moment);
         sources.retain(|source| {
             let far = matches!(source.kind, ObjectKind::Star | ObjectKind::Planet);
-            !(far && source.astrometric.is_some_and(is_hidden))
+            !(far && source.astrometric.is_some_and(|astrometric| screens.hide(astrometric)))
         });
-        if let Some(moon) = moon {
+        if let Some(moon) = &moment.moon {
             sources.extend(moon.source(camera, &simulator.projection, &simulator.radiometry, reach_px));
         }
         *background = simulator.background.as_ref().map(|background| {
