@@ -290,6 +290,10 @@ fn a_program_that_never_greets_ends_a_run_in_both_worlds() {
             assert!(score["not_flown"]["reason"].as_str().unwrap().contains(reason), "{score}");
             // What there is of it is a run like any other.
             bench.boresight("score run run/measurements.csv").done();
+            bench.boresight("report run -o report.html").done();
+            assert!(
+                bench.read("report.html").contains("The run is not complete: the pipeline did not start")
+            );
         }
     }
 }

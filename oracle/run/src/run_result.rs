@@ -3,7 +3,7 @@
 use std::fmt;
 
 use contract::{FailedStarts, Interface};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a run gave.
 #[derive(Debug)]
@@ -17,7 +17,7 @@ pub struct RunResult<S> {
 }
 
 /// What was not flown of a run whose pipeline never started.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NotFlown {
     /// Images that were not flown; 0 of a run that has no more than were flown.
     pub frames: u64,
