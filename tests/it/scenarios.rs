@@ -63,7 +63,10 @@ fn a_check_tells_what_follows_from_the_numbers() {
     near(&check["views"][1]["field_deg"][0], 40.0, 0.1);
     assert_eq!((&check["frames"], &check["field_bytes"]), (&json!(25_169), &json!(768 * 288)));
     let text = bench.boresight("scenario check docking").done().stdout;
-    assert!(text.contains("camera TV-1: field of view 15.0") && text.contains("5.6 GB in all"), "{text}");
+    assert!(
+        text.contains("camera TV-1: field of view 14.999° × ") && text.contains("5.6 GB in all"),
+        "{text}"
+    );
 }
 
 /// What a run would refuse, a check does not pass.

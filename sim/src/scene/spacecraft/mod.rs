@@ -24,6 +24,7 @@ use crate::optics::{ImagePoint, SUN_V_MAG_AT_1_AU};
 use crate::truth::{States, TargetAttitudeConfig};
 use body::LitBody;
 pub(crate) use outline::Outline;
+use outline::Solid;
 use plate::{Brick, Plate};
 use sphere::{LitSphere, lambert_phase};
 
@@ -150,6 +151,34 @@ impl Spacecraft {
         match &self.model {
             Model::Beacon { .. } | Model::Sphere { .. } => None,
             Model::Plates { attitude, .. } => Some(attitude.target_from_icrs(states)),
+        }
+    }
+
+    /// Its outline from `chaser_km` from it (ICRS axes), turned by `target_from_icrs`; `None` of a point of light.
+    pub(crate) fn outline(
+        &self,
+        chaser_km: &Vector3<f64>,
+        target_from_icrs: Option<Rotation<Target, Icrs>>,
+    ) -> Option<Outline<'_>> {
+        let solid = match &self.model {
+            Model::Beacon { .. } => return None,
+            Model::Sphere { radius_m, .. } => Solid::Sphere(*radius_m),
+            Model::Plates { plates, bricks, .. } => Solid::Plates(plates, bricks),
+        };
+        Some(Outline::new(solid, chaser_km, target_from_icrs.unwrap_or_else(Rotation::identity)))
+    }
+
+    /// Refuses a camera that is as good as at the target, or inside of it, in a frame.
+    pub(crate) fn check_separation(&self, states: &States, frame: u64) -> Result<(), OutOfRange> {
+        let (line_of_sight_km, range_m) = (states.line_of_sight_km(), states.range_km() * 1000.0);
+        require("orbit.relative", range_m, "a separation of 1 m or more", |m| m >= 1.0)?;
+        match self.outline(&-line_of_sight_km, self.attitude(states)) {
+            Some(outline) if outline.holds_camera() => Err(OutOfRange::new(
+                "orbit.relative",
+                format!("{range_m:.3} m from the target's centre at frame {frame}"),
+                "a camera outside of the target",
+            )),
+            _ => Ok(()),
         }
     }
 
