@@ -70,11 +70,14 @@ impl Camera {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Mounting {
-    /// φ, about x, degrees.
+    /// φ, about x, degrees, −3600 to 3600.
+    #[schemars(range(min = -3600, max = 3600))]
     pub phi_deg: f64,
-    /// θ, about the resulting y, degrees.
+    /// θ, about the resulting y, degrees, −3600 to 3600.
+    #[schemars(range(min = -3600, max = 3600))]
     pub theta_deg: f64,
-    /// ψ, about the resulting z, degrees.
+    /// ψ, about the resulting z, degrees, −3600 to 3600.
+    #[schemars(range(min = -3600, max = 3600))]
     pub psi_deg: f64,
 }
 
@@ -82,7 +85,7 @@ impl Mounting {
     /// Checks every number.
     ///
     /// # Errors
-    /// [`OutOfRange`] for an angle that is not finite.
+    /// [`OutOfRange`] for an angle outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "mounting")
     }
@@ -147,6 +150,7 @@ mod tests {
         Mounting { phi_deg: 400.0, ..Mounting::default() }.check().unwrap();
         for (field, wrong) in [
             ("mounting.phi_deg", Mounting { phi_deg: f64::NAN, ..Mounting::default() }),
+            ("mounting.phi_deg", Mounting { phi_deg: 3600.5, ..Mounting::default() }),
             ("mounting.theta_deg", Mounting { theta_deg: f64::INFINITY, ..Mounting::default() }),
             ("mounting.psi_deg", Mounting { psi_deg: f64::NEG_INFINITY, ..Mounting::default() }),
         ] {

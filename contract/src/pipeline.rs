@@ -2,6 +2,8 @@
 
 use std::fmt::Debug;
 
+use thiserror::Error;
+
 use crate::ContractError;
 
 /// What the pipelines of a world receive and answer: a family of types, named by a marker such as [`crate::FarRange`] or
@@ -37,6 +39,21 @@ pub trait Interface: Sized + 'static {
 pub trait Pipeline<I: Interface>: Send {
     /// Answers one image.
     fn process(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> I::Outcome;
+
+    /// What became of its starts, of a pipeline that has to be started before it can answer and never was.
+    fn failed_starts(&self) -> Option<&FailedStarts> {
+        None
+    }
+}
+
+/// Starts of a pipeline, each of which failed. One is tried for every image, until one succeeds.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("the pipeline did not start, {count} times in a row: {reason}")]
+pub struct FailedStarts {
+    /// How many there were.
+    pub count: u32,
+    /// Why the last one failed.
+    pub reason: String,
 }
 
 /// Builds pipelines, one a sequence.

@@ -201,7 +201,10 @@ pub(crate) fn run(
         let (directory, temporary) = place(out.as_deref())?;
         let flight = Flight { frames, jobs, images: None, expectation: Expectation::Dropped };
         let ran = prepared.run(&directory, &flight, &factory, &|| ended.go_on())?;
-        Ok((directory, temporary, ran.first_failure))
+        match ran.not_flown {
+            None => Ok((directory, temporary, ran.first_failure)),
+            Some(not_flown) => Err(Failure::Usage(not_flown.to_string())),
+        }
     };
     let ran: Result<_, Failure> = py.detach(run);
     if let Some(interrupt) = ended.take() {

@@ -105,7 +105,7 @@ pub(crate) fn study(
         let workers = Workers { jobs, scratch: scratch.path(), ended: Some(ended) };
         let first_failure: Mutex<Option<(u64, FirstFailure)>> = Mutex::new(None);
         let table = campaign.run(workers, |case| {
-            if let Known::Run(Evaluated { row, first_failure: Some(failure) }) = case {
+            if let Known::Run(Evaluated { row, first_failure: Some(failure), .. }) = case {
                 let mut first = first_failure.lock().unwrap_or_else(PoisonError::into_inner);
                 if first.as_ref().is_none_or(|(case, _)| row.case < *case) {
                     *first = Some((row.case, failure.clone()));

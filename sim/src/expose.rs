@@ -10,6 +10,7 @@ use crate::onboard::{RoiExtractor, downlink_in};
 use crate::optics::{ImagePoint, Stamp};
 use crate::painter::Painter;
 use crate::scene::{CameraMotion, Source, planets};
+use crate::screens::Screens;
 use crate::sensor::{Collected, FlatLaws, Opening, Sensor, SparseImage, Track};
 use crate::switch::Switch;
 use crate::truth::{FrameTruth, ObjectKind, ObjectTruth, Visibility, clock, shadow};
@@ -61,8 +62,10 @@ pub struct SimulatedCamera<'a> {
     regions: Option<RoiExtractor>,
     /// Background of an interlaced scene, electrons a second, pixel by pixel: of the first field, and of the second.
     backgrounds: [Vec<f64>; 2],
-    /// What the detector makes by itself: its hot pixels, then tracks of particles.
-    own: Vec<Stamp>,
+    /// Its hot pixels.
+    hot: Vec<Stamp>,
+    /// The track of a particle: drawn when it strikes and again when it is described, as there may be many.
+    struck: Stamp,
     /// The image of an object as the scene was in the first and in the second field.
     halves: [Stamp; 2],
     /// The image of an object whose wells overflow.
@@ -94,7 +97,8 @@ impl<'a> SimulatedCamera<'a> {
             drawing: Drawing::Seen,
             regions,
             backgrounds: [Vec::new(), Vec::new()],
-            own: Vec::new(),
+            hot: Vec::new(),
+            struck: Stamp::new(),
             halves: [Stamp::new(), Stamp::new()],
             bloomed: Stamp::new(),
             spare: None,
@@ -190,11 +194,13 @@ impl<'a> SimulatedCamera<'a> {
         let peak_share = self.painter.psf().peak_share();
         let place = |point_m: &Vector3<f64>| moment.place_of(point_m, &simulator.projection);
         let spread = moment.appearance.peak_share(&place, peak_share) / peak_share;
+        let screens = Screens::at(simulator, moment);
         let mut brightest = simulator.stars.brightest(
             &moment.observer,
             moment.camera_from_icrs,
             &simulator.projection,
             target.map_or(0.0, |_| moment.target.electrons_per_s * spread),
+            |astrometric| screens.hide(astrometric),
         );
         if simulator.solar_system == Switch::On {
             brightest = planets::brightest(
@@ -204,6 +210,7 @@ impl<'a> SimulatedCamera<'a> {
                 &simulator.projection,
                 &simulator.radiometry,
                 brightest,
+                |astrometric| screens.hide(astrometric),
             );
         }
         let peak = (brightest * peak_share).max(self.moon_peak_e_per_s(moment));
@@ -235,12 +242,17 @@ impl<'a> SimulatedCamera<'a> {
         opening: &Opening,
         tracks: &[Track],
     ) -> Result<Seen, SimError> {
-        let Self { simulator, painter, image, backgrounds, own, halves, bloomed, .. } = self;
+        let Self { simulator, painter, image, backgrounds, hot, struck, halves, bloomed, .. } = self;
         let sensor = &simulator.sensor;
         let (columns, rows) = image.size();
         let hot_pixels = sensor.hot_pixels();
-        own.resize_with(own.len().max(hot_pixels.len() + tracks.len()), Stamp::new);
-        let (hot, struck) = own.split_at_mut(hot_pixels.len());
+        hot.resize_with(hot_pixels.len(), Stamp::new);
+        let draw_track = |track: &Track, stamp: &mut Stamp| {
+            if let Some(rays) = &simulator.cosmic_rays {
+                rays.stamp(track, stamp);
+                sensor.blind(stamp);
+            }
+        };
 
         image.clear(sensor.sky_electrons(opening.exposure_s));
         let [background, later] = backgrounds;
@@ -289,17 +301,15 @@ impl<'a> SimulatedCamera<'a> {
         }
         let sources = &mut view.sources;
         let mut charge = sensor.collect(image, opening);
-        for (pixel, stamp) in hot_pixels.iter().zip(hot) {
+        for (pixel, stamp) in hot_pixels.iter().zip(&mut *hot) {
             // The sensor itself collects it; here it is only described.
             stamp.set_pixel(pixel.x, pixel.y, sensor.hot_electrons(pixel, opening));
             sources.push(of_the_detector(ObjectKind::HotPixel, pixel.y * columns + pixel.x, stamp));
         }
-        if let Some(rays) = &simulator.cosmic_rays {
-            for (id, (track, stamp)) in tracks.iter().zip(struck).enumerate() {
-                rays.stamp(track, stamp);
-                sensor.strike(&mut charge, stamp);
-                sources.push(of_the_detector(ObjectKind::CosmicRay, id, stamp));
-            }
+        for (id, track) in tracks.iter().enumerate() {
+            draw_track(track, struck);
+            charge.strike(struck);
+            sources.push(of_the_detector(ObjectKind::CosmicRay, id, struck));
         }
 
         let Self { laws, raw, regions, drawing, .. } = self;
@@ -321,7 +331,13 @@ impl<'a> SimulatedCamera<'a> {
         let readout_noise_e = sensor.readout_noise_e();
         let saturation_e = sensor.config().saturation_e();
         let mut objects = Vec::with_capacity(sources.len());
-        for (source, stamp) in sources.iter().zip(charge.expected().objects().iter().chain(&*own)) {
+        let drawn = charge.expected().objects().iter().chain(&*hot);
+        let drawn = drawn.map(Ok).chain(tracks.iter().map(Err));
+        for (source, stamp) in sources.iter().zip(drawn) {
+            let stamp = stamp.unwrap_or_else(|track| {
+                draw_track(track, struck);
+                &*struck
+            });
             let pixel = |at: f64, size: usize| (at.round().max(0.0) as usize).min(size.saturating_sub(1));
             let (x, y) = (pixel(source.position.x, columns), pixel(source.position.y, rows));
             let background_e = charge.expected().background_near(x, y);

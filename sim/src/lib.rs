@@ -38,6 +38,7 @@ mod expose;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod lanes;
+mod limit;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
@@ -71,6 +72,7 @@ pub mod regular_file;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 pub mod scene;
+mod screens;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"

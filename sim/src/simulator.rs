@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use contract::bounds::require;
 use contract::{Body, Camera, CameraFrame, OutOfRange, Rotation};
 use hifitime::Unit;
 
@@ -96,7 +95,10 @@ impl Simulator {
         let target = Spacecraft::new(&simulation.target)?;
         // Before the shutter, which takes the sensor's saturation for granted.
         simulation.sensor.check()?;
-        let (trajectory, schedule, shutter) = flight(simulation, &simulation.sensor)?;
+        let cosmic_rays = simulation.sensor.cosmic_rays.as_ref();
+        let cosmic_rays = cosmic_rays.map(|config| CosmicRays::new(config, &simulation.camera));
+        let (trajectory, schedule, shutter) =
+            flight(simulation, &simulation.sensor, cosmic_rays.as_ref(), &target)?;
         let projection = Projection::new(&simulation.camera)?;
         let vignetting = Vignetting::new(&simulation.optics, &simulation.camera)?;
         let (columns, rows) = projection.detector();
@@ -133,11 +135,7 @@ impl Simulator {
             psf: Psf::load(&simulation.psf, folder)?
                 .growing(simulation.optics.psf_growth, &simulation.camera),
             sensor: Sensor::new(&simulation.sensor, columns, rows)?,
-            cosmic_rays: simulation
-                .sensor
-                .cosmic_rays
-                .as_ref()
-                .map(|config| CosmicRays::new(config, &simulation.camera)),
+            cosmic_rays,
             shutter,
             roi: simulation.roi.clone(),
             zero_suppression_dn: simulation.zero_suppression_dn,
@@ -157,7 +155,8 @@ impl Simulator {
     pub fn fly(&mut self, simulation: &Simulation) -> Result<(), SimError> {
         let seed = Seed { seed: simulation.seed, case: 0 };
         let target = Spacecraft::new(&simulation.target)?;
-        let (trajectory, schedule, shutter) = flight(simulation, self.sensor.config())?;
+        let (trajectory, schedule, shutter) =
+            flight(simulation, self.sensor.config(), self.cosmic_rays.as_ref(), &target)?;
         let attitude = Attitude::new(&simulation.attitude, &simulation.mounting, seed)?;
         let knowledge = Knowledge::new(&simulation.knowledge, seed)?;
         let camera_from_body = simulation.mounting.actual.camera_from_body();
@@ -177,6 +176,11 @@ impl Simulator {
         &self.schedule
     }
 
+    /// The shortest and the longest exposure that the shutter control may choose, s.
+    pub fn exposures_s(&self) -> [f64; 2] {
+        [self.shutter.shortest_s(), self.shutter.longest_s()]
+    }
+
     /// The true camera model.
     pub fn projection(&self) -> &Projection {
         &self.projection
@@ -187,12 +191,17 @@ impl Simulator {
 fn flight(
     simulation: &Simulation,
     sensor: &SensorConfig,
+    cosmic_rays: Option<&CosmicRays>,
+    target: &Spacecraft,
 ) -> Result<(Trajectory, Schedule, Shutter), SimError> {
     let trajectory = Trajectory::new(&simulation.orbit)?;
     let schedule = Schedule::new(&simulation.schedule)?;
     let shutter = Shutter::new(&simulation.shutter, sensor.saturation_e())?;
     let half_interval_s = sensor.interlace.map_or(0.0, |interlace| interlace.offsets_s()[1]);
+    shutter.check_interval(schedule.shortest_interval_s())?;
+    cosmic_rays.map_or(Ok(()), |rays| rays.check_hits(shutter.longest_s()))?;
     check_times(&schedule, &trajectory, shutter.lag_s(), half_interval_s)?;
+    check_separation(&schedule, &trajectory, target)?;
     Ok((trajectory, schedule, shutter))
 }
 
@@ -211,7 +220,25 @@ fn check_times(
         let chaser = states.chaser;
         Observer::new(time - earlier_s * Unit::Second, chaser.position_km, chaser.velocity_km_s)
             .map_err(|error| OutOfRange { path: "schedule".to_owned(), ..error })?;
-        require("orbit.relative", states.range_km() * 1000.0, "a separation of 1 m or more", |m| m >= 1.0)?;
+    }
+    Ok(())
+}
+
+/// Frames of a schedule at which the separation is looked at, at most: of longer ones every so many.
+const SEPARATIONS: usize = 100_000;
+
+/// Checks that the camera is off the target, and outside of it, in the frames; those that are passed over here are looked at when they
+/// are made.
+fn check_separation(
+    schedule: &Schedule,
+    trajectory: &Trajectory,
+    target: &Spacecraft,
+) -> Result<(), SimError> {
+    let last = schedule.frame_count().saturating_sub(1);
+    let step = (schedule.frame_count() / SEPARATIONS as u64) as usize + 1;
+    for frame in (0..last).step_by(step).chain([last]) {
+        let Some((_, time)) = schedule.frame(frame) else { continue };
+        target.check_separation(&trajectory.at(time), frame)?;
     }
     Ok(())
 }

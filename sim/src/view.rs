@@ -2,13 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use contract::{Direction, Icrs};
 use hifitime::{Epoch, Unit};
 
 use crate::moment::Moment;
 use crate::optics::Psf;
-use crate::scene::earth::EarthDisk;
-use crate::scene::{Background, BackgroundField, CameraMotion, Source, planets};
+use crate::scene::{BackgroundField, CameraMotion, Source, planets};
+use crate::screens::Screens;
 use crate::sensor::InterlaceConfig;
 use crate::switch::Switch;
 use crate::truth::{ObjectKind, clock};
@@ -103,27 +102,12 @@ impl View {
                 sources,
             );
         }
-        // What is behind the Earth or the Moon is not seen.
-        let earth = simulator
-            .background
-            .as_ref()
-            .is_some_and(Background::has_earth)
-            .then(|| EarthDisk::seen_from(&moment.states.chaser.position_km));
-        let moon = moment.moon.as_ref();
-        let is_hidden = |astrometric: Direction<Icrs>| {
-            let near_earth = earth.as_ref().filter(|earth| earth.is_near(&astrometric));
-            let near_moon = moon.filter(|moon| moon.is_near(&astrometric));
-            (near_earth.is_some() || near_moon.is_some()) && {
-                let apparent = moment.observer.apparent_of(astrometric);
-                near_earth.is_some_and(|earth| earth.hides(&apparent))
-                    || near_moon.is_some_and(|moon| moon.hides(&apparent))
-            }
-        };
+        let screens = Screens::at(simulator, moment);
         sources.retain(|source| {
             let far = matches!(source.kind, ObjectKind::Star | ObjectKind::Planet);
-            !(far && source.astrometric.is_some_and(is_hidden))
+            !(far && source.astrometric.is_some_and(|astrometric| screens.hide(astrometric)))
         });
-        if let Some(moon) = moon {
+        if let Some(moon) = &moment.moon {
             sources.extend(moon.source(camera, &simulator.projection, &simulator.radiometry, reach_px));
         }
         *background = simulator.background.as_ref().map(|background| {
@@ -134,7 +118,7 @@ impl View {
 }
 
 /// Keeps the sources that are in all three lists, each in its order. What is missing in one has no light in any of the
-/// exposures, because each list was asked for all that comes near enough; or the Earth or the Moon hides it at one of the three
+/// exposures, because each list was asked for all that comes near enough; or something hides it at one of the three
 /// moments: a star at its very limb is then left out of both fields, image and truth.
 fn keep_common(mut lists: [&mut Vec<Source>; 3]) {
     let names =

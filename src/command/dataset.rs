@@ -61,6 +61,7 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
         return Ok(Answer::Yes);
     }
     prepared.check_flight(&flight)?;
+    output.warn(&prepared.warnings());
     let directory = RunDirectory::create(&arguments.out)?;
     tell_of_unfinished(&directory);
     let frames = flight.frames.end - flight.frames.start;

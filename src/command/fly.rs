@@ -1,6 +1,6 @@
 //! What `run` and `study replay` do alike: run, report, show.
 
-use files::{Failure, RunDirectory};
+use files::{Failure, FileError, RunDirectory, toml_file};
 use run::{AnyFactory, AnyPrepared, Flight};
 
 use super::Answer;
@@ -38,6 +38,7 @@ pub(super) fn fly(
     shown: Presentation<'_>,
     output: &Output,
 ) -> Result<Answer, Failure> {
+    output.warn(&prepared.warnings());
     let frames = flight.frames.end - flight.frames.start;
     tell_of_unfinished(directory);
     let progress = output.progress(frames, &format!("{}, {}", shown.name, factory.name));
@@ -51,10 +52,17 @@ pub(super) fn fly(
     let table = score_table(ran.scored.as_ref(), output.is_terminal());
     let notes: String = shown.note.into_iter().map(|note| format!("\n\n{note}")).collect();
     let text = format!("{}{notes}\n\nresults in {}", table.trim_end(), directory.path().display());
-    let json = ran.scored.json()?;
+    let file = directory.score();
+    let json = toml_file::read_text(&file).map_err(|source| FileError::io(&file, "read", source))?;
     if shown.has_report {
         write_beside_run(directory.path(), ran.scored.as_mut(), output);
     }
-    output.answer_json(&json, text)?;
-    Ok(Answer::Yes)
+    output.answer_json(json.trim_end(), text)?;
+    Ok(match ran.not_flown {
+        None => Answer::Yes,
+        Some(not_flown) => {
+            output.note(format!("error: {not_flown}"));
+            Answer::Part
+        }
+    })
 }

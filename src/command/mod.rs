@@ -85,7 +85,8 @@ pub fn main() -> ExitCode {
     ExitCode::from(run_words(std::env::args_os()))
 }
 
-/// Runs the command of these words, its own name first, and gives its exit status: 0 done, 1 the answer is no, 2 usage or bad input.
+/// Runs the command of these words, its own name first, and gives its exit status: 0 done, 1 the answer is no, 2 usage, bad input, or a
+/// pipeline that does not start.
 pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     let arguments = match Arguments::try_parse_from(&words) {
@@ -121,6 +122,7 @@ pub fn run_words(words: impl IntoIterator<Item = OsString>) -> u8 {
     match answer {
         Ok(Answer::Yes) => 0,
         Ok(Answer::No) => 1,
+        Ok(Answer::Part) => Failure::EXIT_STATUS,
         Err(failure) => {
             output.failure(failure);
             Failure::EXIT_STATUS

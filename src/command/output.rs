@@ -61,6 +61,11 @@ impl Output {
         let _ = writeln!(std::io::stderr(), "{}", harmless(&text.to_string()));
     }
 
+    /// What is allowed, and probably not meant.
+    pub(super) fn warn(&self, warnings: &[String]) {
+        warnings.iter().for_each(|warning| self.note(format!("warning: {warning}")));
+    }
+
     /// Tells of a pipeline that failed, so that a program which never started is not taken for a poor one.
     pub(super) fn first_failure(&self, failure: Option<&FirstFailure>) {
         if let Some(FirstFailure { frame, reason }) = failure {

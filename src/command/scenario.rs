@@ -108,9 +108,9 @@ fn check(scenario: &str, choice: &PipelineChoice, output: &Output) -> Result<Ans
         if choice.is_built_in(source.world().code()) {
             source.world().check_built_in(&source)?;
         }
-        Ok(prepared.summary())
+        Ok((prepared.summary(), prepared.warnings()))
     });
-    let (document, text) = match checked {
+    let ((mut document, mut text), warnings) = match checked {
         Err(mistake @ Failure::Toml(_)) => {
             let document = json!({ "scenario": scenario, "ok": false, "error": mistake.to_string() });
             output.answer(&document, mistake.explain())?;
@@ -118,6 +118,12 @@ fn check(scenario: &str, choice: &PipelineChoice, output: &Output) -> Result<Ans
         }
         checked => checked?,
     };
+    for warning in &warnings {
+        text += &format!("\nwarning: {warning}");
+    }
+    if let Some(document) = document.as_object_mut() {
+        document.insert("warnings".to_owned(), json!(warnings));
+    }
     output.answer(&document, text)?;
     Ok(Answer::Yes)
 }

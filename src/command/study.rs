@@ -216,7 +216,7 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
         if let Some(text) = lock(&live).add(case.row()) {
             progress.set_message(format!("{}, {text}", study.name));
         }
-        if let Known::Run(Evaluated { row, first_failure: Some(first) }) = case {
+        if let Known::Run(Evaluated { row, first_failure: Some(first), .. }) = case {
             let mut known = lock(&failure);
             if known.as_ref().is_none_or(|(case, _)| row.case < *case) {
                 *known = Some((row.case, first.clone()));

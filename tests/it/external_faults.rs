@@ -258,6 +258,118 @@ fn in_a_study_each_is_a_failed_case_and_the_study_goes_on() {
     });
 }
 
+/// Programs that never greet: one that is not there, one that ends, one of another version.
+const NEVER_GREET: [(&str, &str); 3] = [
+    ("exec:python3 missing.py", "missing.py"),
+    ("exec:python3 -c 'raise SystemExit(\"no film\")'", "no film"),
+    (
+        r#"exec:sh -c 'read line; echo "{\"boresight_pipeline\": 2, \"name\": \"x\"}"; read line'"#,
+        "version 2",
+    ),
+];
+
+/// A program that does not start ends a run after three frames: they are scored, the others are not flown, and none of them is a miss.
+#[test]
+fn a_program_that_never_greets_ends_a_run_in_both_worlds() {
+    for (scenario, frames) in [("starting-point", "100..110"), ("docking", "18000..18010")] {
+        for (pipeline, reason) in NEVER_GREET {
+            let bench = Bench::new();
+            let run =
+                ["run", scenario, "--frames", frames, "--out", "run", "--no-report", "--pipeline", pipeline];
+            let parts = [
+                "did not start, 3 times in a row",
+                reason,
+                "3 frames were flown and are scored, 7 were not flown",
+            ];
+            bench.boresight_words(&run).refused(&parts);
+            let rows = bench.csv("run/measurements.csv");
+            assert_eq!(rows.len(), 3);
+            assert!(rows.iter().all(|row| row["status"].contains(reason)), "{rows:?}");
+            let score = bench.json("run/score.json");
+            assert_eq!((&score["frames"], &score["not_flown"]["frames"]), (&3.into(), &7.into()));
+            assert!(score["not_flown"]["reason"].as_str().unwrap().contains(reason), "{score}");
+            // What there is of it is a run like any other.
+            bench.boresight("score run run/measurements.csv").done();
+            bench.boresight("report run -o report.html").done();
+            assert!(
+                bench.read("report.html").contains("The run is not complete: the pipeline did not start")
+            );
+        }
+    }
+}
+
+/// A run too short for three starts is not done either.
+#[test]
+fn a_run_of_two_frames_without_a_start_is_refused() {
+    let bench = Bench::new();
+    let run = "run starting-point --frames 100..102 --out run --no-report --json --pipeline".split(' ');
+    let words: Vec<&str> = run.chain(["exec:python3 missing.py"]).collect();
+    let answer = bench.boresight_words(&words);
+    let score = answer.json();
+    answer.refused(&["did not start, 2 times in a row", "0 were not flown"]);
+    assert_eq!(score["not_flown"]["frames"], 0);
+}
+
+/// One start that fails costs its frame; the program is started again, as it remembers nothing yet.
+#[test]
+fn a_program_that_starts_in_the_end_goes_on() {
+    let bench = Bench::new();
+    let body = "if len(open(os.environ['PIDS']).readlines()) < 3:\n    sys.exit('not yet')\nhello()\nwhile True:\n    none(ask())";
+    write_program(&bench, &FAR_RANGE, body);
+    let words = ["run", "starting-point", "--frames", "100..105", "--out", "run", "--no-report"];
+    with_program(&bench, &words, "30").done();
+    let rows = bench.csv("run/measurements.csv");
+    let statuses: Vec<&str> = rows.iter().map(|row| row["status"].as_str()).collect();
+    assert!(statuses[..2].iter().all(|status| status.contains("not yet")), "{statuses:?}");
+    assert_eq!(statuses[2..], ["no_target"; 3]);
+    assert!(bench.json("run/score.json").get("not_flown").is_none());
+}
+
+/// Over a dataset nothing is written: there is no truth by which the frames could be scored.
+#[test]
+fn a_program_that_never_greets_answers_no_dataset() {
+    for (scenario, frames) in [("starting-point", "100..105"), ("docking", "18000..18005")] {
+        let bench = Bench::new();
+        bench.boresight(&format!("render {scenario} --frames {frames} --format png --out set")).done();
+        for out in ["answers.csv", "-"] {
+            if out == "-" && scenario != "docking" {
+                continue;
+            }
+            let words = ["process", "set", "--out", out, "--pipeline", "exec:python3 missing.py"];
+            bench.boresight_words(&words).refused(&["did not start, 3 times in a row", "missing.py"]);
+        }
+        assert!(!bench.path("answers.csv").exists());
+    }
+}
+
+/// A case without a start is a failed row of its three frames, as its replay has it; ten of them before any other end the study.
+#[test]
+fn cases_without_a_start_are_failed_rows_and_the_first_ten_end_a_study() {
+    let study = |cases: u64| {
+        format!(
+            "title = \"four frames\"\nscenario = \"starting-point\"\nseed = 5\nframes = \"100..104\"\n[stop]\ncases = {cases}\n\
+             [[vary]]\npath = \"psf.sigma_px\"\nlaw = {{ kind = \"uniform\", min = 0.7, max = 0.9 }}\n"
+        )
+    };
+    let bench = Bench::new();
+    let run = |cases: u64, out: &str, more: &[&str]| {
+        bench.write("study.toml", study(cases));
+        let words = ["study", "run", "study.toml", "--out", out, "--json", "--no-report", "--pipeline"];
+        bench.boresight_words(&[words.as_slice(), &["exec:python3 missing.py"], more].concat())
+    };
+    let summary = run(9, "nine", &[]).done().json();
+    assert_eq!((&summary["cases"], &summary["failed_cases"]), (&9.into(), &9.into()));
+    let replay =
+        ["study", "replay", "study.toml", "--case", "8", "--out", "replay", "--no-report", "--pipeline"];
+    let replay = bench.boresight_words(&[replay.as_slice(), &["exec:python3 missing.py"]].concat());
+    replay.refused(&["did not start, 3 times in a row", "1 were not flown"]);
+    assert_eq!(bench.json("replay/score.json")["frames"], 3);
+    for (out, more) in [("whole", [].as_slice()), ("pieces", &["--shards", "6"]), ("one", &["--jobs", "1"])] {
+        run(12, out, more).refused(&["did not start in any of the first 10 cases", "missing.py"]);
+        assert!(!bench.path(&format!("{out}/cases.parquet")).exists(), "{out}");
+    }
+}
+
 /// An answer that cannot be used costs its frame and no other.
 #[test]
 fn garbage_costs_its_frame_alone_in_both_worlds() {
@@ -300,7 +412,9 @@ fn a_flood_takes_no_memory() {
             bench.path("pids").display(),
         );
         let output = Command::new("sh").args(["-c", &script]).current_dir(bench.path("")).output().unwrap();
-        assert!(output.status.success(), "{body}\n{}", String::from_utf8_lossy(&output.stderr));
+        let expected = if reason.starts_with("at its greeting") { 2 } else { 0 };
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(expected), "{body}\n{told}");
         check_none_left(&bench);
         let status = bench.csv("run/measurements.csv")[0]["status"].clone();
         assert!(status.contains(reason), "{body}: {status}");

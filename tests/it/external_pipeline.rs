@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use crate::support::{Answer, Bench, figure};
+use crate::support::{Bench, figure};
 
 /// The command of the example in docs/examples.
 fn brightest() -> String {
@@ -157,15 +157,6 @@ fn an_answer_for_another_frame_is_a_failure() {
     check_fails_after_two(&answers_two_then(then), &[], &["frame 7"]);
 }
 
-/// Every frame is a failure whose reason has `part`.
-fn check_fails_at_once(bench: &Bench, answer: Answer, part: &str) {
-    answer.done();
-    assert_eq!(bench.json("run/score.json")["misses"], json!({ "pipeline_failed": 5 }));
-    for status in statuses(bench) {
-        assert!(status.starts_with("failed: ") && status.contains(part), "{status}");
-    }
-}
-
 #[test]
 fn a_program_that_does_not_exist_is_refused_before_anything_is_written() {
     let bench = Bench::new();
@@ -181,27 +172,6 @@ fn a_program_that_does_not_exist_is_refused_before_anything_is_written() {
     ];
     bench.boresight_words(&words).refused(&["there is no program `no-such-program`", "search path"]);
     assert!(!bench.path("run").exists());
-}
-
-#[test]
-fn a_program_of_another_version_is_a_failure_of_every_frame() {
-    let bench = Bench::new();
-    bench.write(
-        "program.py",
-        "print('{\"boresight_pipeline\": 2, \"name\": \"x\"}', flush=True)\ninput()\ninput()",
-    );
-    let words = [
-        "run",
-        "starting-point",
-        "--frames",
-        FRAMES,
-        "--out",
-        "run",
-        "--pipeline",
-        "exec:python3 program.py",
-    ];
-    let answer = bench.boresight_words(&words);
-    check_fails_at_once(&bench, answer, "version");
 }
 
 #[test]

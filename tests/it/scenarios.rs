@@ -29,6 +29,46 @@ fn every_built_in_scenario_passes_its_check() {
     }
 }
 
+/// What follows from the numbers of a scenario, and none of them looks wrong.
+#[test]
+fn a_check_tells_what_follows_from_the_numbers() {
+    let bench = Bench::new();
+    for scenario in BUILT_IN {
+        let check = bench.boresight(&format!("scenario check {} --json", scenario.name)).done().json();
+        assert_eq!(check["warnings"], json!([]), "{}", scenario.name);
+    }
+    let check = bench.boresight("scenario check starting-point --json").done().json();
+    let near = |value: &Value, expected: f64, tolerance: f64| {
+        let value = value.as_f64().unwrap();
+        assert!((value - expected).abs() < tolerance, "{value}, expected {expected}");
+    };
+    // 752 × 8.6 µm and 580 × 8.3 µm behind 20.187 mm: 18.2° × 13.6°, 88″ × 85″ a pixel.
+    near(&check["field_deg"][0], 18.2, 0.1);
+    near(&check["field_deg"][1], 13.6, 0.1);
+    near(&check["pixel_arcsec"][0], 87.87, 0.01);
+    near(&check["pixel_arcsec"][1], 84.81, 0.01);
+    assert_eq!((&check["exposure_s"], &check["duration_s"]), (&json!([0.001, 0.25]), &json!(5985.0)));
+    near(&check["limiting_magnitude"], 8.10, 0.05);
+    bench.boresight("render starting-point --frames 0..1 --out set").done();
+    let bytes = std::fs::metadata(bench.path("set/frames/000000.fits")).unwrap().len();
+    near(&check["fits_bytes"], bytes as f64, 2880.5);
+    let text = bench.boresight("scenario check starting-point").done().stdout;
+    for part in
+        ["field of view 18.", "exposures of 0.001 s to 0.25 s", "SNR 5", "400 frames in 5985 s", " MB in all"]
+    {
+        assert!(text.contains(part), "`{part}` in {text}");
+    }
+    let check = bench.boresight("scenario check docking --json").done().json();
+    near(&check["views"][0]["field_deg"][0], 15.0, 0.1);
+    near(&check["views"][1]["field_deg"][0], 40.0, 0.1);
+    assert_eq!((&check["frames"], &check["field_bytes"]), (&json!(25_169), &json!(768 * 288)));
+    let text = bench.boresight("scenario check docking").done().stdout;
+    assert!(
+        text.contains("camera TV-1: field of view 14.999° × ") && text.contains("5.6 GB in all"),
+        "{text}"
+    );
+}
+
 /// What a run would refuse, a check does not pass.
 #[test]
 fn a_check_asks_the_pipeline_too() {

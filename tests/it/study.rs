@@ -155,7 +155,7 @@ fn programs_are_part_of_a_study() {
     let replay = shlex::split(summary["worst"][0]["replay"].as_str().unwrap()).unwrap();
     assert!(replay.contains(&words.to_owned()), "{replay:?}");
     let replay: Vec<&str> = replay[1..].iter().map(String::as_str).chain(["--out", "again"]).collect();
-    bench.boresight_words(&replay).done();
+    bench.boresight_words(&replay).refused(&["did not start", "it is broken"]);
     assert!(bench.read("again/measurements.csv").contains("failed: "));
 
     bench.write("my pipeline.py", "import sys\nsys.exit('it is broken in another way')\n");

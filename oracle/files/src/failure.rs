@@ -23,6 +23,9 @@ pub enum Failure {
     /// A value that the contract does not allow, or a pipeline that cannot be built.
     #[error(transparent)]
     Contract(#[from] contract::ContractError),
+    /// A pipeline that never began its work.
+    #[error(transparent)]
+    NotStarted(#[from] contract::FailedStarts),
     /// Whoever asked for the answer does not want it any more.
     #[error("interrupted")]
     Interrupted,

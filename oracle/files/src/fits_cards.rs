@@ -9,7 +9,7 @@ use hifitime::Unit;
 
 use super::error::Place;
 use super::time::format_utc;
-use super::{FileError, FrameHeader, SipTerm, TanSip, windows};
+use super::{BeyondSip, FileError, FrameHeader, SipTerm, TanSip, windows};
 
 /// Cards under construction; each is checked as it is added.
 struct Cards<'a> {
@@ -106,8 +106,9 @@ fn times(cards: &mut Cards<'_>, header: &FrameHeader) -> Result<(), FileError> {
 
 fn world_coordinates(cards: &mut Cards<'_>, wcs: &TanSip) -> Result<(), FileError> {
     cards.whole("WCSAXES", 2, "")?;
-    cards.text("CTYPE1", "RA---TAN-SIP", "")?;
-    cards.text("CTYPE2", "DEC--TAN-SIP", "")?;
+    let suffix = if wcs.sip.is_ok() { "-SIP" } else { "" };
+    cards.text("CTYPE1", &format!("RA---TAN{suffix}"), "")?;
+    cards.text("CTYPE2", &format!("DEC--TAN{suffix}"), "")?;
     cards.text("CUNIT1", "deg", "")?;
     cards.text("CUNIT2", "deg", "")?;
     cards.number("CRPIX1", wcs.crpix[0], "principal point, first pixel is 1")?;
@@ -121,12 +122,22 @@ fn world_coordinates(cards: &mut Cards<'_>, wcs: &TanSip) -> Result<(), FileErro
     }
     // Written out, as its default is another one at the pole.
     cards.number("LONPOLE", 180.0, "[deg]")?;
-    for (name, terms) in [("A", &wcs.a), ("B", &wcs.b), ("AP", &wcs.ap), ("BP", &wcs.bp)] {
-        polynomial(cards, name, wcs.order, terms)?;
+    let astrometric = "World coordinates are astrometric, made from the truth: stellar";
+    match &wcs.sip {
+        Ok(sip) => {
+            for (name, terms) in [("A", &sip.a), ("B", &sip.b), ("AP", &sip.ap), ("BP", &sip.bp)] {
+                polynomial(cards, name, sip.order, terms)?;
+            }
+            cards.comment(astrometric);
+            cards.comment("aberration is folded into CRVAL, CD and the SIP polynomials,");
+            cards.comment(&format!("which are fitted; largest residual {:.1e} pix.", sip.residual_px));
+        }
+        Err(BeyondSip { radius_px }) => {
+            cards.comment(astrometric);
+            cards.comment("aberration is folded into CRVAL and CD. No SIP follows the distortion");
+            cards.comment(&format!("beyond {radius_px:.0} pix of CRPIX: right near CRPIX alone."));
+        }
     }
-    cards.comment("World coordinates are astrometric, made from the truth: stellar");
-    cards.comment("aberration is folded into CRVAL, CD and the SIP polynomials,");
-    cards.comment(&format!("which are fitted; largest residual {:.1e} pix.", wcs.residual_px));
     Ok(())
 }
 

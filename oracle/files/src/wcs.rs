@@ -15,12 +15,6 @@ pub enum WcsError {
         /// Along rows, first pixel 0.
         y: f64,
     },
-    /// The distortion is more than SIP's highest order can follow.
-    #[error("SIP of order 9 leaves {residual_px:.3} px, expected at most 0.01 px")]
-    TooDistorted {
-        /// Largest residual over the detector, px.
-        residual_px: f64,
-    },
 }
 
 /// One term of a SIP polynomial.
@@ -32,6 +26,31 @@ pub struct SipTerm {
     pub v_power: usize,
     /// Coefficient, px^(1 − u_power − v_power).
     pub coefficient: f64,
+}
+
+/// A distortion as SIP has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sip {
+    /// Order of the four polynomials, 3 to 9.
+    pub order: usize,
+    /// From distorted to undistorted along columns; terms of order 2 and more.
+    pub a: Vec<SipTerm>,
+    /// From distorted to undistorted along rows.
+    pub b: Vec<SipTerm>,
+    /// From undistorted to distorted along columns; terms of order 1 and more.
+    pub ap: Vec<SipTerm>,
+    /// From undistorted to distorted along rows.
+    pub bp: Vec<SipTerm>,
+    /// Largest distance over the detector between the fit and the mapping, either way, px.
+    pub residual_px: f64,
+}
+
+/// A distortion that SIP cannot follow to the corners of the detector: its highest order leaves more than 0.01 px there, or the
+/// distortion is so steep that it is not undone step by step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeyondSip {
+    /// Distance from the principal point, px, from which on it is so.
+    pub radius_px: f64,
 }
 
 /// World coordinates TAN-SIP (Calabretta & Greisen 2002, A&A 395, 1077; Shupe et al. 2005, ASP Conf. Ser. 347, 491).
@@ -47,18 +66,8 @@ pub struct TanSip {
     pub crpix: [f64; 2],
     /// Rows: east, north; columns: along columns, along rows; degrees per pixel.
     pub cd_deg_per_px: [[f64; 2]; 2],
-    /// Order of the four polynomials, 3 to 9.
-    pub order: usize,
-    /// From distorted to undistorted along columns; terms of order 2 and more.
-    pub a: Vec<SipTerm>,
-    /// From distorted to undistorted along rows.
-    pub b: Vec<SipTerm>,
-    /// From undistorted to distorted along columns; terms of order 1 and more.
-    pub ap: Vec<SipTerm>,
-    /// From undistorted to distorted along rows.
-    pub bp: Vec<SipTerm>,
-    /// Largest distance over the detector between the fit and the mapping, either way, px.
-    pub residual_px: f64,
+    /// The distortion; without it the coordinates are right at the principal point alone.
+    pub sip: Result<Sip, BeyondSip>,
 }
 
 /// The residual at which no higher order is tried: a tenth of what is promised.
@@ -72,11 +81,10 @@ impl TanSip {
     /// about 1e-6 px; it gives `None` for what is behind the camera.
     ///
     /// `boresight` is a direction within some degrees of the one that maps to `principal`. The lowest order from 3
-    /// to 9 that leaves 0.001 px is taken.
+    /// to 9 that leaves 0.001 px is taken; where order 9 leaves more than 0.01 px, there is no SIP.
     ///
     /// # Errors
-    /// [`WcsError::NotMapped`] when a pixel of the detector cannot be reached from the boresight;
-    /// [`WcsError::TooDistorted`] when order 9 leaves more than 0.01 px.
+    /// [`WcsError::NotMapped`] when the principal point cannot be reached from the boresight.
     pub fn fit(
         columns: usize,
         rows: usize,
@@ -95,13 +103,36 @@ impl TanSip {
         let jacobian = jacobian(&offset).ok_or_else(|| not_mapped(Vector2::zeros()))?;
         let cd = jacobian.try_inverse().ok_or_else(|| not_mapped(Vector2::zeros()))?;
 
-        let samples = grid(columns, rows)
-            .map(|[x, y]| {
-                let distorted = Vector2::new(x - principal.x, y - principal.y);
-                let ideal = undistort(distorted, |ideal| offset(cd * ideal));
-                ideal.map(|ideal| Sample { distorted, ideal }).ok_or_else(|| not_mapped(distorted))
-            })
-            .collect::<Result<Vec<_>, _>>()?;
+        let cd_deg = cd.map(|c| Angle::from_radians(c).degrees());
+        let (x, y) = principal.to_fits();
+        Ok(Self {
+            crval_deg: [center.ra().degrees(), center.dec().degrees()],
+            crpix: [x, y],
+            cd_deg_per_px: [[cd_deg.m11, cd_deg.m12], [cd_deg.m21, cd_deg.m22]],
+            sip: Sip::fit(columns, rows, principal, |ideal| offset(cd * ideal)),
+        })
+    }
+}
+
+impl Sip {
+    /// Fits `distort`, from undistorted offsets from the principal point to distorted ones, px.
+    fn fit(
+        columns: usize,
+        rows: usize,
+        principal: PixelPoint,
+        distort: impl Fn(Vector2<f64>) -> Option<Vector2<f64>>,
+    ) -> Result<Self, BeyondSip> {
+        let (mut samples, mut lost_px) = (Vec::new(), f64::INFINITY);
+        for [x, y] in grid(columns, rows) {
+            let distorted = Vector2::new(x - principal.x, y - principal.y);
+            match undistort(distorted, &distort) {
+                Some(ideal) => samples.push(Sample { distorted, ideal }),
+                None => lost_px = lost_px.min(distorted.norm()),
+            }
+        }
+        if lost_px.is_finite() {
+            return Err(BeyondSip { radius_px: lost_px });
+        }
 
         // A scale of one at the border keeps the powers of the fit near one.
         let scale = columns.max(rows) as f64;
@@ -111,11 +142,7 @@ impl TanSip {
             let forward = Distortion::fit(&samples, 2, order, scale, |s| (s.distorted, s.ideal));
             let inverse = Distortion::fit(&samples, 1, order, scale, |s| (s.ideal, s.distorted));
             let Some((forward, inverse)) = forward.zip(inverse) else { break };
-            let residual = samples.iter().fold(0.0_f64, |worst, s| {
-                let there = (forward.apply(s.distorted) - s.ideal).norm();
-                let back = (inverse.apply(s.ideal) - s.distorted).norm();
-                worst.max(there).max(back)
-            });
+            let residual = samples.iter().fold(0.0_f64, |worst, s| worst.max(s.residual(&forward, &inverse)));
             if residual < residual_px {
                 residual_px = residual;
                 best = Some((order, forward, inverse));
@@ -126,21 +153,16 @@ impl TanSip {
         }
         match best {
             Some((order, forward, inverse)) if residual_px <= PROMISED_PX => {
-                let cd_deg = cd.map(|c| Angle::from_radians(c).degrees());
-                let (x, y) = principal.to_fits();
-                Ok(Self {
-                    crval_deg: [center.ra().degrees(), center.dec().degrees()],
-                    crpix: [x, y],
-                    cd_deg_per_px: [[cd_deg.m11, cd_deg.m12], [cd_deg.m21, cd_deg.m22]],
-                    order,
-                    a: forward.u,
-                    b: forward.v,
-                    ap: inverse.u,
-                    bp: inverse.v,
-                    residual_px,
-                })
+                let (a, b, ap, bp) = (forward.u, forward.v, inverse.u, inverse.v);
+                Ok(Self { order, a, b, ap, bp, residual_px })
             }
-            _ => Err(WcsError::TooDistorted { residual_px }),
+            best => {
+                let is_off = |s: &&Sample| {
+                    best.as_ref().is_none_or(|(_, there, back)| s.residual(there, back) > PROMISED_PX)
+                };
+                let off = samples.iter().filter(is_off).map(|s| s.distorted.norm());
+                Err(BeyondSip { radius_px: off.fold(f64::INFINITY, f64::min) })
+            }
         }
     }
 }
@@ -233,6 +255,15 @@ fn grid(columns: usize, rows: usize) -> impl Iterator<Item = [f64; 2]> {
 struct Sample {
     distorted: Vector2<f64>,
     ideal: Vector2<f64>,
+}
+
+impl Sample {
+    /// How far off two fits are, there and back, px.
+    fn residual(&self, forward: &Distortion, inverse: &Distortion) -> f64 {
+        let there = (forward.apply(self.distorted) - self.ideal).norm();
+        let back = (inverse.apply(self.ideal) - self.distorted).norm();
+        there.max(back)
+    }
 }
 
 /// A pair of polynomials that are added to an offset.
@@ -346,8 +377,9 @@ pub(super) mod tests {
         for (ra, dec) in [(0.0, 0.0), (10.0, 80.0), (200.0, -89.999), (359.9999, 45.0), (77.0, 90.0)] {
             let wcs = fit(&camera(), ra, dec).unwrap();
             // 0.01 px is promised; order 5 or more is taken until 0.001 px.
-            assert!(wcs.residual_px < GOOD_ENOUGH_PX, "{}", wcs.residual_px);
-            assert_eq!(wcs.order, 5);
+            let sip = wcs.sip.unwrap();
+            assert!(sip.residual_px < GOOD_ENOUGH_PX, "{}", sip.residual_px);
+            assert_eq!(sip.order, 5);
             assert_eq!(wcs.crpix, [396.0, 289.0]);
         }
     }
@@ -368,7 +400,8 @@ pub(super) mod tests {
             let plane = Vector2::new(cd * sa / w, (c0 * sd - s0 * cd * ca) / w).map(f64::to_degrees);
             let [[cd11, cd12], [cd21, cd22]] = wcs.cd_deg_per_px;
             let ideal = Matrix2::new(cd11, cd12, cd21, cd22).try_inverse().unwrap() * plane;
-            let inverse = Distortion { u: wcs.ap.clone(), v: wcs.bp.clone() };
+            let sip = wcs.sip.clone().unwrap();
+            let inverse = Distortion { u: sip.ap, v: sip.bp };
             let offset = inverse.apply(ideal);
             let got = PixelPoint::from_fits(wcs.crpix[0] + offset.x, wcs.crpix[1] + offset.y);
             let expected = map(&sky).unwrap();
@@ -388,10 +421,25 @@ pub(super) mod tests {
         assert!(shift > 5.0 && shift < 20.6, "{shift}");
     }
 
+    /// The barrel that order 9 no longer follows at the corners, the pincushion that is too steep for the iteration, the one that folds.
+    #[test]
+    fn a_distortion_beyond_sip_leaves_the_plane_and_says_from_where_on() {
+        let plain = fit(&camera(), 0.0, 0.0).unwrap();
+        let mut radii = Vec::new();
+        for k1 in [-4e-7, 2e-6, 5e-6, 1e-4, -4e-6] {
+            let wcs = fit(&Camera { radial: [k1, 0.0, 0.0], ..camera() }, 0.0, 0.0).unwrap();
+            assert_eq!((wcs.crpix, wcs.cd_deg_per_px.len()), (plain.crpix, 2));
+            let corner_px = (395.5_f64.powi(2) + 291.5_f64.powi(2)).sqrt();
+            let radius_px = wcs.sip.unwrap_err().radius_px;
+            assert!(radius_px > 20.0 && radius_px <= corner_px, "{k1}: {radius_px}");
+            radii.push(radius_px);
+        }
+        // The steeper, the nearer.
+        assert!(radii[1] > radii[2] && radii[2] > radii[3], "{radii:?}");
+    }
+
     #[test]
     fn what_cannot_be_fitted_is_an_error() {
-        let folded = Camera { radial: [-4e-6, 0.0, 0.0], ..camera() };
-        assert!(matches!(fit(&folded, 0.0, 0.0), Err(WcsError::NotMapped { .. })));
         let nowhere = TanSip::fit(9, 9, PixelPoint::default(), Direction::from_unit(Vector3::x()), |_| None);
         assert!(matches!(nowhere, Err(WcsError::NotMapped { .. })));
         let nan = |_: &Direction<Icrs>| Some(PixelPoint::new(f64::NAN, 0.0));

@@ -59,11 +59,12 @@ pub use read::ResultKind;
 pub use study::{StudyResult, study_page};
 pub use visibility::{read_visibility, visibility_page};
 
-use self::read::is_far_range_run;
+use self::read::{is_far_range_run, read_json};
 use self::run_page::run_page;
 use files::{Checksums, Earlier, Failure, WholeFile};
-use run::{AnyScored, Prepared, PreparedDocking, World as _, world_of_run};
+use run::{AnyScored, NotFlown, Prepared, PreparedDocking, World as _, world_of_run};
 use score::Scored;
+use serde::Deserialize;
 
 /// Reads a run directory and makes its page.
 type RunPage = fn(&Path) -> Result<Page, Failure>;
@@ -89,12 +90,28 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
         ResultKind::Run => {
             let world = world_of_run(&directory.join("run.toml"))?;
             let of_world = PAGES.iter().find(|(code, _)| *code == world.code());
-            of_world.map_or(run_page as RunPage, |(_, page)| *page)(directory)?
+            with_rest(of_world.map_or(run_page as RunPage, |(_, page)| *page)(directory)?, directory)?
         }
         ResultKind::Study => study_page(&StudyResult::read(directory)?),
         ResultKind::Visibility => visibility_page(&read_visibility(directory)?),
     };
     Checksums::check(directory, |_| true)?;
+    Ok(page)
+}
+
+/// The page of a run, which says what of it was not flown.
+fn with_rest(mut page: Page, directory: &Path) -> Result<Page, Failure> {
+    /// The part of `score.json` that tells it.
+    #[derive(Deserialize)]
+    struct Rest {
+        not_flown: Option<NotFlown>,
+    }
+    let score = directory.join("score.json");
+    if score.is_file()
+        && let Some(not_flown) = read_json::<Rest>(&score, "score")?.not_flown
+    {
+        page.warnings.push(format!("The run is not complete: {not_flown}."));
+    }
     Ok(page)
 }
 
@@ -133,7 +150,7 @@ pub fn report_of_run(directory: &Path, scored: &mut dyn AnyScored) -> Result<Pag
     match scored.as_any_mut().downcast_mut::<Scored>() {
         Some(scored) => {
             let run = FarRangeRun::with_verdicts(directory, std::mem::take(&mut scored.verdicts))?;
-            far_range_page(&run, &FrameSheet::open(directory)?)
+            with_rest(far_range_page(&run, &FrameSheet::open(directory)?)?, directory)
         }
         None => report_of(directory),
     }

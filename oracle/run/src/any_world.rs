@@ -266,6 +266,9 @@ pub trait AnyPrepared: Send + Sync {
     /// [`World::summary`](crate::World::summary).
     fn summary(&self) -> (Value, String);
 
+    /// [`World::warnings`](crate::World::warnings).
+    fn warnings(&self) -> Vec<String>;
+
     /// The factory of the pipeline chosen.
     ///
     /// # Errors

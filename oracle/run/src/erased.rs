@@ -24,6 +24,7 @@ use crate::any_world::{
 use crate::flight::Flight;
 use crate::pipeline_choice::PipelineChoice;
 use crate::run_result::RunResult;
+use crate::slips::slips;
 use crate::world::{Answers, Scored, World, process};
 
 impl<S: Scored + Send + 'static> AnyScored for S {
@@ -238,6 +239,11 @@ impl<W: World> AnyPrepared for W {
         World::summary(self)
     }
 
+    fn warnings(&self) -> Vec<String> {
+        let scenario = self.scenario().to_json().unwrap_or_default();
+        World::warnings(self).into_iter().chain(slips(&scenario)).collect()
+    }
+
     fn factory(&self, choice: &PipelineChoice, scratch: &Path) -> Result<AnyFactory, Failure> {
         Ok(AnyFactory::new(choice.factory::<W>(W::config(self.scenario()), scratch)?))
     }
@@ -292,7 +298,8 @@ impl<W: World> AnyPrepared for W {
 
 impl<S: Scored + Send + 'static> RunResult<S> {
     fn boxed(self) -> RunResult<Box<dyn AnyScored>> {
-        RunResult { scored: Box::new(self.scored), first_failure: self.first_failure }
+        let Self { scored, first_failure, not_flown } = self;
+        RunResult { scored: Box::new(scored), first_failure, not_flown }
     }
 }
 

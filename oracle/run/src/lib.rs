@@ -13,6 +13,7 @@
 
 pub mod any_world;
 mod by_number;
+mod derived;
 pub mod docking;
 mod erased;
 pub mod far_range;
@@ -20,6 +21,7 @@ pub mod flight;
 pub mod pipeline_choice;
 mod provenance;
 mod run_result;
+mod slips;
 mod source;
 pub mod world;
 pub mod worlds;
@@ -29,7 +31,7 @@ pub use docking::PreparedDocking;
 pub use erased::Of;
 pub use far_range::{Prepared, SceneTruth};
 pub use flight::{Expectation, Flight};
-pub use run_result::{FirstFailure, RunResult};
+pub use run_result::{FirstFailure, NotFlown, RunResult};
 pub use source::world_of_run;
 pub use world::{OpenDataset, Processed, ProcessedFrame, Scored, World, process, process_into};
 pub use worlds::{json_schema, register, world_called, worlds};

@@ -1,6 +1,9 @@
 //! What a run gave.
 
-use contract::Interface;
+use std::fmt;
+
+use contract::{FailedStarts, Interface};
+use serde::{Deserialize, Serialize};
 
 /// What a run gave.
 #[derive(Debug)]
@@ -9,6 +12,35 @@ pub struct RunResult<S> {
     pub scored: S,
     /// The first failure of the pipeline, if it failed at all.
     pub first_failure: Option<FirstFailure>,
+    /// What was not flown, where the pipeline never started. Its failed starts were flown, and are scored.
+    pub not_flown: Option<NotFlown>,
+}
+
+/// What was not flown of a run whose pipeline never started.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NotFlown {
+    /// Images that were not flown; 0 of a run that has no more than were flown.
+    pub frames: u64,
+    /// Starts that failed, one for each image that was flown.
+    pub failed_starts: u32,
+    /// Why the last one failed.
+    pub reason: String,
+}
+
+impl NotFlown {
+    /// What is missing of a run of so many images.
+    pub(crate) fn of(images: u64, FailedStarts { count, reason }: &FailedStarts) -> Self {
+        let frames = images.saturating_sub(u64::from(*count));
+        Self { frames, failed_starts: *count, reason: reason.clone() }
+    }
+}
+
+impl fmt::Display for NotFlown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { frames, failed_starts, reason } = self;
+        let failed = FailedStarts { count: *failed_starts, reason: reason.clone() };
+        write!(f, "{failed}; {failed_starts} frames were flown and are scored, {frames} were not flown")
+    }
 }
 
 /// The first image that a pipeline failed at, and why.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::{Mutex, PoisonError};
 
-use contract::{Interface, Pipeline, PipelineFactory};
+use contract::{FailedStarts, Interface, Pipeline, PipelineFactory};
 use files::{Failure, FileError, PartialFiles, RunDirectory, WholeFile};
 use indexmap::IndexMap;
 use pipeline::external::Protocol;
@@ -17,7 +17,10 @@ use serde_json::{Value, json};
 
 use crate::any_world::{Options, ScenarioSource};
 use crate::flight::{Flight, in_order};
-use crate::run_result::{FirstFailure, RunResult};
+use crate::run_result::{FirstFailure, NotFlown, RunResult};
+
+/// Starts of a pipeline in a row that may fail before a run is over.
+const MOST_FAILED_STARTS: u32 = 3;
 
 /// The setup that pipelines of a world are built with.
 pub type SetupOf<W> = <<W as World>::Interface as Interface>::Setup;
@@ -101,6 +104,11 @@ pub trait World: Sized + Send + Sync + 'static {
         let (name, frames) = (&self.run_file().name, self.frame_count());
         let text = format!("{name}: {frames} {}s, no mistake found", Self::Interface::IMAGE);
         (json!({ "scenario": name, "ok": true, "world": Self::CODE, "frames": frames }), text)
+    }
+
+    /// What is allowed and may not be meant, beside numbers that look wrong by a factor of a thousand.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
     }
 
     /// Parameters of the built-in pipeline in a scenario.
@@ -274,7 +282,7 @@ pub trait World: Sized + Send + Sync + 'static {
 
     /// Makes frames, has the pipeline process them and scores its answers; writes all of it, as long as `go_on`, asked after each
     /// frame, does not fail. A scenario is one sequence: the pipeline is built once. With the truth for a stage, the pipeline is the
-    /// built-in one, whatever `factory` builds.
+    /// built-in one, whatever `factory` builds. Where the pipeline does not start, the run is over after three frames, which are scored.
     ///
     /// # Errors
     /// A [`Failure`] when a file cannot be written or the pipeline cannot be built; what `go_on` says.
@@ -290,7 +298,7 @@ pub trait World: Sized + Send + Sync + 'static {
         let mut answers = Self::Answers::create(&Self::Answers::files(&directory.measurements()))?;
         let mut scorer = self.scorer();
         let mut first_failure = None;
-        fly(self, directory, flight, |exposure| {
+        let flown = fly(self, directory, flight, |exposure| {
             let ProcessedFrame { image, telemetry, truth, outcome } = running.process(exposure)?;
             let number = Self::Interface::number(&image);
             first_failure =
@@ -298,23 +306,30 @@ pub trait World: Sized + Send + Sync + 'static {
             answers.add(number, &outcome)?;
             scorer.add(&truth, &outcome)?;
             dataset.add(&image, telemetry, truth)?;
-            go_on().map(|()| image)
-        })?;
+            go_on()?;
+            running.check_starts().map(|()| image)
+        });
+        let not_flown = running.not_flown(&flight.frames);
+        match flown {
+            Err(Failure::NotStarted(_)) => {}
+            flown => flown?,
+        }
         dataset.finish()?;
         answers.finish()?;
         let scored = scorer.finish();
-        let json = serde_json::to_string_pretty(scored.score())
-            .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?;
+        let json =
+            serde_json::to_string_pretty(&ScoreFile { score: scored.score(), not_flown: not_flown.as_ref() })
+                .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?;
         WholeFile::with_text(&directory.score(), &(json + "\n"))?.commit_new()?;
         directory.seal()?;
-        Ok(RunResult { scored, first_failure })
+        Ok(RunResult { scored, first_failure, not_flown })
     }
 
     /// Makes frames on `jobs` threads, has a fresh pipeline process them, and hands each with its answer to `take`, in order, on
     /// the caller's thread. Nothing is written.
     ///
     /// # Errors
-    /// A [`Failure`] when the pipeline cannot be built, and the first one of `take`.
+    /// A [`Failure`] when the pipeline cannot be built or does not start, and the first one of `take`.
     fn follow(
         &self,
         frames: Range<u64>,
@@ -325,10 +340,21 @@ pub trait World: Sized + Send + Sync + 'static {
         let mut running = Running::build(self, factory)?;
         let make = |workspace: &mut Self::Workspace<'_>, frame| self.expose(workspace, frame);
         let bytes = self.exposure_bytes() as u64;
-        in_order(frames, jobs, bytes, || self.workspace(), make, |exposure| take(running.process(exposure)?))
+        in_order(
+            frames,
+            jobs,
+            bytes,
+            || self.workspace(),
+            make,
+            |exposure| {
+                take(running.process(exposure)?)?;
+                running.check_starts()
+            },
+        )
     }
 
-    /// Makes frames on this thread, has the pipeline process them and scores its answers; nothing is written.
+    /// Makes frames on this thread, has the pipeline process them and scores its answers; nothing is written. Where the pipeline does not
+    /// start, it is over after three frames, as [`World::run`].
     ///
     /// # Errors
     /// A [`Failure`] when the pipeline cannot be built.
@@ -341,14 +367,17 @@ pub trait World: Sized + Send + Sync + 'static {
         let mut first_failure = None;
         let mut scorer = self.scorer();
         let mut workspace = self.workspace()?;
-        for frame in frames {
+        for frame in frames.clone() {
             let processed = running.process(self.expose(&mut workspace, frame)?)?;
             let failure = || FirstFailure::of::<Self::Interface>(frame, &processed.outcome);
             first_failure = first_failure.or_else(failure);
             scorer.add(&processed.truth, &processed.outcome)?;
             Self::reuse(&mut workspace, processed.image);
+            if running.check_starts().is_err() {
+                break;
+            }
         }
-        Ok(RunResult { scored: scorer.finish(), first_failure })
+        Ok(RunResult { scored: scorer.finish(), first_failure, not_flown: running.not_flown(&frames) })
     }
 }
 
@@ -493,6 +522,38 @@ impl<W: World> Running<W> {
         self.feedback = W::feedback(self.feedback.clone(), &outcome);
         Ok(ProcessedFrame { image, telemetry, truth, outcome })
     }
+
+    fn failed_starts(&self) -> Option<&FailedStarts> {
+        match &self.pipeline {
+            Processor::Own(pipeline) => pipeline.failed_starts(),
+            Processor::Informed(_) => None,
+        }
+    }
+
+    fn check_starts(&self) -> Result<(), Failure> {
+        check_starts(self.failed_starts())
+    }
+
+    fn not_flown(&self, frames: &Range<u64>) -> Option<NotFlown> {
+        self.failed_starts().map(|failed| NotFlown::of(frames.end - frames.start, failed))
+    }
+}
+
+/// Refuses to go on with a pipeline that does not start.
+fn check_starts(failed: Option<&FailedStarts>) -> Result<(), Failure> {
+    match failed.filter(|failed| failed.count >= MOST_FAILED_STARTS) {
+        Some(failed) => Err(failed.clone().into()),
+        None => Ok(()),
+    }
+}
+
+/// The content of `score.json`.
+#[derive(Serialize)]
+struct ScoreFile<'a, S> {
+    #[serde(flatten)]
+    score: &'a S,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    not_flown: Option<&'a NotFlown>,
 }
 
 /// Makes frames, saves what is kept of each apart, and hands them to `take`, which gives back their images: later ones are made in
@@ -529,7 +590,7 @@ fn fly<W: World>(
 /// Has a pipeline process images, real ones included, and writes its answers to `measurements` and beside it.
 ///
 /// # Errors
-/// A [`Failure`] when an image cannot be read or a file not be written.
+/// A [`Failure`] when an image cannot be read, a file not be written, or the pipeline does not start.
 pub fn process<I: Interface, A: Answers<I>>(
     images: impl IntoIterator<Item = Result<(I::Image, I::Telemetry), Failure>>,
     setup: &I::Setup,
@@ -567,6 +628,10 @@ pub fn process_into<I: Interface, A: Answers<I>>(
         answers.add(number, &outcome)?;
         processed.frames += 1;
         done();
+        check_starts(pipeline.failed_starts())?;
+    }
+    if let Some(failed) = pipeline.failed_starts() {
+        return Err(failed.clone().into());
     }
     answers.finish()?;
     Ok(processed)

@@ -1,6 +1,7 @@
 //! A study in a folder: what is missing of it is made, shard by shard, until it is done.
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use files::Failure;
 
@@ -19,6 +20,32 @@ pub struct Campaign<'a> {
     study: &'a Study,
     pipeline: &'a dyn StudyPipeline,
     store: ShardStore,
+    starts: Starts,
+}
+
+/// Cases in which the pipeline does not start, before it starts in any, that end a study: it would start in none.
+const MOST_FAILED_CASES: u64 = 10;
+
+/// What is known of the pipeline's starts in the cases that were run.
+#[derive(Debug, Default)]
+struct Starts {
+    has_started: AtomicBool,
+    failed_cases: AtomicU64,
+}
+
+impl Starts {
+    /// Counts a case, and refuses to go on where there were too many without a start.
+    fn add(&self, case: &Evaluated) -> Result<(), Failure> {
+        if case.has_started || self.has_started.load(Ordering::Relaxed) {
+            self.has_started.store(true, Ordering::Relaxed);
+        } else if self.failed_cases.fetch_add(1, Ordering::Relaxed) + 1 >= MOST_FAILED_CASES {
+            let reason = case.first_failure.as_ref().map_or("", |first| &first.reason);
+            return Err(Failure::Usage(format!(
+                "the pipeline did not start in any of the first {MOST_FAILED_CASES} cases: {reason}"
+            )));
+        }
+        Ok(())
+    }
 }
 
 /// A case that a campaign knows.
@@ -55,7 +82,7 @@ impl<'a> Campaign<'a> {
         pipeline.check(study.scenario())?;
         let shards = shards.or_else(|| ShardStore::planned_shards(out));
         let plan = Plan::new(study, study.hash_with(pipeline), shards)?;
-        Ok(Self { study, pipeline, store: ShardStore::open(out, plan)? })
+        Ok(Self { study, pipeline, store: ShardStore::open(out, plan)?, starts: Starts::default() })
     }
 
     /// Opens a folder that holds a plan of the study.
@@ -80,7 +107,7 @@ impl<'a> Campaign<'a> {
     /// A shard, made if it is missing or damaged; `done` is told of each of its cases.
     ///
     /// # Errors
-    /// The [`Failure`] of the first case that has one, or of files.
+    /// The [`Failure`] of the first case that has one, or of files; [`Failure::Usage`] where the pipeline starts in none of the first cases.
     pub fn shard(
         &self,
         shard: u64,
@@ -98,9 +125,10 @@ impl<'a> Campaign<'a> {
         rows.iter().for_each(|row| done(Known::Kept(row)));
         let cases = cases.into_iter().collect();
         rows.extend(run_cases(self.study, cases, self.pipeline, workers, |case| {
-            journal.add(&case.row)?;
             done(Known::Run(case));
-            Ok(())
+            self.starts.add(case)?;
+            // A pipeline that did not start may do so another time.
+            if case.has_started { Ok(journal.add(&case.row)?) } else { Ok(()) }
         })?);
         rows.sort_by_key(|row| row.case);
         let table = empty.with_rows(rows);

@@ -1,5 +1,6 @@
 //! Runs the cases of a shard on the threads of this machine.
 use std::path::Path;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use files::Failure;
@@ -22,11 +23,12 @@ pub struct Workers<'a> {
     pub ended: Option<&'a AtomicBool>,
 }
 
-/// Evaluates cases on `jobs` threads, a case a thread; `done` is told of each, in no order. The rows are in order, and depend on
-/// neither. A program finds its images in folders of its own below `scratch`.
+/// Evaluates cases on `jobs` threads, a case a thread; `done` is told of each, in no order, and may end them all. The rows are in order,
+/// and depend on neither. A program finds its images in folders of its own below `scratch`.
 ///
 /// # Errors
-/// The failure of the first case, in order, that has one, and that of `done`; [`Failure::Interrupted`] of those that were not done when it was ended.
+/// That of `done`; the failure of the first case, in order, that has one; [`Failure::Interrupted`] of those that were not done when it
+/// was ended.
 pub(super) fn run_cases(
     study: &Study,
     cases: Vec<u64>,
@@ -38,10 +40,9 @@ pub(super) fn run_cases(
         .num_threads(jobs)
         .build()
         .map_err(|error| Failure::Usage(format!("{jobs} threads cannot be started: {error}")))?;
-    let go_on = || match ended {
-        Some(ended) if ended.load(Ordering::Relaxed) => Err(Failure::Interrupted),
-        _ => Ok(()),
-    };
+    let refused = OnceLock::new();
+    let is_ended = || ended.is_some_and(|ended| ended.load(Ordering::Relaxed)) || refused.get().is_some();
+    let go_on = || if is_ended() { Err(Failure::Interrupted) } else { Ok(()) };
     let one = |case: u64| {
         go_on()?;
         let own = tempfile::tempdir_in(scratch)
@@ -49,9 +50,11 @@ pub(super) fn run_cases(
         let evaluated = evaluate(study, case, pipeline, own.path())?;
         // What a pipeline answered while it was ended is no result.
         go_on()?;
-        done(&evaluated)?;
+        if let Err(failure) = done(&evaluated) {
+            refused.get_or_init(|| failure);
+        }
         Ok(evaluated.row)
     };
     let rows: Vec<Result<CaseRow, Failure>> = pool.install(|| cases.into_par_iter().map(one).collect());
-    rows.into_iter().collect()
+    refused.into_inner().map_or_else(|| rows.into_iter().collect(), Err)
 }

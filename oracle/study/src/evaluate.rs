@@ -3,9 +3,7 @@
 use std::path::Path;
 
 use files::Failure;
-use indexmap::IndexMap;
-use run::{FirstFailure, Options};
-use score::Figure;
+use run::{AnyScored, FirstFailure, Options, RunResult};
 
 use super::cases::{CaseFigure, CaseRow};
 use super::definition::{Case, Study};
@@ -18,6 +16,8 @@ pub struct Evaluated {
     pub row: CaseRow,
     /// The first failure of the pipeline, if it failed at all.
     pub first_failure: Option<FirstFailure>,
+    /// Whether the pipeline started, if it has to be started at all.
+    pub has_started: bool,
 }
 
 /// Simulates, processes and scores a case on this thread; nothing is written. A program finds its images in `scratch`.
@@ -31,7 +31,8 @@ pub fn evaluate(
     scratch: &Path,
 ) -> Result<Evaluated, Failure> {
     let case = study.case(number)?;
-    let (figures, first_failure) = figures_of(study, &case, pipeline, scratch)?;
+    let RunResult { scored, first_failure, not_flown } = run(study, &case, pipeline, scratch)?;
+    let figures = scored.figures();
     let figure = |name: &String| {
         figures.get(name).map_or(CaseFigure { value: None, count: 0, of: 0 }, |figure| CaseFigure {
             value: figure.value,
@@ -42,17 +43,16 @@ pub fn evaluate(
     let figures = study.figures().iter().map(figure).collect();
     let has_failed = first_failure.is_some();
     let row = CaseRow { case: number, seed: case.seed, has_failed, drawn: case.drawn, figures };
-    Ok(Evaluated { row, first_failure })
+    Ok(Evaluated { row, first_failure, has_started: not_flown.is_none() })
 }
 
-fn figures_of(
+fn run(
     study: &Study,
     case: &Case,
     pipeline: &dyn StudyPipeline,
     scratch: &Path,
-) -> Result<(IndexMap<String, Figure>, Option<FirstFailure>), Failure> {
+) -> Result<RunResult<Box<dyn AnyScored>>, Failure> {
     let factory = pipeline.factory(case.source.scenario.as_ref(), scratch)?;
     let prepared = case.source.prepare(Options::default())?;
-    let ran = prepared.score(study.frames(prepared.frame_count())?, &factory)?;
-    Ok((ran.scored.figures().clone(), ran.first_failure))
+    prepared.score(study.frames(prepared.frame_count())?, &factory)
 }

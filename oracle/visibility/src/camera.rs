@@ -127,21 +127,6 @@ impl CameraModel {
         Arc::clone(known.entry(threshold_dn.max(0.0) as u32).or_insert_with(law))
     }
 
-    /// Width and height of the field through the middle of the detector, degrees.
-    pub fn field_deg(&self) -> Option<[f64; 2]> {
-        let (columns, rows) = self.projection.detector();
-        let (right, bottom) = (columns as f64 - 0.5, rows as f64 - 0.5);
-        let Camera { principal_x_px: x, principal_y_px: y, .. } = self.config.camera;
-        let across = |a: PixelPoint, b: PixelPoint| {
-            let (a, b) = (self.projection.unproject(a)?, self.projection.unproject(b)?);
-            Some(a.separation(&b).degrees())
-        };
-        Some([
-            across(PixelPoint::new(-0.5, y), PixelPoint::new(right, y))?,
-            across(PixelPoint::new(x, -0.5), PixelPoint::new(x, bottom))?,
-        ])
-    }
-
     /// The trail, px along x, that the orbital motion draws of what is not at rest in an exposure: at the boresight, from where it
     /// grows towards the edge of a wide field.
     pub fn trail_px(&self, motion: &MotionTable, exposure_s: f64) -> f64 {

@@ -38,7 +38,7 @@ pub(super) fn camera_figures(
     let light_e_per_s = design.background_e_per_s()?;
     let in_a_pixel = background_e(camera, nominal_s, light_e_per_s);
     Ok(CameraFigures {
-        field_deg: camera.field_deg(),
+        field_deg: camera.projection.field().map(|field| field.map(contract::Angle::degrees)),
         zero_point_e_per_s: camera.radiometry.star(0.0, None, None),
         saturation_e: camera.config.sensor.saturation_e(),
         threshold_dn: design.rule.thresholds(camera, in_a_pixel).high_dn,

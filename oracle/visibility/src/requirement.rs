@@ -299,7 +299,8 @@ pub enum Demand {
         /// Farthest range, km.
         #[schemars(range(min = 0.01, max = 1e5))]
         to_km: f64,
-        /// Largest phase angle, degrees; absent: any of those of the target's light.
+        /// Largest phase angle, degrees, 0 to 180; absent: any of those of the target's light.
+        #[schemars(range(min = 0, max = 180))]
         phase_max_deg: Option<f64>,
         /// Probability; absent: that of the file.
         #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
@@ -317,7 +318,8 @@ pub enum Demand {
         /// Farthest range, km.
         #[schemars(range(min = 0.01, max = 1e5))]
         to_km: f64,
-        /// Largest phase angle, degrees; absent: any of those of the target's light.
+        /// Largest phase angle, degrees, 0 to 180; absent: any of those of the target's light.
+        #[schemars(range(min = 0, max = 180))]
         phase_max_deg: Option<f64>,
         /// Stars; absent: that of the file.
         #[schemars(range(min = 1, max = 1000))]

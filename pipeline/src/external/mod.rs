@@ -6,8 +6,10 @@
 //!
 //! - an answer that cannot be used (garbage, a number that is missing, not finite or off the detector, the wrong
 //!   frame) costs its frame; the next one is asked all the same;
-//! - a process that does not start, speaks another version, dies, takes too long, floods its output or speaks out of
-//!   turn is ended with all its children, and every later frame of the sequence says why;
+//! - a process that does not start, speaks another version or greets wrongly is ended and started again for the next frame, until it has
+//!   greeted once; whoever runs the sequence looks at [`contract::Pipeline::failed_starts`] and gives up;
+//! - a process that has greeted, and then dies, takes too long, floods its output or speaks out of turn is ended with all its children, and
+//!   every later frame of the sequence says why: it has a memory, and a second one would be another;
 //! - memory beyond its limit is refused to it, and what it then says or how it ends is its answer.
 //!
 //! There is no shell: the command is split into words by the rules of POSIX quoting, and run.
@@ -29,7 +31,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use contract::{ContractError, Interface, Pipeline, PipelineFactory};
+use contract::{ContractError, FailedStarts, Interface, Pipeline, PipelineFactory};
 
 use process::{Fault, Process};
 
@@ -165,14 +167,7 @@ impl Plan {
     }
 
     /// Starts the process and greets it; the reason when either does not succeed.
-    fn start(&self, greeting: Result<Vec<u8>, String>) -> State {
-        match self.greeted(greeting) {
-            Ok(process) => State::Running(process),
-            Err(reason) => State::Dead(reason),
-        }
-    }
-
-    fn greeted(&self, greeting: Result<Vec<u8>, String>) -> Result<Process, String> {
+    fn start(&self, greeting: Result<Vec<u8>, String>) -> Result<Process, String> {
         let mut process =
             Process::start(&self.program, &self.arguments, self.memory_bytes, self.sandbox.as_ref())
                 .map_err(|error| format!("`{}` does not start: {error}", self.program))?;
@@ -197,14 +192,16 @@ impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
         name(&self.command)
     }
 
-    /// Starts the process and greets it. A process that does not start or greets wrongly gives a pipeline whose every
-    /// answer says so: only a command or a limit that cannot be meant is refused.
+    /// Starts the process and greets it. One that does not start or greets wrongly gives a pipeline whose first answer says so: only a
+    /// command or a limit that cannot be meant is refused.
     fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError> {
         let plan = self.plan()?;
         Ok(Box::new(External::<I> {
-            state: plan.start(I::greeting(setup)),
+            first_start: Some(plan.start(I::greeting(setup))),
+            process: None,
+            failed_starts: None,
             setup: setup.clone(),
-            limit: plan.frame_limit,
+            plan,
             images: Images::new(&self.scratch_dir, I::EXTENSION),
             write_image: Arc::clone(&self.write_image),
             write_time: self.write_time,
@@ -214,42 +211,57 @@ impl<I: Protocol> PipelineFactory<I> for ExternalFactory<I> {
 
 /// One sequence with one process.
 struct External<I: Protocol> {
-    state: State,
+    /// Until the first image comes.
+    first_start: Option<Result<Process, String>>,
+    /// Once it has greeted; or why it was ended since.
+    process: Option<Result<Process, String>>,
+    failed_starts: Option<FailedStarts>,
     setup: I::Setup,
-    limit: Duration,
+    plan: Plan,
     images: Images,
     write_image: Arc<WriteImage<I>>,
     write_time: WriteTime,
-}
-
-enum State {
-    Running(Process),
-    /// The process has ended; why.
-    Dead(String),
 }
 
 impl<I: Protocol> Pipeline<I> for External<I> {
     fn process(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> I::Outcome {
         self.answer(image, telemetry).unwrap_or_else(I::failed)
     }
+
+    fn failed_starts(&self) -> Option<&FailedStarts> {
+        self.failed_starts.as_ref()
+    }
 }
 
 impl<I: Protocol> External<I> {
     fn answer(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> Result<I::Outcome, String> {
-        let process = match &mut self.state {
-            State::Running(process) => process,
-            State::Dead(reason) => return Err(reason.clone()),
+        let state = match &mut self.process {
+            Some(state) => state,
+            None => {
+                match self.first_start.take().unwrap_or_else(|| self.plan.start(I::greeting(&self.setup))) {
+                    Ok(process) => {
+                        self.failed_starts = None;
+                        self.process.insert(Ok(process))
+                    }
+                    Err(reason) => {
+                        let count = self.failed_starts.as_ref().map_or(0, |failed| failed.count) + 1;
+                        self.failed_starts = Some(FailedStarts { count, reason: reason.clone() });
+                        return Err(reason);
+                    }
+                }
+            }
         };
+        let process = state.as_mut().map_err(|reason| reason.clone())?;
         let number = I::number(image);
         let file = self.images.place(number);
         (self.write_image)(image, telemetry, &file.path)
             .map_err(|error| format!("the image cannot be written: {error}"))?;
         let request = I::request(image, telemetry, self.write_time, &file.path)?;
-        match process.exchange(request, self.limit) {
+        match process.exchange(request, self.plan.frame_limit) {
             Ok(line) => I::outcome(&line, number, &self.setup),
             Err(fault) => {
                 let reason = format!("at {} {number}, {}", I::IMAGE, process.end(fault));
-                self.state = State::Dead(reason.clone());
+                *state = Err(reason.clone());
                 Err(reason)
             }
         }

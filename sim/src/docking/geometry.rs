@@ -91,10 +91,14 @@ pub(super) struct TargetGeometry {
     region: Region,
     shading: Occluders,
     hiding: Occluders,
+    /// What faces the open, and how far it stands out along y3, m.
+    fronts: Occluders,
+    front_m: f64,
 }
 
 impl TargetGeometry {
     pub(super) fn new(model: &TargetModel, scene: &DockingScene) -> Self {
+        let visible = || scene.parts.iter().filter(|part| part.visible);
         let cross = &model.cross;
         let (length, half, height) = (cross.half_length_m, 0.5 * cross.width_m, cross.height_m);
         let signs = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
@@ -122,8 +126,20 @@ impl TargetGeometry {
             shading: Occluders::new(scene.parts.iter().filter(|part| part.casts_shadow), |facet| {
                 facet.outer.iter().any(|corner| corner.z > 1e-6)
             }),
-            hiding: Occluders::new(scene.parts.iter().filter(|part| part.visible), |_| true),
+            hiding: Occluders::new(visible(), |_| true),
+            fronts: Occluders::new(visible(), |facet| facet.normal.z > 0.0),
+            front_m: visible()
+                .flat_map(|part| part.facets.iter().flat_map(|facet| &facet.outer))
+                .map(|corner| corner.z)
+                .fold(0.0, f64::max),
         }
+    }
+
+    /// Whether a camera at a place, target frame, is in front of all that is drawn: a front between it and the open is that of a body
+    /// that it is in, or behind.
+    pub(super) fn leaves_free(&self, place: &Vector3<f64>) -> bool {
+        let (camera, ahead) = (Region { centre: *place, radius_m: 0.0 }, Vector3::z());
+        place.z > self.front_m || !self.fronts.along(&camera, &ahead).hide(place, &ahead)
     }
 
     /// Image of the centre of the cross, of the disk, and f r/x3.

@@ -25,6 +25,8 @@ use crate::{exact_toml, regular_file};
 
 /// Largest target file, bytes.
 const MAX_TARGET_BYTES: u64 = 4 << 20;
+/// Fields at which the camera's place is looked at, at most: of longer approaches every so many, the others when they are made.
+const PLACES: usize = 100_000;
 /// Most marks of a target: bits of a truth table's mask.
 const MAX_MARKS: usize = 64;
 
@@ -125,7 +127,7 @@ impl DockingSimulator {
             .iter()
             .map(|camera| Eye::new(&camera.camera))
             .collect::<Result<Vec<_>, SimError>>()?;
-        Ok(Self {
+        let simulator = Self {
             seed: Seed { seed: simulation.seed, case: 0 },
             start: parse_utc_of("start_utc", &simulation.start_utc)?,
             approach,
@@ -138,7 +140,26 @@ impl DockingSimulator {
             model,
             scene,
             field_count: fields as u64 + 1,
-        })
+        };
+        let last = simulator.field_count - 1;
+        let step = (simulator.field_count / PLACES as u64) as usize + 1;
+        (0..last).step_by(step).chain([last]).try_for_each(|field| simulator.state(field).map(drop))?;
+        Ok(simulator)
+    }
+
+    /// Seconds since the beginning, pose and rates of a field.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for a camera that is inside of the target.
+    fn state(&self, field: u64) -> Result<(f64, ApproachState), OutOfRange> {
+        let time_s = field as f64 / self.television.field_rate_hz();
+        let state = self.approach.at(time_s);
+        let place_m = &state.pose.position_m;
+        if self.geometry.leaves_free(place_m) {
+            return Ok((time_s, state));
+        }
+        let value = format!("({:.3}, {:.3}, {:.3}) m at field {field}", place_m.x, place_m.y, place_m.z);
+        Err(OutOfRange::new("approach", value, "a camera in front of the target and of all that is about it"))
     }
 
     /// Fields from the beginning to the end of the approach.
@@ -190,8 +211,7 @@ impl DockingSimulator {
         if field >= self.field_count {
             return Err(OutOfRange::new("field", field, "a field of the approach").into());
         }
-        let time_s = field as f64 / self.television.field_rate_hz();
-        let state = self.approach.at(time_s);
+        let (time_s, state) = self.state(field)?;
         let range_m = state.range_m();
         // The last one is in use down to 0.
         let camera = self.cameras.iter().position(|camera| range_m >= camera.until_range_m).unwrap_or(0);

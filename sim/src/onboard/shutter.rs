@@ -81,6 +81,36 @@ impl Shutter {
         }
     }
 
+    /// The longest exposure that it may choose, s.
+    pub fn longest_s(&self) -> f64 {
+        match self.config {
+            ShutterConfig::Fixed { exposure_s } => exposure_s,
+            ShutterConfig::Automatic { max_s, .. } => max_s,
+        }
+    }
+
+    /// The shortest exposure that it may choose, s.
+    pub fn shortest_s(&self) -> f64 {
+        match self.config {
+            ShutterConfig::Fixed { exposure_s } => exposure_s,
+            ShutterConfig::Automatic { min_s, .. } => min_s,
+        }
+    }
+
+    /// Refuses exposures that last longer than `interval_s`, the time from one frame to the next: a shutter is open once at a time.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for the longest exposure.
+    pub fn check_interval(&self, interval_s: f64) -> Result<(), OutOfRange> {
+        let path = match self.config {
+            ShutterConfig::Fixed { .. } => "shutter.exposure_s",
+            ShutterConfig::Automatic { .. } => "shutter.max_s",
+        };
+        let expected =
+            format!("at most the shortest time from one frame to the next, {interval_s} s (schedule)");
+        require(path, self.longest_s(), expected, |v| v <= interval_s)
+    }
+
     /// The exposure, s, for the expected electrons a second in the peak pixel of the brightest object in the field
     /// that the control looks at; `None` when there is none.
     ///

@@ -75,7 +75,10 @@ impl Projection {
             OutOfRange::new(
                 "camera.radial, camera.tangential",
                 format!("{:?}, {:?}", camera.radial, camera.tangential),
-                "a distortion that does not fold inside the detector",
+                format!(
+                    "a distortion that does not fold inside the detector: it does {:.0} px from the principal point",
+                    projection.distortion.apply(Offset { u: projection.domain_px, v: 0.0 }).length()
+                ),
             )
         })?;
         Ok(projection)
@@ -132,6 +135,17 @@ impl Projection {
     /// that holds the whole field, distortion included.
     pub fn half_diagonal(&self) -> Angle {
         self.half_diagonal
+    }
+
+    /// Width and height of the field through the principal point.
+    pub fn field(&self) -> Option<[Angle; 2]> {
+        let (right, bottom) = (self.columns as f64 - 0.5, self.rows as f64 - 0.5);
+        let PixelPoint { x, y } = self.principal;
+        let across = |a: PixelPoint, b: PixelPoint| Some(self.unproject(a)?.separation(&self.unproject(b)?));
+        Some([
+            across(PixelPoint::new(-0.5, y), PixelPoint::new(right, y))?,
+            across(PixelPoint::new(x, -0.5), PixelPoint::new(x, bottom))?,
+        ])
     }
 
     /// Pixels a radian at the boresight, along columns and along rows.

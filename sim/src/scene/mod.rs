@@ -15,5 +15,6 @@ mod star_field;
 pub use background::{Background, BackgroundConfig, BackgroundField, EarthLightConfig, StrayLightConfig};
 pub use camera_motion::CameraMotion;
 pub use source::Source;
+pub(crate) use spacecraft::Outline;
 pub use spacecraft::{Appearance, BoxConfig, Lighting, PlateConfig, Spacecraft, SurfaceConfig, TargetConfig};
 pub use star_field::StarField;

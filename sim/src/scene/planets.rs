@@ -1,6 +1,6 @@
 //! The planets in the field.
 
-use contract::{CameraFrame, Icrs, Rotation};
+use contract::{CameraFrame, Direction, Icrs, Rotation};
 
 use super::star_field::is_within;
 use super::{CameraMotion, Source};
@@ -39,7 +39,7 @@ pub(crate) fn look(
     }
 }
 
-/// Electrons per second of the brightest planet on the detector, or `at_least` when that is more.
+/// Electrons per second of the brightest planet on the detector that nothing hides, or `at_least` when that is more.
 pub(crate) fn brightest(
     tdb_j2000_s: f64,
     observer: &Observer,
@@ -47,9 +47,11 @@ pub(crate) fn brightest(
     projection: &Projection,
     radiometry: &Radiometry,
     at_least: f64,
+    is_hidden: impl Fn(Direction<Icrs>) -> bool,
 ) -> f64 {
     let mut seen = Vec::new();
     let camera = CameraMotion::still(camera_from_icrs);
     look(tdb_j2000_s, observer, &camera, projection, radiometry, |_| 0.0, &mut seen);
-    seen.iter().map(|planet| planet.electrons_per_s).fold(at_least, f64::max)
+    let seen = seen.iter().filter(|planet| !planet.astrometric.is_some_and(&is_hidden));
+    seen.map(|planet| planet.electrons_per_s).fold(at_least, f64::max)
 }

@@ -78,23 +78,27 @@ impl StarField {
         }
     }
 
-    /// Electrons per second of the brightest star on the detector, or `at_least` when that is more.
+    /// Electrons per second of the brightest star on the detector that nothing hides, or `at_least` when that is more.
     pub fn brightest(
         &self,
         observer: &Observer,
         camera_from_icrs: Rotation<CameraFrame, Icrs>,
         projection: &Projection,
         at_least: f64,
+        is_hidden: impl Fn(Direction<Icrs>) -> bool,
     ) -> f64 {
         let mut brightest = at_least;
         for star in self.around(camera_from_icrs, projection, 0.0) {
             // Most stars are fainter than the best so far and need no place.
-            if star.electrons_per_s > brightest
-                && let Some(position) =
-                    projection.project(&(camera_from_icrs * observer.apparent(&star.motion)))
-                && is_within(position, projection, 0.0)
-            {
-                brightest = star.electrons_per_s;
+            if star.electrons_per_s > brightest {
+                let astrometric = observer.astrometric(&star.motion);
+                let apparent = observer.apparent_of(astrometric);
+                if let Some(position) = projection.project(&(camera_from_icrs * apparent))
+                    && is_within(position, projection, 0.0)
+                    && !is_hidden(astrometric)
+                {
+                    brightest = star.electrons_per_s;
+                }
             }
         }
         brightest
@@ -183,7 +187,7 @@ mod tests {
             let stars = seen(&field, camera_from_icrs, 0.0);
             let expected = stars.iter().map(|star| star.electrons_per_s).fold(0.0, f64::max);
             let brightest =
-                |at_least| field.brightest(&observer(), camera_from_icrs, &projection(), at_least);
+                |at_least| field.brightest(&observer(), camera_from_icrs, &projection(), at_least, |_| false);
             assert!(expected > 0.0);
             assert_eq!(brightest(0.0), expected);
             assert_eq!(brightest(2.0 * expected), 2.0 * expected, "something brighter than all stars");

@@ -31,6 +31,11 @@ impl Charge<'_> {
         self.expected
     }
 
+    /// Adds the charge of a particle's track, as the pixels collect it.
+    pub(crate) fn strike(&mut self, track: &Stamp) {
+        self.expected.add_collected(track);
+    }
+
     /// Electrons that the frame transfer adds to a pixel of an even detector, the mean over all pixels.
     pub fn smear_e_per_px(&self) -> f64 {
         self.smear_e_per_px
@@ -64,12 +69,11 @@ impl Sensor {
         Charge { expected: photo_electrons, smear_e_per_px }
     }
 
-    /// Adds the charge of a particle's track, as the pixels collect it.
-    pub(crate) fn strike(&self, charge: &mut Charge<'_>, track: &mut Stamp) {
+    /// Takes from the image of a particle's track what dead pixels do not collect.
+    pub(crate) fn blind(&self, track: &mut Stamp) {
         for &(x, y) in &self.pattern().dead {
             track.empty(x, y);
         }
-        charge.expected.add_collected(track);
     }
 
     /// Expected electrons of a hot pixel in an exposure, above those of an ordinary one; 0 when it is dead.

@@ -109,6 +109,9 @@ impl CosmicRayConfig {
     }
 }
 
+/// Hits of a frame that are kept at most: each has a row in the truth table.
+const MOST_HITS: f64 = 1e5;
+
 /// The particles that a camera's detector meets.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CosmicRays {
@@ -151,11 +154,27 @@ impl CosmicRays {
         self.config.rate_per_cm2_s * factor
     }
 
-    /// The tracks of a frame. The first `n` of them are the same whatever the rate.
-    pub(crate) fn tracks(&self, seed: &Seed, frame: u64, exposure_s: f64, rate_per_cm2_s: f64) -> Vec<Track> {
+    /// Refuses more hits than a frame may have, at the highest rate and an exposure of `longest_s`.
+    pub(crate) fn check_hits(&self, longest_s: f64) -> Result<(), OutOfRange> {
+        let peak = self.config.south_atlantic.map_or(1.0, |bump| bump.peak_factor);
+        let hits = self.mean_hits(longest_s, self.config.rate_per_cm2_s * peak);
+        let value = format!("{} ({hits:.3e} hits in a frame of {longest_s} s)", self.config.rate_per_cm2_s);
+        let expected =
+            "at most 1e5 hits in a frame: highest rate times area times the longest exposure and readout_s";
+        let refused = || OutOfRange::new("sensor.cosmic_rays.rate_per_cm2_s", value, expected);
+        if hits <= MOST_HITS { Ok(()) } else { Err(refused()) }
+    }
+
+    /// Mean number of hits of a frame.
+    fn mean_hits(&self, exposure_s: f64, rate_per_cm2_s: f64) -> f64 {
         let area_cm2 =
             1e-8 * self.pixel_width_um * self.pixel_height_um * self.columns as f64 * self.rows as f64;
-        let mean = rate_per_cm2_s * area_cm2 * (exposure_s + self.config.readout_s);
+        rate_per_cm2_s * area_cm2 * (exposure_s + self.config.readout_s)
+    }
+
+    /// The tracks of a frame. The first `n` of them are the same whatever the rate.
+    pub(crate) fn tracks(&self, seed: &Seed, frame: u64, exposure_s: f64, rate_per_cm2_s: f64) -> Vec<Track> {
+        let mean = self.mean_hits(exposure_s, rate_per_cm2_s);
         let streams = seed.streams(frame, Effect::CosmicRays);
         let count = poisson(mean, &mut streams.at(0)) as u64;
         (1..=count).map(|number| self.track(&mut streams.at(number))).collect()

@@ -6,7 +6,11 @@
 
 use std::ops::RangeInclusive;
 
+use contract::OutOfRange;
+use hifitime::Epoch;
 use nalgebra::Vector3;
+
+use super::clock;
 
 /// The instants that the table holds, in s of TDB since J2000.0: 1990-01-01 00:00 to 2050-01-06 00:00 TDB.
 pub const COVERAGE: RangeInclusive<f64> = START_S..=END_S;
@@ -44,6 +48,18 @@ impl EarthState {
     /// The Sun from the centre of the Earth, km: geometric, at the same instant (no light time, no aberration).
     pub fn sun_geocentric_km(&self) -> Vector3<f64> {
         self.sun_position_km - self.position_km
+    }
+}
+
+/// Refuses an instant outside [`COVERAGE`]; `path` and `value` are those of the time in the scenario.
+///
+/// # Errors
+/// [`OutOfRange`] with the path.
+pub fn check_covered(path: impl Into<String>, value: &str, time: Epoch) -> Result<(), OutOfRange> {
+    if COVERAGE.contains(&clock::tdb_j2000_s(time)) {
+        Ok(())
+    } else {
+        Err(OutOfRange::new(path, value, format!("a time of the ephemerides, {COVERAGE_TEXT}")))
     }
 }
 
@@ -146,8 +162,8 @@ mod tests {
     fn the_sun_stands_at_the_equinox_when_the_almanac_says_so() {
         // March equinox 2012: 2012-03-20 05:14 UTC (to the minute), apparent longitude of date 0.
         // In ICRS axes, precession of 12.2 years × 50.3″ = 614″, and 20.5″ of aberration, stand between.
-        let time = super::super::clock::parse_utc("2012-03-20T05:14:00Z").unwrap();
-        let sun = earth(super::super::clock::tdb_j2000_s(time)).unwrap().sun_geocentric_km();
+        let time = clock::parse_utc("2012-03-20T05:14:00Z").unwrap();
+        let sun = earth(clock::tdb_j2000_s(time)).unwrap().sun_geocentric_km();
         let ra_arcsec = libm::atan2(sun.y, sun.x).to_degrees() * 3_600.0;
         // Right ascension there is longitude × cos ε: (−614 + 20.5) × 0.9175 = −545. A minute is 2.5″, nutation 16″.
         assert!((ra_arcsec + 545.0).abs() < 20.0, "{ra_arcsec}");

@@ -121,6 +121,21 @@ impl Schedule {
         self.groups.last().map_or(0, |group| group.frames.end)
     }
 
+    /// The shortest time from one frame to the next, s; infinite for a single frame.
+    pub fn shortest_interval_s(&self) -> f64 {
+        let last = |group: &Group| group.time(group.frames.end - 1);
+        let within = self.groups.iter().filter(|group| group.frames.end - group.frames.start > 1);
+        let within = within.map(|group| group.cadence_ns as f64 / 1e9);
+        let between = self.groups.iter().zip(self.groups.iter().skip(1));
+        let between = between.map(|(before, after)| (after.start - last(before)).to_seconds());
+        within.chain(between).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The middles of the first and the last exposure.
+    pub fn ends(&self) -> Option<[Epoch; 2]> {
+        Some([self.frame(0)?.1, self.frame(self.frame_count().checked_sub(1)?)?.1])
+    }
+
     /// Name of the group and middle of the exposure of frame `n`; `None` past the last frame.
     pub fn frame(&self, n: u64) -> Option<(&str, Epoch)> {
         let group = &self.groups[self.group_of(n)?];

@@ -11,6 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::clock::parse_utc_of;
+use super::ephemeris::check_covered;
 use super::manoeuvre::ManoeuvreConfig;
 use super::orbit::{Elements, ElementsConfig, Rtn, State};
 use super::relative::RelativeElements;
@@ -99,6 +100,7 @@ impl Trajectory {
     /// a manoeuvre that is out of order, not after the epoch, or leaves no supported orbit.
     pub fn new(config: &OrbitConfig) -> Result<Self, OutOfRange> {
         let epoch = parse_utc_of("orbit.epoch_utc", &config.epoch_utc)?;
+        check_covered("orbit.epoch_utc", &config.epoch_utc, epoch)?;
         let target = config.target.elements()?;
         config.relative.check()?;
         let chaser = config.relative.chaser(&target);
@@ -113,7 +115,9 @@ impl Trajectory {
         let mut arcs = vec![last];
         for (index, manoeuvre) in config.manoeuvres.iter().enumerate() {
             manoeuvre.check(index)?;
-            let start_s = seconds_between(epoch, manoeuvre.time()?);
+            let time = manoeuvre.time()?;
+            check_covered(format!("orbit.manoeuvres[{index}].time_utc"), &manoeuvre.time_utc, time)?;
+            let start_s = seconds_between(epoch, time);
             if start_s <= last.start_s {
                 let expected = "after the orbit's epoch and after the manoeuvre before it";
                 return Err(manoeuvre.refused_time(index, expected));

@@ -24,6 +24,7 @@ mod planets;
 mod sparse;
 mod switching;
 mod target_body;
+mod target_in_the_way;
 mod truth_table;
 mod vector_edges;
 mod vector_shadows;

@@ -8,6 +8,7 @@ mod docking;
 mod images;
 mod measurements;
 mod output;
+mod physics;
 mod scenarios;
 mod telemetry;
 mod usage;

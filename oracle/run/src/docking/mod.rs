@@ -27,12 +27,14 @@ use scenario::{DOCKING, DockingScenario};
 use score::docking::{DockingContext, DockingScore, DockingScorer, TrueField, names};
 use score::{Figure, UnitTable};
 use serde_json::{Value, json};
-use sim::docking::{DockingWorkspace, FieldExposure, FieldTruth};
+use sim::docking::{CameraConfig, DockingWorkspace, FieldExposure, FieldTruth};
+use sim::optics::Projection;
 
 use self::answers::{FieldAnswers, answer_as_filed};
 use self::dataset::{FieldDataset, FieldImages};
 use crate::any_world::{Options, ScenarioSource};
 use crate::by_number::ByNumber;
+use crate::derived::{View, size};
 use crate::flight::{Expectation, Flight, in_order};
 use crate::world::{self, OpenDataset, World, unscorable};
 
@@ -76,10 +78,23 @@ impl World for PreparedDocking {
         let (name, fields, target) = (&self.run_file.name, self.frame_count(), &self.setup.target);
         let (seconds, cameras) =
             (fields as f64 / self.simulator.field_rate_hz(), self.scenario().cameras.len());
+        let camera = |camera: &CameraConfig| {
+            let Ok(projection) = Projection::new(&camera.camera) else { return (Value::Null, String::new()) };
+            let view = View::of(&projection);
+            let text = format!("\ncamera {}: {}", camera.name, view.text());
+            (
+                json!({ "name": camera.name, "field_deg": view.field_deg, "pixel_arcsec": view.pixel_arcsec }),
+                text,
+            )
+        };
+        let (views, lines): (Vec<Value>, Vec<String>) = self.scenario().cameras.iter().map(camera).unzip();
+        let bytes = (self.exposure_bytes() / size_of::<f32>()) as u64;
         let document = json!({
             "scenario": name,
             "ok": true,
             "world": Self::CODE,
+            "views": views,
+            "field_bytes": bytes,
             "frames": fields,
             "duration_s": seconds,
             "target": target.name,
@@ -87,9 +102,13 @@ impl World for PreparedDocking {
             "cameras": cameras,
         });
         let text = format!(
-            "{name}: {fields} fields in {seconds:.0} s, target {} with {} marks, {cameras} cameras, no mistake found",
+            "{name}: {fields} fields in {seconds:.0} s, target {} with {} marks, {cameras} cameras, no mistake found{}\n\
+             {fields} fields of {} each, uncompressed {} in all",
             target.name,
             target.marks.len(),
+            lines.concat(),
+            size(bytes),
+            size(bytes.saturating_mul(fields)),
         );
         (document, text)
     }

@@ -1,9 +1,9 @@
 //! What a run and a rendered dataset have in common on disk: everything but measurements and score.
 
-use contract::{Direction, Frame, Telemetry};
+use contract::{Camera, CameraFrame, Direction, Frame, Telemetry};
 use files::{
-    CameraFile, Failure, FileError, FrameHeader, ImageFormat, RunDirectory, StarRow, TableWriter, TanSip,
-    TelemetryRow, TelemetryWriter, format_utc, write_frame, write_stars,
+    BeyondSip, CameraFile, Failure, FileError, FrameHeader, ImageFormat, RunDirectory, StarRow, TableWriter,
+    TanSip, TelemetryRow, TelemetryWriter, format_utc, write_frame, write_stars,
 };
 use hifitime::Epoch;
 use scenario::FarRangeScenario;
@@ -107,6 +107,19 @@ pub fn save_image(
     };
     write_frame(&directory.frame(exposure.frame.number(), format), format, &exposure.frame, &header)?;
     Ok(())
+}
+
+/// Whether SIP follows a camera's distortion.
+///
+/// # Errors
+/// [`BeyondSip`] with the radius from which on it does not.
+pub(super) fn check_sip(simulator: &Simulator, camera: &Camera) -> Result<(), BeyondSip> {
+    let principal = contract::PixelPoint::new(camera.principal_x_px, camera.principal_y_px);
+    let ahead = Direction::from_unit(*Direction::<CameraFrame>::z().vector());
+    let fitted = TanSip::fit(camera.columns, camera.rows, principal, ahead, |direction| {
+        simulator.projection().project(&Direction::from_unit(*direction.vector()))
+    });
+    fitted.map_or(Ok(()), |wcs| wcs.sip.map(drop))
 }
 
 /// World coordinates of a frame: from astrometric directions (ICRS) to pixels, aberration folded in.

@@ -33,8 +33,18 @@ use self::inject::InjectedPipeline;
 use self::star_list::star_list;
 use crate::any_world::{Options, ScenarioSource};
 use crate::by_number::ByNumber;
+use crate::derived::{View, size};
 use crate::flight::{Expectation, Flight};
 use crate::world::{self, InformedPipeline, OpenDataset, World, unscorable};
+
+/// The signal-to-noise ratio of the faintest star that a check tells of.
+const LIMITING_SNR: f64 = 5.0;
+
+/// Bytes of a FITS file of 16 bits, its header of three blocks or so included.
+fn fits_bytes(columns: usize, rows: usize) -> u64 {
+    const BLOCK: u64 = 2880;
+    ((columns * rows * size_of::<u16>()) as u64).div_ceil(BLOCK) * BLOCK + 3 * BLOCK
+}
 
 impl World for Prepared {
     const STARTING_POINT: &'static str = STARTING_POINT;
@@ -87,6 +97,12 @@ impl World for Prepared {
                 )
             }
         };
+        let simulator = &self.simulator;
+        let view = View::of(simulator.projection());
+        let [shortest_s, longest_s] = simulator.exposures_s();
+        let limit = simulator.limiting_magnitude(longest_s, LIMITING_SNR);
+        let duration_s = simulator.schedule().ends().map_or(0.0, |[first, last]| (last - first).to_seconds());
+        let file = fits_bytes(scenario.camera.columns, scenario.camera.rows);
         let document = json!({
             "scenario": name,
             "ok": true,
@@ -94,8 +110,37 @@ impl World for Prepared {
             "stars": stars,
             "frame_bytes_at_most": budget,
             "whole_image_bytes": image,
+            "field_deg": view.field_deg,
+            "pixel_arcsec": view.pixel_arcsec,
+            "exposure_s": [shortest_s, longest_s],
+            "limiting_magnitude": limit,
+            "duration_s": duration_s,
+            "fits_bytes": file,
         });
-        (document, format!("{name}: {frames} frames, {stars} stars, no mistake found\n{telemetry}"))
+        let limit = match limit {
+            Some(limit) => format!("the faintest with SNR {LIMITING_SNR} in the longest has V = {limit:.2}"),
+            None => format!("no star has SNR {LIMITING_SNR} in the longest"),
+        };
+        let text = format!(
+            "{name}: {frames} frames, {stars} stars, no mistake found\n{telemetry}\n{}\n\
+             exposures of {shortest_s} s to {longest_s} s; {limit}\n\
+             {frames} frames in {duration_s:.0} s; as FITS {} each, {} in all",
+            view.text(),
+            size(file),
+            size(file.saturating_mul(frames)),
+        );
+        (document, text)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let beyond = dataset::check_sip(&self.simulator, &self.scenario().camera).err().map(|beyond| {
+            format!(
+                "camera.radial, camera.tangential: no SIP follows the distortion beyond {:.0} px from the principal point; FITS \
+                 files are written without it",
+                beyond.radius_px
+            )
+        });
+        beyond.into_iter().collect()
     }
 
     fn config(scenario: &FarRangeScenario) -> &FarRangeConfig {

@@ -1,6 +1,7 @@
 //! The target spacecraft as a source of light.
 
 mod body;
+mod outline;
 mod plate;
 mod polygon;
 mod sphere;
@@ -22,7 +23,9 @@ use crate::constants::AU_KM;
 use crate::optics::{ImagePoint, SUN_V_MAG_AT_1_AU};
 use crate::truth::{States, TargetAttitudeConfig};
 use body::LitBody;
-use plate::Plate;
+pub(crate) use outline::Outline;
+use outline::Solid;
+use plate::{Brick, Plate};
 use sphere::{LitSphere, lambert_phase};
 
 /// Plates that a body may have, those of boxes included: each is held against each.
@@ -108,7 +111,7 @@ pub struct Spacecraft {
 enum Model {
     Beacon { magnitude_at_1_km: f64 },
     Sphere { radius_m: f64, albedo: f64 },
-    Plates { attitude: TargetAttitudeConfig, plates: Vec<Plate> },
+    Plates { attitude: TargetAttitudeConfig, plates: Vec<Plate>, bricks: Vec<Brick> },
 }
 
 impl Spacecraft {
@@ -133,7 +136,11 @@ impl Spacecraft {
                 require("target.plates", all.len() as f64, "1 to 200, a box counting six", |n| {
                     n >= 1.0 && n <= MAX_PLATES as f64
                 })?;
-                Model::Plates { attitude: attitude.clone(), plates: all }
+                Model::Plates {
+                    attitude: attitude.clone(),
+                    plates: all,
+                    bricks: boxes.iter().map(BoxConfig::brick).collect(),
+                }
             }
         };
         Ok(Self { model })
@@ -144,6 +151,34 @@ impl Spacecraft {
         match &self.model {
             Model::Beacon { .. } | Model::Sphere { .. } => None,
             Model::Plates { attitude, .. } => Some(attitude.target_from_icrs(states)),
+        }
+    }
+
+    /// Its outline from `chaser_km` from it (ICRS axes), turned by `target_from_icrs`; `None` of a point of light.
+    pub(crate) fn outline(
+        &self,
+        chaser_km: &Vector3<f64>,
+        target_from_icrs: Option<Rotation<Target, Icrs>>,
+    ) -> Option<Outline<'_>> {
+        let solid = match &self.model {
+            Model::Beacon { .. } => return None,
+            Model::Sphere { radius_m, .. } => Solid::Sphere(*radius_m),
+            Model::Plates { plates, bricks, .. } => Solid::Plates(plates, bricks),
+        };
+        Some(Outline::new(solid, chaser_km, target_from_icrs.unwrap_or_else(Rotation::identity)))
+    }
+
+    /// Refuses a camera that is as good as at the target, or inside of it, in a frame.
+    pub(crate) fn check_separation(&self, states: &States, frame: u64) -> Result<(), OutOfRange> {
+        let (line_of_sight_km, range_m) = (states.line_of_sight_km(), states.range_km() * 1000.0);
+        require("orbit.relative", range_m, "a separation of 1 m or more", |m| m >= 1.0)?;
+        match self.outline(&-line_of_sight_km, self.attitude(states)) {
+            Some(outline) if outline.holds_camera() => Err(OutOfRange::new(
+                "orbit.relative",
+                format!("{range_m:.3} m from the target's centre at frame {frame}"),
+                "a camera outside of the target",
+            )),
+            _ => Ok(()),
         }
     }
 

@@ -90,7 +90,26 @@ impl PlateConfig {
     }
 }
 
+/// The room that a box takes, along the axes of the body frame, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Brick {
+    centre: Vector3<f64>,
+    half_size: Vector3<f64>,
+}
+
+impl Brick {
+    /// Whether a point of the body frame, m, is in it or on it.
+    pub(super) fn contains(&self, point: &Vector3<f64>) -> bool {
+        (self.half_size - (point - self.centre).abs()).min() >= 0.0
+    }
+}
+
 impl BoxConfig {
+    /// The room that it takes.
+    pub(super) fn brick(&self) -> Brick {
+        Brick { centre: self.centre_m.into(), half_size: 0.5 * Vector3::from(self.size_m) }
+    }
+
     /// Its six faces.
     ///
     /// # Errors
@@ -116,6 +135,22 @@ impl BoxConfig {
 }
 
 impl Plate {
+    /// Whether the ray from `eye` along `ray` meets it, from whichever side.
+    pub(super) fn meets(&self, eye: &Vector3<f64>, ray: &Vector3<f64>) -> bool {
+        let (towards, along) = (self.centre - eye, ray.dot(&self.normal));
+        let reach = towards.dot(&self.normal) / along;
+        let off = ray * reach - towards;
+        // A ray in its plane makes no number of it, and meets nothing.
+        reach > 0.0
+            && off.dot(&self.right).abs() <= self.half_width
+            && off.dot(&self.up).abs() <= self.half_height
+    }
+
+    /// Distance of its farthest corner from the origin of the body frame, m.
+    pub(super) fn reach(&self) -> f64 {
+        self.centre.norm() + libm::hypot(self.half_width, self.half_height)
+    }
+
     /// Its other side: the front surface is the back's.
     pub(super) fn turned(&self, front: SurfaceConfig) -> Self {
         Self { right: -self.right, normal: -self.normal, front, back: Some(self.front), ..*self }

@@ -1,0 +1,154 @@
+//! Scenarios of which every number is allowed and which cannot be: refused by check, run and render alike, with file, field, value and
+//! expectation. And those that can be and are probably not meant: they are told.
+
+use toml::{Table, Value};
+
+use super::check_refused;
+use crate::support::{Answer, Bench};
+
+/// A built-in scenario with a change, in `mine.toml`.
+fn changed(built_in: &str, change: impl FnOnce(&mut Table)) -> Bench {
+    let bench = Bench::new();
+    bench.scenario("mine.toml", built_in, change);
+    bench
+}
+
+/// Sets a value of a scenario by its path.
+fn set(table: &mut Table, path: &str, value: impl Into<Value>) {
+    let (parents, key) = path.rsplit_once('.').unwrap();
+    let table = parents.split('.').fold(table, |table, key| match table.get_mut(key).unwrap() {
+        Value::Array(items) => items[0].as_table_mut().unwrap(),
+        value => value.as_table_mut().unwrap(),
+    });
+    table.insert(key.to_owned(), value.into());
+}
+
+/// The scenario is refused with its file and these parts.
+fn check_impossible(built_in: &str, parts: &[&str], change: impl FnOnce(&mut Table)) {
+    let bench = changed(built_in, change);
+    let parts: Vec<&str> = parts.iter().copied().chain(["mine.toml:"]).collect();
+    check_refused(&bench, "run mine.toml --frames 0..2 --out run", &parts);
+    check_refused(&bench, "render mine.toml --frames 0..2 --out set", &parts);
+    let check = bench.boresight("scenario check mine.toml");
+    assert_eq!(check.status, Some(1), "{}", check.stderr);
+    let told = check.stdout.replace("\n  | ", " ");
+    assert!(parts.iter().all(|part| told.contains(part)), "{parts:?} in\n{told}");
+}
+
+#[test]
+fn a_camera_inside_of_the_target_is_refused() {
+    let parts =
+        ["orbit.relative", "from the target's centre at frame ", "expected a camera outside of the target"];
+    check_impossible("starting-point", &parts, |table| {
+        set(table, "target.radius_m", 400.0);
+        set(table, "orbit.relative.a_dlambda_m", -10.0);
+    });
+    for place in [[0.0, 0.0, 0.1], [0.05, 0.0, 0.2]] {
+        let parts = ["approach", "m at field 0", "expected a camera in front of the target"];
+        check_impossible("docking", &parts, |table| {
+            let place = place.map(Value::Float).to_vec();
+            let approach: [(&str, Value); 3] = [
+                ("kind", "constant_velocity".into()),
+                ("position_m", Value::Array(place)),
+                ("duration_s", 1.0.into()),
+            ];
+            let approach: Table = approach.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
+            table.insert("approach".to_owned(), approach.into());
+        });
+    }
+}
+
+#[test]
+fn an_epoch_outside_of_the_ephemerides_is_refused() {
+    for epoch in ["1975-04-25T00:00:00Z", "2077-04-25T00:00:00Z"] {
+        let parts =
+            ["orbit.epoch_utc", epoch, "expected a time of the ephemerides, from 1990-01-01 to 2050-01-05"];
+        check_impossible("starting-point", &parts, |table| set(table, "orbit.epoch_utc", epoch));
+    }
+}
+
+#[test]
+fn an_angle_of_more_than_ten_turns_is_refused() {
+    for angle in [3600.1, -1e6] {
+        let parts = ["mounting.actual.psi_deg", &angle.to_string(), "expected -3600 to 3600"];
+        check_impossible("starting-point", &parts, |table| set(table, "mounting.actual.psi_deg", angle));
+    }
+}
+
+#[test]
+fn an_exposure_longer_than_the_cadence_is_refused() {
+    let parts =
+        ["shutter.max_s", "is 16", "expected at most the shortest time from one frame to the next, 15 s"];
+    check_impossible("starting-point", &parts, |table| set(table, "shutter.max_s", 16.0));
+}
+
+/// 9.5 GB for a frame of 128 × 96 it was.
+#[test]
+fn more_hits_than_a_frame_may_have_are_refused() {
+    let parts = [
+        "sensor.cosmic_rays.rate_per_cm2_s",
+        "hits in a frame of 0.25 s",
+        "expected at most 1e5 hits in a frame",
+    ];
+    check_impossible("starting-point", &parts, |table| {
+        set(table, "camera.columns", 128);
+        set(table, "camera.rows", 96);
+        let rays = "rate_per_cm2_s = 1e4\nthickness_um = 1000.0\nreadout_s = 1000.0\nsouth_atlantic = { peak_factor = 10.0 }";
+        set(table, "sensor.cosmic_rays", rays.parse::<Table>().unwrap());
+    });
+}
+
+fn check(bench: &Bench) -> (Answer, serde_json::Value) {
+    let document = bench.boresight("scenario check mine.toml --json").done().json();
+    (bench.boresight("scenario check mine.toml").done(), document)
+}
+
+#[test]
+fn a_distortion_beyond_sip_is_told_and_its_fits_files_have_none() {
+    for (k1, from_px, to_px) in [(-4e-7, 300.0, 491.0), (2e-6, 50.0, 491.0), (5e-6, 50.0, 491.0)] {
+        let bench = changed("starting-point", |table| {
+            set(table, "camera.radial", vec![Value::Float(k1), Value::Float(0.0), Value::Float(0.0)]);
+        });
+        let (answer, document) = check(&bench);
+        let warning = document["warnings"][0].as_str().unwrap();
+        assert!(answer.stdout.contains(warning), "{}", answer.stdout);
+        let radius = warning.split_once("beyond ").and_then(|(_, rest)| rest.split_once(" px"));
+        let radius: f64 = radius.unwrap().0.parse().unwrap();
+        assert!((from_px..to_px).contains(&radius), "{k1}: {warning}");
+        let rendered = bench.boresight("render mine.toml --frames 100..101 --out set").done();
+        assert!(rendered.stderr.contains(warning), "{}", rendered.stderr);
+        let image = std::fs::read(bench.path("set/frames/000100.fits")).unwrap();
+        let header = String::from_utf8_lossy(&image[..3 * 2880]).into_owned();
+        assert!(header.contains("'RA---TAN'") && header.contains("No SIP follows"), "{header}");
+        assert!(!header.contains("A_ORDER"), "{header}");
+    }
+    // Where a corner has no direction, or more than one, there is no camera.
+    let parts = ["camera.radial", "does not fold inside the detector: it does 4"];
+    check_impossible("starting-point", &parts, |table| {
+        set(table, "camera.radial", vec![Value::Float(-7e-7), Value::Float(0.0), Value::Float(0.0)]);
+    });
+}
+
+#[test]
+fn a_slip_of_a_thousand_is_told() {
+    for (built_in, path, slip, told) in [
+        ("starting-point", "camera.focal_length_mm", 0.020_187, "camera.focal_length_mm is 0.020187"),
+        (
+            "docking",
+            "cameras.camera.focal_length_mm",
+            24_211.2,
+            "cameras[0].camera.focal_length_mm is 24211.2",
+        ),
+    ] {
+        let (answer, document) = check(&changed(built_in, |table| set(table, path, slip)));
+        let warning = document["warnings"][0].as_str().unwrap();
+        assert!(warning.starts_with(told) && warning.ends_with("meant?"), "{warning}");
+        assert!(answer.stdout.contains(&format!("warning: {warning}")), "{}", answer.stdout);
+    }
+    let (_, document) = check(&changed("starting-point", |table| {
+        set(table, "shutter.max_s", 250.0);
+        set(table, "schedule.cadence_s", 300.0);
+        set(table, "schedule.count", 10);
+    }));
+    assert_eq!(document["warnings"][0], "shutter.max_s is 250, usually 0.00001 to 100; was 0.25 meant?");
+}
