@@ -5,8 +5,9 @@ use std::path::Path;
 use files::sha256::{hex, sha256_hex};
 use files::{Checksums, Failure, FileError, toml_file};
 use run::{world_of_run, worlds};
+use scenario::AttitudeChoice;
 use scenario::run_file::RunFile;
-use score::{FigureTerms, Kind, Reduction, Term, UnitTable, UnitVerdict, sense};
+use score::{FigureTerms, Kind, Reduction, Term, UnitTable, UnitVerdict, attitude_word, names, sense};
 use sha2::{Digest, Sha256};
 use study::{CaseFigure, CaseTable, StudyRecord};
 use toml::Table;
@@ -14,15 +15,22 @@ use toml::Table;
 use super::identity::{Identity, SourceKind, split};
 use super::sample::Sample;
 
-/// Reads a run directory (its measurements are scored anew), or the directory of a study that is complete.
+/// Reads a run directory (its measurements are scored anew, centroids with `attitude` in place of what the run's scenario says), or the
+/// directory of a study that is complete.
 ///
 /// # Errors
-/// A [`Failure`] for a directory that is neither, or files that cannot be read.
-pub fn read_result(directory: &Path) -> Result<Sample, Failure> {
+/// A [`Failure`] for a directory that is neither, files that cannot be read, or an attitude for a study, whose cases are scored already.
+pub fn read_result(directory: &Path, attitude: Option<AttitudeChoice>) -> Result<Sample, Failure> {
     let (run_file, cases) = (directory.join("run.toml"), directory.join("cases.parquet"));
     let sample = if run_file.is_file() {
-        run(directory, &run_file)?
+        run(directory, &run_file, attitude)?
     } else if cases.is_file() {
+        if attitude.is_some() {
+            return Err(Failure::Usage(format!(
+                "--attitude is given, expected with a run alone: the cases of {} are scored already, by [score] of their scenario",
+                directory.display()
+            )));
+        }
         study(directory, &cases)?
     } else {
         return Err(Failure::Usage(format!(
@@ -43,11 +51,12 @@ fn scenario_of(path: &Path, text: &str) -> Result<Table, Failure> {
     }
 }
 
-fn run(directory: &Path, path: &Path) -> Result<Sample, Failure> {
+fn run(directory: &Path, path: &Path, attitude: Option<AttitudeChoice>) -> Result<Sample, Failure> {
     let world = world_of_run(path)?;
     let RunFile { name, version, catalog_sha256, inject, mitsuba, scenario, .. } = world.read_run(path)?;
     let evidence = world.evidence_file().map(|name| directory.join(name)).filter(|path| path.is_file());
-    let scored = world.score_files(directory, &directory.join("measurements.csv"), evidence.as_deref())?;
+    let scored =
+        world.score_files(directory, &directory.join("measurements.csv"), evidence.as_deref(), attitude)?;
     let mut digest = FrameDigest::default();
     world.known_of_frames(directory, &mut |row| digest.add(row))?;
     let text = toml_file::read_text(path).map_err(|source| FileError::Io {
@@ -55,7 +64,10 @@ fn run(directory: &Path, path: &Path) -> Result<Sample, Failure> {
         doing: "read",
         source,
     })?;
-    let split = split(world.code(), scenario_of(path, &text)?)?;
+    let mut scenario_table = scenario_of(path, &text)?;
+    // How it is scored is compared figure by figure: those that do not depend on it may be.
+    scenario_table.remove("score");
+    let split = split(world.code(), scenario_table)?;
     let identity = Identity {
         kind: SourceKind::Run,
         world: world.code().to_owned(),
@@ -81,6 +93,8 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
         digest.add(&(row.case, row.seed, &row.drawn));
     }
     let world = record.world;
+    let granted = record.scenario.get("score").and_then(|score| score.get("attitude")?.as_str());
+    let attitude = attitude_of_cases(&table, granted);
     let mut split = split(&world, record.scenario)?;
     split.scenario = Table::from_iter([
         ("study".to_owned(), toml::Value::Table(record.study)),
@@ -102,12 +116,19 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
         scenario: split.scenario,
         world,
     };
-    Ok(Sample::new(identity, units_of_cases(&table)))
+    Ok(Sample::new(identity, units_of_cases(&table, attitude.as_ref())))
+}
+
+/// The attitude that the lines of sight of a study rest on, where its figures tell; `granted` is what its scenario grants to centroids.
+fn attitude_of_cases(table: &CaseTable, granted: Option<&str>) -> Option<String> {
+    let told = table.figure(names::LINE_OF_SIGHT_RATE)?;
+    let (own, of) = told.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
+    attitude_word(own > 0, of > own, granted)
 }
 
 /// The cases of a study as units: rates over all frames of all cases, amounts as means over the cases, as the study sums them up.
 #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
-fn units_of_cases(table: &CaseTable) -> UnitTable {
+fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
     let figure = |(index, name): (usize, &String)| {
         let is_rate = sense(name).kind == Kind::Rate;
         let term = |figure: CaseFigure| match figure.value {
@@ -117,7 +138,7 @@ fn units_of_cases(table: &CaseTable) -> UnitTable {
         };
         let reduction = if is_rate { Reduction::Rate } else { Reduction::Mean };
         let terms = table.rows.iter().map(|row| term(row.figures[index])).collect();
-        FigureTerms { name: name.clone(), reduction, terms }
+        FigureTerms::counted(name, reduction, terms).resting_on(attitude)
     };
     let headlines: Vec<&str> = worlds().into_iter().map(|world| world.headline()).collect();
     let verdict = table.figures.iter().position(|name| headlines.contains(&name.as_str()));
@@ -174,9 +195,12 @@ mod tests {
                 },
             ],
         };
-        let units = units_of_cases(&table);
+        let units = units_of_cases(&table, Some(&"own".to_owned()));
         assert_eq!(units.units[0].verdict, "30 of 40");
         assert_eq!(units.figures[0].terms, [Term { sum: 30.0, of: 40 }, Term { sum: 0.0, of: 40 }]);
         assert_eq!(units.figures[1].terms, [Term { sum: 0.5, of: 1 }, Term::default()]);
+        assert_eq!(units.figures[0].attitude, None);
+        assert_eq!(units.figures[1].attitude.as_deref(), Some("own"));
+        assert_eq!(attitude_of_cases(&table, Some("true")), None, "the figure is not recorded");
     }
 }

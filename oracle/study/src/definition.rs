@@ -19,7 +19,7 @@ use super::law::{Drawable, Law, boresight, euler_123};
 use super::overlay::ValuePath;
 
 /// What is no parameter.
-const NOT_VARIED: [&str; 3] = ["title", "world", "seed"];
+const NOT_VARIED: [&str; 4] = ["title", "world", "seed", "score"];
 
 /// Names of the angles of an attitude: of a boresight, or of Euler's.
 const BORESIGHT: [&str; 3] = ["ra_deg", "dec_deg", "roll_deg"];
@@ -397,7 +397,7 @@ impl Varied {
 type Problem = (&'static str, String);
 
 fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String> {
-    if NOT_VARIED.contains(&path.text()) {
+    if path.text().split('.').next().is_some_and(|first| NOT_VARIED.contains(&first)) {
         return Err(format!(
             "is `{}`, expected a parameter of what is simulated or of the pipeline: every case has a seed of its own already",
             path.text()
