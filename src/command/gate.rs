@@ -8,6 +8,7 @@ use gate::{
     Baseline, CompareOptions, FigureVerdict, GateReport, Replace, compare, junit, junit_of_failure,
     read_result,
 };
+use scenario::AttitudeChoice;
 
 use super::Answer;
 use super::options::{AttitudeOption, place};
@@ -52,8 +53,10 @@ struct CompareArguments {
     /// Write the report as one HTML file too, flipped frames as pictures; replaced if it is there
     #[arg(long, value_name = "FILE", value_parser = place())]
     report: Option<PathBuf>,
-    #[command(flatten)]
-    attitude: AttitudeOption,
+    // Not flattened: of an `Option` of arguments clap asks the group of their struct, which a struct with others in it does not have.
+    /// Far range: turn a centroid without a line of sight into one by this attitude, in the place of what the run was asked for
+    #[arg(long, value_name = "ATTITUDE", value_enum)]
+    attitude: Option<AttitudeChoice>,
 }
 
 #[derive(Debug, Args)]
@@ -144,7 +147,7 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
 
 fn compared(arguments: &CompareArguments) -> Result<GateReport, Failure> {
     let baseline = Baseline::read(&arguments.baseline)?;
-    let result = read_result(&arguments.result, arguments.attitude.choice)?;
+    let result = read_result(&arguments.result, arguments.attitude)?;
     let tolerances = arguments.tolerance.iter().map(|told| (told.figure.clone(), told.size)).collect();
     let options = CompareOptions { alpha: arguments.alpha, figures: arguments.figures.clone(), tolerances };
     compare(&baseline, &result, &options)
