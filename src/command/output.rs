@@ -99,7 +99,7 @@ impl Output {
             return ProgressBar::hidden();
         }
         let style = &format!("{{msg}} {{wide_bar}} {{pos}}/{{len}} {unit}, {{per_sec}}, {{eta}} left");
-        let bar = ProgressBar::new(count).with_message(what.to_owned());
+        let bar = ProgressBar::new(count).with_message(harmless(what));
         bar.enable_steady_tick(Duration::from_millis(200));
         match ProgressStyle::with_template(style) {
             Ok(style) => bar.with_style(style),
@@ -112,7 +112,7 @@ impl Output {
         if !std::io::stderr().is_terminal() {
             return ProgressBar::hidden();
         }
-        let bar = ProgressBar::no_length().with_message(what.to_owned());
+        let bar = ProgressBar::no_length().with_message(harmless(what));
         bar.enable_steady_tick(Duration::from_millis(200));
         match ProgressStyle::with_template("{msg} {pos} fields, {per_sec}") {
             Ok(style) => bar.with_style(style),

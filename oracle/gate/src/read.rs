@@ -203,4 +203,28 @@ mod tests {
         assert_eq!(units.figures[1].attitude.as_deref(), Some("own"));
         assert_eq!(attitude_of_cases(&table, Some("true")), None, "the figure is not recorded");
     }
+
+    #[test]
+    fn the_cases_of_a_study_tell_what_their_lines_of_sight_rest_on() {
+        let word = |counts: &[(u64, u64)], granted| {
+            let row = |&(count, of): &(u64, u64)| study::CaseRow {
+                case: 0,
+                seed: 3,
+                has_failed: false,
+                drawn: Vec::new(),
+                figures: vec![CaseFigure { value: None, count, of }],
+            };
+            let table = CaseTable {
+                drawn: indexmap::IndexMap::new(),
+                figures: vec![names::LINE_OF_SIGHT_RATE.to_owned()],
+                rows: counts.iter().map(row).collect(),
+            };
+            attitude_of_cases(&table, granted)
+        };
+        assert_eq!(word(&[(30, 30), (0, 0)], Some("true")).as_deref(), Some("own"));
+        assert_eq!(word(&[(0, 30)], Some("true")).as_deref(), Some("true"));
+        assert_eq!(word(&[(0, 30)], None).as_deref(), Some("none"));
+        assert_eq!(word(&[(30, 30), (0, 30)], Some("true")).as_deref(), Some("own and true"));
+        assert_eq!(word(&[(0, 0)], Some("true")), None);
+    }
 }

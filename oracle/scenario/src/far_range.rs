@@ -82,9 +82,10 @@ pub struct FarRangeScenario {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ScoreConfig {
-    /// What "within one pixel" and "within two" mean, degrees, on both axes: above 0, ascending, up to 180; absent: one and two pixels of
-    /// the camera, each axis by its own scale.
+    /// What "within one pixel" and "within two" mean on both axes, degrees, ascending, each 1e-6 to 180; absent: one and two pixels of the
+    /// camera, each axis by its own scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 1e-6, max = 180)))]
     pub within_deg: Option<[f64; 2]>,
     /// The attitude that is granted to answers with a centroid alone; absent: none, and they have no line of sight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -101,11 +102,9 @@ impl ScoreConfig {
     /// # Errors
     /// [`OutOfRange`] for the first that is not allowed.
     pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "score")?;
         let Some([one, two]) = self.within_deg else { return Ok(()) };
-        bounds::require("within_deg[0]", one, "above 0 to 180", |one| one > 0.0 && one <= 180.0)?;
-        bounds::require("within_deg[1]", two, format!("more than {one} to 180"), |two| {
-            two > one && two <= 180.0
-        })
+        bounds::require("score.within_deg[1]", two, format!("more than {one}"), |two| two > one)
     }
 }
 

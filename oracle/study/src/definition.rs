@@ -399,7 +399,7 @@ type Problem = (&'static str, String);
 fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String> {
     if path.text().split('.').next().is_some_and(|first| NOT_VARIED.contains(&first)) {
         return Err(format!(
-            "is `{}`, expected a parameter of what is simulated or of the pipeline: every case has a seed of its own already",
+            "is `{}`, expected a parameter of what is simulated or of the pipeline: every case has a seed of its own already, and all are scored alike",
             path.text()
         ));
     }

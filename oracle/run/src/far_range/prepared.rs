@@ -80,7 +80,7 @@ impl Prepared {
 pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<Simulator, Failure> {
     bounds::check(&scenario.star_list, "star_list").map_err(|error| source.out_of_range(&error))?;
     source.check_part("far_range", scenario.far_range.check())?;
-    source.check_part("score", scenario.score.check())?;
+    scenario.score.check().map_err(|error| source.out_of_range(&error))?;
     Simulator::new(&scenario.simulation(), &source.folder).map_err(|error| source.explain(error))
 }
 
