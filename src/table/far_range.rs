@@ -1,7 +1,7 @@
 //! The table that a person reads, shaped like Table 2 of the far-range paper.
 use comfy_table::{Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use indexmap::IndexMap;
-use score::{Cause, Figure, Score, Table2, Table2Distance, angle, names};
+use score::{Cause, Figure, Score, Table2, Table2Distance, angle, attitude_note, names};
 
 /// How to print a score.
 #[derive(Debug, Clone, Copy)]
@@ -34,14 +34,8 @@ pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
         "Rates in percent with their 95 % intervals; RMS over the correct, of RA and Dec in seconds of arc, of the centroid (x, y) in pixels.\n\
          The cause of a wrong answer is what kept the target itself from being taken.\n",
     );
-    match score.attitude.as_deref() {
-        None | Some("own") => {}
-        Some("none") => text.push_str(
-            "No answer has a line of sight: RA and Dec have no figures unless --attitude grants an attitude.\n",
-        ),
-        Some(attitude) => text.push_str(&format!(
-            "RA and Dec are by the attitude `{attitude}` (--attitude), not all the pipeline's own.\n"
-        )),
+    if let Some(note) = attitude_note(score.attitude.as_deref()) {
+        text.push_str(&format!("{note}\n"));
     }
     if let Some(distance) = style.reference.and_then(|table| table.distance(score)) {
         let Table2Distance { mean_points, worst_points } = distance;

@@ -1,7 +1,7 @@
 //! A result against a baseline.
 use files::{Failure, toml_file};
 use indexmap::IndexMap;
-use score::{AttitudeUsed, Better, FigureTerms, Kind, Sense, UnitVerdict, sense};
+use score::{Better, FigureTerms, Kind, Sense, UnitVerdict, attitude_note, sense};
 use statistics::{BlockEffects, Exchanges, JointTest, joint_test, normal_quantile};
 
 use super::baseline::Baseline;
@@ -221,11 +221,7 @@ fn notes(
 ) -> Vec<String> {
     let mut notes = Vec::new();
     let attitude = result.table.figures.iter().find_map(|figure| figure.attitude.as_deref());
-    if let Some(attitude) = attitude.filter(|attitude| *attitude != AttitudeUsed::Own.code()) {
-        notes.push(format!(
-            "Lines of sight are by the attitude `{attitude}` (--attitude) and not all the pipeline's own."
-        ));
-    }
+    notes.extend(attitude_note(attitude));
     let (before, after) = (&baseline.sample.identity, &result.identity);
     if pairing == Pairing::Blocks && before.seed == after.seed {
         notes.push(format!(

@@ -7,7 +7,7 @@ use files::{Checksums, Failure, FileError, toml_file};
 use run::{world_of_run, worlds};
 use scenario::AttitudeChoice;
 use scenario::run_file::RunFile;
-use score::{FigureTerms, Kind, Reduction, Term, UnitTable, UnitVerdict, attitude_word, names, sense};
+use score::{FigureTerms, Kind, Reduction, Term, UnitTable, UnitVerdict, sense};
 use sha2::{Digest, Sha256};
 use study::{CaseFigure, CaseTable, StudyRecord};
 use toml::Table;
@@ -94,7 +94,7 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
     }
     let world = record.world;
     let granted = record.scenario.get("score").and_then(|score| score.get("attitude")?.as_str());
-    let attitude = attitude_of_cases(&table, granted);
+    let attitude = table.attitude(granted);
     let mut split = split(&world, record.scenario)?;
     split.scenario = Table::from_iter([
         ("study".to_owned(), toml::Value::Table(record.study)),
@@ -117,13 +117,6 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
         world,
     };
     Ok(Sample::new(identity, units_of_cases(&table, attitude.as_ref())))
-}
-
-/// The attitude that the lines of sight of a study rest on, where its figures tell; `granted` is what its scenario grants to centroids.
-fn attitude_of_cases(table: &CaseTable, granted: Option<&str>) -> Option<String> {
-    let told = table.figure(names::LINE_OF_SIGHT_RATE)?;
-    let (own, of) = told.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
-    attitude_word(own > 0, of > own, granted)
 }
 
 /// The cases of a study as units: rates over all frames of all cases, amounts as means over the cases, as the study sums them up.
@@ -201,30 +194,6 @@ mod tests {
         assert_eq!(units.figures[1].terms, [Term { sum: 0.5, of: 1 }, Term::default()]);
         assert_eq!(units.figures[0].attitude, None);
         assert_eq!(units.figures[1].attitude.as_deref(), Some("own"));
-        assert_eq!(attitude_of_cases(&table, Some("true")), None, "the figure is not recorded");
-    }
-
-    #[test]
-    fn the_cases_of_a_study_tell_what_their_lines_of_sight_rest_on() {
-        let word = |counts: &[(u64, u64)], granted| {
-            let row = |&(count, of): &(u64, u64)| study::CaseRow {
-                case: 0,
-                seed: 3,
-                has_failed: false,
-                drawn: Vec::new(),
-                figures: vec![CaseFigure { value: None, count, of }],
-            };
-            let table = CaseTable {
-                drawn: indexmap::IndexMap::new(),
-                figures: vec![names::LINE_OF_SIGHT_RATE.to_owned()],
-                rows: counts.iter().map(row).collect(),
-            };
-            attitude_of_cases(&table, granted)
-        };
-        assert_eq!(word(&[(30, 30), (0, 0)], Some("true")).as_deref(), Some("own"));
-        assert_eq!(word(&[(0, 30)], Some("true")).as_deref(), Some("true"));
-        assert_eq!(word(&[(0, 30)], None).as_deref(), Some("none"));
-        assert_eq!(word(&[(30, 30), (0, 30)], Some("true")).as_deref(), Some("own and true"));
-        assert_eq!(word(&[(0, 0)], Some("true")), None);
+        assert_eq!(table.attitude(Some("true")), None, "the figure is not recorded");
     }
 }

@@ -64,6 +64,20 @@ pub fn attitude_word(own: bool, centroids: bool, granted: Option<&str>) -> Optio
     }
 }
 
+/// What a reader of figures of RA and Dec must know of an [`attitude_word`]; nothing where lines of sight are the pipeline's own.
+pub fn attitude_note(word: Option<&str>) -> Option<String> {
+    match word? {
+        "own" => None,
+        "none" => Some(
+            "No answer has a line of sight: RA and Dec have no figures unless an attitude is granted (docs/score.md)."
+                .to_owned(),
+        ),
+        word => Some(format!(
+            "RA and Dec are of lines of sight by the attitude `{word}` (docs/score.md), not all the pipeline's own."
+        )),
+    }
+}
+
 /// The attitude that the score grants to answers that have a centroid alone.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum GrantedAttitude {
@@ -251,6 +265,9 @@ mod tests {
             (false, false, Some("true"), None),
         ] {
             assert_eq!(attitude_word(own, centroids, granted).as_deref(), word);
+            let note = attitude_note(word);
+            assert_eq!(note.is_none(), matches!(word, None | Some("own")));
+            assert!(note.is_none_or(|note| word == Some("none") || note.contains(&format!("`{}`", word.unwrap()))));
         }
     }
 

@@ -40,7 +40,9 @@ mod sense;
 mod verdict;
 
 pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, figure_names};
-pub use angles::{AnswerError, AttitudeUsed, GrantedAttitude, LineOfSightError, WithinLimits, attitude_word};
+pub use angles::{
+    AnswerError, AttitudeUsed, GrantedAttitude, LineOfSightError, WithinLimits, attitude_note, attitude_word,
+};
 pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
 pub use belonging::belonging_to;
 pub use cause::Cause;

@@ -70,6 +70,11 @@ pub struct Case {
 }
 
 impl Study {
+    /// The attitude that its scenario grants to answers with a centroid alone.
+    pub(super) fn granted_attitude(&self) -> Option<&str> {
+        self.base_values.get("score")?.get("attitude")?.as_str()
+    }
+
     /// Reads and checks a study, the scenario that it names included; the first case is made, so that a path that leads nowhere or a
     /// value of the wrong type is found before anything runs.
     ///

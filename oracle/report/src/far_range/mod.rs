@@ -25,7 +25,7 @@ use super::plotly::Trace;
 use super::words::spoken;
 use files::Failure;
 use scenario::is_argon;
-use score::{ARGON_TABLE_2, AttitudeUsed, GroupScore, angle};
+use score::{ARGON_TABLE_2, AttitudeUsed, GroupScore, angle, attitude_note};
 
 /// The page of a far-range run; `sheet` renders its frames anew.
 ///
@@ -68,7 +68,7 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Page, Fai
         title: scenario.title.clone(),
         kind: "Far range: a run",
         version: run.run_file.version.clone(),
-        lead: vec![lead],
+        lead: [lead].into_iter().chain(attitude_note(run.score.attitude.as_deref())).collect(),
         warnings,
         facts: vec![
             fact("Scenario", run.run_file.name.clone()),

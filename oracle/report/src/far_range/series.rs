@@ -16,18 +16,9 @@ const MEAN_OF: usize = 100;
 /// Fig. 5: errors over time.
 pub(super) fn errors(run: &FarRangeRun) -> Section {
     let section = Section::new("fig-5", "Fig. 5: errors of right ascension and declination");
-    let section = match run.score.attitude.as_deref() {
-        Some("own") | None => section,
-        Some("none") => {
-            return section.text(
-                "No answer has a line of sight: there is the error of the centroid alone, in pixels (\"All figures\"). `--attitude` grants an \
-                 attitude (docs/score.md).",
-            );
-        }
-        Some(attitude) => section.text(format!(
-            "Lines of sight are by the attitude `{attitude}` (docs/score.md), and not all the pipeline's own."
-        )),
-    };
+    if run.score.attitude.as_deref() == Some("none") {
+        return section.text("There are none: \"All figures\" has the errors of the centroid, in pixels.");
+    }
     let component = |row: usize, index: usize| {
         let error = run.verdicts[row].verdict.line_of_sight_error();
         error.map_or(f64::NAN, |error| [error.ra, error.dec][index].degrees())
