@@ -50,7 +50,7 @@ pub(crate) fn directory(sandbox: &Sandbox, bytes: &[u8]) {
             sandbox.file(&format!("{run}{file}"), if file.as_bytes() == name { content } else { right });
         }
         let directory = sandbox.path().join(run);
-        let _ = read_result(&directory);
+        let _ = read_result(&directory, None);
         let _ = report_of(&directory);
     }
 }
@@ -66,7 +66,7 @@ mod tests {
         for (run, files) in RUNS {
             files.iter().for_each(|(file, right)| drop(sandbox.file(&format!("{run}{file}"), right)));
             let directory = sandbox.path().join(run);
-            read_result(&directory).unwrap();
+            read_result(&directory, None).unwrap();
             report_of(&directory).unwrap();
         }
     }

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use boresight::failure::Failure;
 use boresight::files::Checksums;
 use boresight::run::world_of_run;
+use boresight::scenario::AttitudeChoice;
 use boresight::toml_file::read_text;
 use pyo3::prelude::*;
 
 use crate::arguments;
-use crate::errors::{BoresightError, FileError, raised};
+use crate::errors::{BoresightError, FileError, raised, refused};
 use crate::json::text_to_python;
 use crate::run::Run;
 
@@ -18,19 +19,23 @@ use crate::run::Run;
 /// `truth` is a `Run`, or the directory of a run or of a rendered dataset. `measurements` is a file, or a table: boresight's own, one of
 /// polars, pandas or pyarrow, or a dictionary of columns. Its columns are those of measurements.csv (docs/formats.md); `frame`, `status`,
 /// `x_px`, `y_px` are enough (docking: `field`, `status`, `d1_m` ... `phi3_deg`). A frame of the truth without a row is a miss. Of a file,
-/// `clusters.parquet` (docking: `motion.csv`) beside it is read too: evidence for the causes of misses. Gives the dictionary of score.json.
+/// `clusters.parquet` (docking: `motion.csv`) beside it is read too: evidence for the causes of misses. `attitude`, `telemetry` or `true`, turns
+/// centroids without a line of sight into one. Gives the dictionary of score.json.
 #[pyfunction]
+#[pyo3(signature = (truth, measurements, *, attitude=None))]
 pub(crate) fn score<'py>(
     py: Python<'py>,
     truth: &Bound<'py, PyAny>,
     measurements: &Bound<'py, PyAny>,
+    attitude: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let attitude = attitude.map(attitude_choice).transpose()?;
     let directory = match truth.cast::<Run>() {
         Ok(run) => run.get().path().to_owned(),
         Err(_) => PathBuf::from(arguments::word("truth", truth)?),
     };
     if let Ok(path) = measurements.extract::<PathBuf>() {
-        let scored = py.detach(|| scored(&directory, &path));
+        let scored = py.detach(|| scored(&directory, &path, attitude));
         return text_to_python(py, &scored.map_err(raised)?);
     }
     let text: String =
@@ -41,7 +46,7 @@ pub(crate) fn score<'py>(
     let folder = tempfile::tempdir().map_err(temporary)?;
     let path = folder.path().join("measurements.csv");
     std::fs::write(&path, text).map_err(temporary)?;
-    let scored = py.detach(|| scored(&directory, &path));
+    let scored = py.detach(|| scored(&directory, &path, attitude));
     let scored = scored.map_err(|failure| {
         // The table has no file: its lines are its rows, below the names of the columns.
         let told = failure.to_string().replace(&path.display().to_string(), "measurements");
@@ -53,8 +58,21 @@ pub(crate) fn score<'py>(
     text_to_python(py, &scored?)
 }
 
+/// Reads the word of an attitude, which the command takes too.
+fn attitude_choice(word: &str) -> PyResult<AttitudeChoice> {
+    match word {
+        "telemetry" => Ok(AttitudeChoice::Telemetry),
+        "true" => Ok(AttitudeChoice::True),
+        other => Err(refused("attitude", format!("`{other}`"), "`telemetry` or `true`")),
+    }
+}
+
 /// The score of a file of measurements, as JSON.
-fn scored(directory: &Path, measurements: &Path) -> Result<String, Failure> {
+fn scored(
+    directory: &Path,
+    measurements: &Path,
+    attitude: Option<AttitudeChoice>,
+) -> Result<String, Failure> {
     let run_file = directory.join("run.toml");
     let unreadable = |error| {
         Failure::Usage(format!(
@@ -68,7 +86,7 @@ fn scored(directory: &Path, measurements: &Path) -> Result<String, Failure> {
         let path = measurements.with_file_name(world.evidence_file()?);
         path.is_file().then_some(path)
     };
-    let json = world.score(directory, measurements, beside().as_deref())?.json()?;
+    let json = world.score(directory, measurements, beside().as_deref(), attitude)?.json()?;
     Checksums::check(directory, |_| true)?;
     Ok(json)
 }

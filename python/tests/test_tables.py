@@ -77,6 +77,17 @@ def test_four_columns_are_enough_and_a_frame_without_a_row_is_a_miss(run):
     assert (score["frames"], score["figures"]["hit_rate"]["count"]) == (40, 1)
 
 
+def test_a_place_has_a_line_of_sight_by_the_attitude_that_is_asked_for(run):
+    places = {"frame": [8001], "status": ["detected"], "x_px": [353.2], "y_px": [309.0]}
+    for attitude in (None, "telemetry", "true"):
+        score = boresight.score(run.directory, places, attitude=attitude)
+        assert score["attitude"] == (attitude or "none")
+        assert score["figures"]["ra_rms_deg"]["of"] == (0 if attitude is None else 1)
+        assert abs(score["figures"]["centroid_x_mean_px"]["value"]) < 1.5
+    with pytest.raises(boresight.InputError, match="`attitude` is `own`, expected `telemetry` or `true`"):
+        boresight.score(run.directory, places, attitude="own")
+
+
 @pytest.mark.parametrize(
     ("measurements", "told"),
     [

@@ -46,7 +46,8 @@ pub(super) fn render(arguments: &RenderArguments, output: &Output) -> Result<Ans
     if let Some(word) = &arguments.format {
         world.check_images(word).map_err(|error| Failure::Usage(format!("--format: {error}")))?;
     }
-    let prepared = source.prepare(Options { inject: None, renderer: arguments.renderer.renderer()? })?;
+    let prepared =
+        source.prepare(Options { renderer: arguments.renderer.renderer()?, ..Options::default() })?;
     let flight = Flight {
         frames: arguments.selection.frames(prepared.frame_count())?,
         jobs: arguments.renderer.jobs(&arguments.selection),

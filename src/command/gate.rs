@@ -8,9 +8,10 @@ use gate::{
     Baseline, CompareOptions, FigureVerdict, GateReport, Replace, compare, junit, junit_of_failure,
     read_result,
 };
+use scenario::AttitudeChoice;
 
 use super::Answer;
-use super::options::place;
+use super::options::{AttitudeOption, place};
 use super::output::Output;
 use super::report::{check_option, write_gate};
 use crate::table::{baseline_text, gate_table};
@@ -52,6 +53,10 @@ struct CompareArguments {
     /// Write the report as one HTML file too, flipped frames as pictures; replaced if it is there
     #[arg(long, value_name = "FILE", value_parser = place())]
     report: Option<PathBuf>,
+    // Not flattened: of an `Option` of arguments clap asks the group of their struct, which a struct with others in it does not have.
+    /// Far range: turn a centroid without a line of sight into one by this attitude, in the place of what the run was asked for
+    #[arg(long, value_name = "ATTITUDE", value_enum)]
+    attitude: Option<AttitudeChoice>,
 }
 
 #[derive(Debug, Args)]
@@ -71,6 +76,8 @@ struct BaselineArguments {
     /// fewer than twenty blocks, at least thirty
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     block_length: Option<u64>,
+    #[command(flatten)]
+    attitude: AttitudeOption,
 }
 
 /// A figure and its tolerance.
@@ -104,7 +111,7 @@ pub(super) fn gate(arguments: &GateArguments, output: &Output) -> Result<Answer,
 }
 
 fn make_baseline(arguments: &BaselineArguments, output: &Output) -> Result<Answer, Failure> {
-    let sample = read_result(&arguments.result)?;
+    let sample = read_result(&arguments.result, arguments.attitude.choice)?;
     let mut baseline = Baseline::new(sample, &arguments.reason, arguments.block_length)?;
     let replace = if arguments.replace { Replace::Allow } else { Replace::Refuse };
     baseline.write(&arguments.out, replace)?;
@@ -140,7 +147,7 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
 
 fn compared(arguments: &CompareArguments) -> Result<GateReport, Failure> {
     let baseline = Baseline::read(&arguments.baseline)?;
-    let result = read_result(&arguments.result)?;
+    let result = read_result(&arguments.result, arguments.attitude)?;
     let tolerances = arguments.tolerance.iter().map(|told| (told.figure.clone(), told.size)).collect();
     let options = CompareOptions { alpha: arguments.alpha, figures: arguments.figures.clone(), tolerances };
     compare(&baseline, &result, &options)

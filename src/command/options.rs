@@ -10,6 +10,7 @@ use pipeline::external::{DEFAULT_MEMORY_MB, Sandbox};
 use run::ScenarioSource;
 use run::docking::renderer::DockingRenderer;
 use run::pipeline_choice::PipelineChoice;
+use scenario::AttitudeChoice;
 
 use super::interrupt::clean_up_when_interrupted;
 
@@ -98,6 +99,15 @@ impl Default for PipelineOptions {
             sandbox_read: Vec::new(),
         }
     }
+}
+
+/// What is granted to a pipeline that measures in the image alone.
+#[derive(Debug, Default, Args)]
+pub(super) struct AttitudeOption {
+    /// Far range: turn a centroid without a line of sight into one by this attitude, so that RA and Dec have figures; default: none
+    /// unless the scenario says so ([score] attitude)
+    #[arg(long = "attitude", value_name = "ATTITUDE", value_enum)]
+    pub(super) choice: Option<AttitudeChoice>,
 }
 
 /// Reads the place of a command's output: `-`, which elsewhere is standard output, is none.

@@ -25,7 +25,7 @@ impl Output {
         if self.json {
             let json = serde_json::to_string_pretty(document)
                 .map_err(|error| Failure::Usage(format!("the answer cannot be written as JSON: {error}")))?;
-            print_line(json)
+            print_json(&json)
         } else {
             print_line(harmless_but_styled(&text.to_string()))
         }
@@ -33,7 +33,7 @@ impl Output {
 
     /// Prints a document that is JSON already, or `text` for a person.
     pub(super) fn answer_json(&self, json: &str, text: impl Display) -> Result<(), Failure> {
-        if self.json { print_line(json) } else { print_line(harmless_but_styled(&text.to_string())) }
+        if self.json { print_json(json) } else { print_line(harmless_but_styled(&text.to_string())) }
     }
 
     /// Prints `document` where `--json` asks for it: of a command that has nothing else for stdout.
@@ -77,7 +77,7 @@ impl Output {
     pub(super) fn failure(&self, failure: Failure) {
         if self.json {
             let document = serde_json::json!({ "error": failure.to_string() });
-            let _ = print_line(document);
+            let _ = print_json(&document.to_string());
         }
         self.note(failure.explain());
     }
@@ -89,7 +89,7 @@ impl Output {
             let text = error.to_string();
             let document =
                 serde_json::json!({ "error": text.strip_prefix("error: ").unwrap_or(&text).trim_end() });
-            let _ = print_line(document);
+            let _ = print_json(&document.to_string());
         }
     }
 
@@ -104,7 +104,7 @@ impl Output {
             return ProgressBar::hidden();
         }
         let style = &format!("{{msg}} {{wide_bar}} {{pos}}/{{len}} {unit}, {{per_sec}}, {{eta}} left");
-        let bar = ProgressBar::new(count).with_message(what.to_owned());
+        let bar = ProgressBar::new(count).with_message(harmless(what));
         bar.enable_steady_tick(Duration::from_millis(200));
         match ProgressStyle::with_template(style) {
             Ok(style) => bar.with_style(style),
@@ -117,7 +117,7 @@ impl Output {
         if !std::io::stderr().is_terminal() {
             return ProgressBar::hidden();
         }
-        let bar = ProgressBar::no_length().with_message(what.to_owned());
+        let bar = ProgressBar::no_length().with_message(harmless(what));
         bar.enable_steady_tick(Duration::from_millis(200));
         match ProgressStyle::with_template("{msg} {pos} fields, {per_sec}") {
             Ok(style) => bar.with_style(style),
@@ -147,6 +147,23 @@ fn harmless_but_styled(text: &str) -> String {
     shown + &harmless(rest)
 }
 
+/// Prints JSON in which no string orders anything of a terminal: JSON itself escapes the control characters below U+0020 alone, and not
+/// DEL and those from U+0080, of which U+009B begins an order as well as ESC does.
+fn print_json(json: &str) -> Result<(), Failure> {
+    print_line(harmless_json(json))
+}
+
+fn harmless_json(json: &str) -> String {
+    let mut shown = String::with_capacity(json.len());
+    for character in json.chars() {
+        match character {
+            '\u{7f}'..='\u{9f}' => shown += &format!("\\u{:04x}", u32::from(character)),
+            _ => shown.push(character),
+        }
+    }
+    shown
+}
+
 /// Prints one line; a reader that has gone away (`| head`) is not an error.
 fn print_line(text: impl Display) -> Result<(), Failure> {
     match writeln!(std::io::stdout(), "{text}") {
@@ -160,6 +177,15 @@ fn print_line(text: impl Display) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn json_means_the_same_and_orders_nothing_of_a_terminal() {
+        let document = serde_json::json!({ "day\u{9b}2J": "ä\u{7f}\u{80}\u{9f}\u{a0}\u{1b}" });
+        let shown = harmless_json(&serde_json::to_string_pretty(&document).unwrap());
+        assert!(!shown.chars().any(|character| character.is_control() && character != '\n'), "{shown:?}");
+        assert!(shown.contains("ä\\u007f\\u0080\\u009f\u{a0}\\u001b"), "{shown}");
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&shown).unwrap(), document);
+    }
 
     #[test]
     fn a_terminal_is_told_how_letters_look_and_nothing_else() {

@@ -9,7 +9,7 @@ use scenario::Stage;
 
 use super::Answer;
 use super::fly::{Presentation, fly};
-use super::options::{PipelineOptions, RendererOptions, Selection, place};
+use super::options::{AttitudeOption, PipelineOptions, RendererOptions, Selection, place};
 use super::output::Output;
 
 /// Where numbered run directories go when `--out` is not given.
@@ -24,6 +24,8 @@ pub(super) struct RunArguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     pipeline: PipelineOptions,
+    #[command(flatten)]
+    attitude: AttitudeOption,
     /// Give the built-in pipeline the truth in the place of this stage's result, to see what the stage costs
     #[arg(long, value_name = "STAGE")]
     inject: Option<Stage>,
@@ -44,6 +46,7 @@ impl RunArguments {
             selection: Selection::of("argon"),
             out: None,
             pipeline: PipelineOptions::default(),
+            attitude: AttitudeOption::default(),
             inject: None,
             save_frames: None,
             no_report: false,
@@ -68,7 +71,11 @@ pub(super) fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, F
             world.code()
         )));
     }
-    let options = Options { inject: arguments.inject, renderer: arguments.renderer.renderer()? };
+    let options = Options {
+        inject: arguments.inject,
+        attitude: arguments.attitude.choice,
+        renderer: arguments.renderer.renderer()?,
+    };
     let prepared = source.prepare(options)?;
     let flight = Flight {
         frames: arguments.selection.frames(prepared.frame_count())?,

@@ -7,6 +7,7 @@ use files::{Checksums, Failure};
 use run::{world_of_run, worlds};
 
 use super::Answer;
+use super::options::AttitudeOption;
 use super::output::Output;
 use crate::table::score_table;
 
@@ -24,6 +25,8 @@ pub(super) struct ScoreArguments {
     /// is there
     #[arg(long, value_name = "FILE")]
     motion: Option<PathBuf>,
+    #[command(flatten)]
+    attitude: AttitudeOption,
 }
 
 pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answer, Failure> {
@@ -50,7 +53,8 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
         path.is_file().then_some(path)
     };
     let evidence = evidence.or_else(beside);
-    let scored = world.score(&arguments.directory, &arguments.measurements, evidence.as_deref())?;
+    let (directory, attitude) = (&arguments.directory, arguments.attitude.choice);
+    let scored = world.score(directory, &arguments.measurements, evidence.as_deref(), attitude)?;
     Checksums::check(&arguments.directory, |_| true)?;
     output.answer_json(&scored.json()?, score_table(scored.as_ref(), output.is_terminal()))?;
     Ok(Answer::Yes)

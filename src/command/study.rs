@@ -6,6 +6,7 @@ use std::sync::Mutex;
 
 use clap::{Args, Subcommand};
 use files::{Failure, RunDirectory};
+use pipeline::external::protocol::harmless;
 use run::pipeline_choice::PipelineChoice;
 use run::{Expectation, FirstFailure, Flight, Options};
 use serde::Serialize;
@@ -214,7 +215,7 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
     let done = |case: Known<'_>| {
         progress.inc(1);
         if let Some(text) = lock(&live).add(case.row()) {
-            progress.set_message(format!("{}, {text}", study.name));
+            progress.set_message(harmless(&format!("{}, {text}", study.name)));
         }
         if let Known::Run(Evaluated { row, first_failure: Some(first), .. }) = case {
             let mut known = lock(&failure);

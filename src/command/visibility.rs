@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use files::Failure;
+use pipeline::external::protocol::harmless;
 use visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, Status, assess, write_report};
 
 use super::Answer;
@@ -64,7 +65,7 @@ pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Re
     let steps = requirements.file.requirements.len() as u64 + 2;
     let progress = output.progress_of(steps, "steps", &requirements.name);
     let told = |what: &str| {
-        progress.set_message(format!("{}, {what}", requirements.name));
+        progress.set_message(harmless(&format!("{}, {what}", requirements.name)));
         progress.inc(1);
     };
     let threads = arguments.jobs.map_or(0, usize::from);

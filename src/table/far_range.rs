@@ -1,7 +1,7 @@
 //! The table that a person reads, shaped like Table 2 of the far-range paper.
 use comfy_table::{Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use indexmap::IndexMap;
-use score::{Cause, Figure, Score, Table2, Table2Distance, names};
+use score::{Cause, Figure, Score, Table2, Table2Distance, angle, attitude_note, names};
 
 /// How to print a score.
 #[derive(Debug, Clone, Copy)]
@@ -31,9 +31,12 @@ pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
     let fits = one_line.lines().next().is_some_and(|line| line.chars().count() <= style.width);
     let mut text = if fits { one_line } else { sheet(&columns, &rows, "\n", style.styled) };
     text.push_str(
-        "Rates in percent with their 95 % intervals; RMS in seconds of arc, over the correct.\n\
+        "Rates in percent with their 95 % intervals; RMS over the correct, of RA and Dec in seconds of arc, of the centroid (x, y) in pixels.\n\
          The cause of a wrong answer is what kept the target itself from being taken.\n",
     );
+    if let Some(note) = attitude_note(score.attitude.as_deref()) {
+        text.push_str(&format!("{note}\n"));
+    }
     if let Some(distance) = style.reference.and_then(|table| table.distance(score)) {
         let Table2Distance { mean_points, worst_points } = distance;
         text.push_str(&format!(
@@ -82,32 +85,36 @@ fn columns(score: &Score) -> Vec<Column<'_>> {
 
 /// One row: its label and the value and interval of every column.
 struct Row {
-    label: &'static str,
+    label: String,
     cells: Vec<(String, Option<String>)>,
     is_reference: bool,
 }
 
 fn rows(columns: &[Column<'_>], reference: Option<&Table2>) -> Vec<Row> {
     let images = columns.iter().map(|column| (column.frames.to_string(), None)).collect();
-    let mut rows = vec![Row { label: "images", cells: images, is_reference: false }];
-    let mut add = |label, name, format: fn(f64) -> String, published: Option<[f64; 6]>| {
+    let mut rows = vec![Row { label: "images".to_owned(), cells: images, is_reference: false }];
+    let mut add = |label: &str, name, format: fn(f64) -> String, published: Option<[f64; 6]>| {
         let cells = columns.iter().map(|column| figure(column.figures.get(name), format)).collect();
+        let limit = columns.last().and_then(|column| column.figures.get(name)?.limit_deg);
+        let label = limit.map_or_else(|| label.to_owned(), |limit| format!("{label} < {}", angle(limit)));
         rows.push(Row { label, cells, is_reference: false });
         if let Some(published) = published {
             let cells = published.iter().map(|rate| (format!("{rate:.1}"), None)).collect();
-            rows.push(Row { label: "  published", cells, is_reference: true });
+            rows.push(Row { label: "  published".to_owned(), cells, is_reference: true });
         }
     };
     let of = |pick: fn(&Table2) -> [f64; 6]| reference.map(pick);
     add("hit rate", names::HIT_RATE, percent, of(|t| t.hit_rate));
-    add("RA < 0.024°", names::RA_WITHIN_1PX, percent, of(|t| t.ra_within_1px));
-    add("RA < 0.048°", names::RA_WITHIN_2PX, percent, of(|t| t.ra_within_2px));
-    add("Dec < 0.024°", names::DEC_WITHIN_1PX, percent, of(|t| t.dec_within_1px));
-    add("Dec < 0.048°", names::DEC_WITHIN_2PX, percent, of(|t| t.dec_within_2px));
+    add("RA", names::RA_WITHIN_1PX, percent, of(|t| t.ra_within_1px));
+    add("RA", names::RA_WITHIN_2PX, percent, of(|t| t.ra_within_2px));
+    add("Dec", names::DEC_WITHIN_1PX, percent, of(|t| t.dec_within_1px));
+    add("Dec", names::DEC_WITHIN_2PX, percent, of(|t| t.dec_within_2px));
     add("correct", names::CORRECT_RATE, percent, None);
     add("wrong", names::WRONG_RATE, percent, None);
     add("RA RMS", names::RA_RMS_DEG, arcsec, None);
     add("Dec RMS", names::DEC_RMS_DEG, arcsec, None);
+    add("x RMS, px", names::CENTROID_X_RMS_PX, pixels, None);
+    add("y RMS, px", names::CENTROID_Y_RMS_PX, pixels, None);
     rows
 }
 
@@ -131,6 +138,10 @@ fn arcsec(degrees: f64) -> String {
     if arcsec < 99.95 { format!("{arcsec:.1}") } else { format!("{arcsec:.0}") }
 }
 
+fn pixels(px: f64) -> String {
+    format!("{px:.3}")
+}
+
 fn sheet(columns: &[Column<'_>], rows: &[Row], before_interval: &str, styled: bool) -> String {
     let mut table = plain_table(styled);
     let heading = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
@@ -140,7 +151,7 @@ fn sheet(columns: &[Column<'_>], rows: &[Row], before_interval: &str, styled: bo
             Some(interval) => format!("{value}{before_interval}{interval}"),
             None => value.clone(),
         });
-        let cells = [row.label.to_owned()].into_iter().chain(cells).map(Cell::new);
+        let cells = [row.label.clone()].into_iter().chain(cells).map(Cell::new);
         table.add_row(cells.map(
             |cell| {
                 if row.is_reference { cell.add_attribute(Attribute::Dim) } else { cell }
@@ -244,6 +255,7 @@ mod tests {
             seed: 1,
             version: "0.1.0".to_owned(),
             inject: None,
+            attitude: None,
             frames: frames * groups as u64,
             figures: figures(frames * groups as u64),
             groups: (1..=groups).map(|day| (format!("day {day}"), group.clone())).collect(),

@@ -1,6 +1,6 @@
 //! What a person reads of a study.
 use comfy_table::{Attribute, Cell};
-use score::{FigureLabel, Kind, sense};
+use score::{FigureLabel, Kind, attitude_note, sense};
 use study::{CaseFigure, CaseRow, Estimate, Study, Summary, overall};
 
 use crate::table::far_range::{finish, percent, plain_table};
@@ -40,6 +40,9 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         "Intervals are of 95 %. All together: rates over all frames (Wilson, by the scatter between cases), other figures the mean of the\n\
          cases (bootstrap). Quantiles are of the cases, theirs by bootstrap.\n",
     );
+    if let Some(note) = attitude_note(summary.attitude.as_deref()) {
+        text.push_str(&format!("{note}\n"));
+    }
     let by = &summary.worst_by;
     let by_label = label(by);
     if let Some(first) = summary.sweep.first() {

@@ -9,9 +9,9 @@ use std::sync::Once;
 use boresight::failure::Failure;
 use boresight::files::{FileError, RunDirectory, WholeFile, toml_file};
 use boresight::run::world::{Answers, Dataset, Scored, Scorer};
-use boresight::run::{Flight, Of, OpenDataset, Options, ScenarioSource, World, register};
+use boresight::run::{Flight, Of, OpenDataset, Options, ScenarioSource, World, refuse_attitude, register};
 use boresight::run_file::RunFile;
-use boresight::scenario::scenario_file;
+use boresight::scenario::{AttitudeChoice, scenario_file};
 use boresight::score::{Definition, Figure, FigureTerms, Reduction, UnitTable, UnitVerdict};
 use contract::{ContractError, Interface, Pipeline, PipelineFactory};
 use indexmap::IndexMap;
@@ -244,7 +244,13 @@ impl World for BlinkingDot {
         Judge::default()
     }
 
-    fn score_files(directory: &Path, measurements: &Path, _: Option<&Path>) -> Result<Judge, Failure> {
+    fn score_files(
+        directory: &Path,
+        measurements: &Path,
+        _: Option<&Path>,
+        attitude: Option<AttitudeChoice>,
+    ) -> Result<Judge, Failure> {
+        refuse_attitude(attitude)?;
         let answers = text(measurements)?;
         let mut answers = answers.lines().map(|row| row.split_once(' ').unwrap_or_default());
         let mut judge = Judge::default();
@@ -252,7 +258,7 @@ impl World for BlinkingDot {
             let (number, column) = row.split_once(' ').unwrap_or_default();
             let truth = Truth { number: number.parse().unwrap_or_default(), column: column.parse().ok() };
             let answer = answers.find(|(answered, _)| *answered == number).map_or("", |(_, column)| column);
-            Scorer::add(&mut judge, &truth, &Ok(answer.parse().ok()))?;
+            Scorer::add(&mut judge, &truth, &(), &Ok(answer.parse().ok()))?;
         }
         Ok(judge)
     }
@@ -329,7 +335,7 @@ fn figures() -> [Definition<'static, Unit>; 2] {
 }
 
 impl Scorer<BlinkingDot> for Judge {
-    fn add(&mut self, truth: &Truth, answer: &Answer) -> Result<(), Failure> {
+    fn add(&mut self, truth: &Truth, (): &(), answer: &Answer) -> Result<(), Failure> {
         self.units.push((truth.number, truth.column, answer.clone().unwrap_or_default()));
         let sequence: Vec<&Unit> = self.units.iter().collect();
         self.score =

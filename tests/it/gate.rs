@@ -6,6 +6,7 @@ mod real;
 use boresight::gate::{CompareOptions, FigureVerdict, Pairing, compare};
 use cases::{FAULTS, Fault, Synthetic, baseline_of, harmless, rejects, sample_of};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 use crate::support::{Bench, check_same_files};
 
@@ -206,6 +207,47 @@ fn the_same_run_is_no_worse_and_a_worse_one_shuts_the_gate() {
     let some = lines.lines().enumerate().filter(|(i, _)| *i == 0 || i % 3 != 0).map(|(_, line)| line);
     bench.write("worse/measurements.csv", some.collect::<Vec<_>>().join("\n") + "\n");
     bench.boresight("gate base worse").refused(&["cannot compare", "no measurement of 20 of 60 frames"]);
+}
+
+/// The errors of centroids by the true attitude, 2″, had been held against those of a pipeline's own lines of sight, 50″.
+#[test]
+fn figures_that_count_other_things_are_not_compared() {
+    let bench = bench();
+    bench.boresight("run argon --frames 0..60 --no-report --out centroids").done();
+    let rows = bench.csv("centroids/measurements.csv");
+    let cells = |row: &BTreeMap<String, String>| {
+        ["frame", "status", "x_px", "y_px"].map(|name| row[name].clone()).join(",")
+    };
+    let lines: Vec<String> = rows.iter().map(cells).collect();
+    bench.unseal("centroids");
+    let text = format!("frame,status,x_px,y_px\n{}\n", lines.join("\n"));
+    bench.write("centroids/measurements.csv", text);
+    let refused = |words: &str, parts: &[&str]| {
+        let all = [&["cannot compare", "--figures chooses others"], parts].concat();
+        bench.boresight(words).refused(&all);
+    };
+    let attitude = "is of lines of sight by the attitude `own` in the baseline and";
+    refused("gate base centroids", &[attitude, "`none` in the result"]);
+    refused("gate base centroids --attitude true", &[attitude, "`true` in the result"]);
+    // Figures of the image are, whatever is granted.
+    for words in ["", "--attitude telemetry"] {
+        let words = format!("gate base centroids --figures hit_rate,centroid_x_rms_px {words}");
+        bench.boresight(&words).done();
+    }
+    // Against its like it is, and says so.
+    let words = "gate baseline centroids --attitude true --out like --reason centroids --block-length 6";
+    bench.boresight(words).done();
+    let report = bench.boresight("gate like centroids --attitude true").done().stdout;
+    assert!(report.contains("by the attitude `true`"), "{report}");
+    bench.boresight("gate like centroids").refused(&["`true` in the baseline and `none` in the result"]);
+
+    bench.scenario("wide.toml", "argon", |scenario| {
+        let limits = scenario["score"]["within_deg"].as_array_mut().unwrap();
+        limits[0] = 0.03.into();
+    });
+    bench.boresight("run wide.toml --frames 0..60 --no-report --out wide").done();
+    refused("gate base wide", &["counts errors below 0.024° in the baseline and 0.03° in the result"]);
+    bench.boresight("gate base wide --figures ra_rms_deg,ra_within_2px").done();
 }
 
 #[test]

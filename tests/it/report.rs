@@ -145,6 +145,7 @@ fn the_points_of_a_long_run_lie_as_all_of_its_errors_do() {
         .map(|i| {
             let mut verdict = verdicts[right].clone();
             if let Verdict::Correct { error } = &mut verdict.verdict {
+                let error = error.line_of_sight.as_mut().unwrap();
                 error.ra = Angle::from_degrees(law(i));
                 error.dec = Angle::from_degrees(-law(i));
             }

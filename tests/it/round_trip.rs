@@ -131,7 +131,7 @@ fn score_of(bench: &Bench, row: impl Fn(&FrameTruth, PixelPoint) -> String) -> V
         table += "\n";
     }
     bench.write("outside.csv", table);
-    bench.boresight("score run outside.csv --json").done().json()
+    bench.boresight("score run outside.csv --attitude true --json").done().json()
 }
 
 /// The score of the true places, moved.
@@ -183,6 +183,85 @@ fn a_shift_of_half_a_pixel_is_the_bias_and_nothing_else() {
         let interval = &score["figures"][if dx > 0.0 { "ra_mean_deg" } else { "dec_mean_deg" }];
         assert!(interval["low"].as_f64() > Some(0.0), "the bias is significant: {interval}");
     }
+}
+
+/// It had been given the true attitude without a word, and its errors stood beside those of pipelines that had to find theirs.
+#[test]
+fn centroids_have_lines_of_sight_by_the_attitude_that_is_asked_for_alone() {
+    let bench = with_run();
+    let granted = score_of_places(&bench, 0.5, 0.0);
+    let none = bench.boresight("score run outside.csv --json").done().json();
+    let telemetry = bench.boresight("score run outside.csv --attitude telemetry --json").done().json();
+    for (score, word) in [(&none, "none"), (&granted, "true"), (&telemetry, "telemetry")] {
+        assert_eq!(score["attitude"], word);
+        for name in ["hit_rate", "correct_rate"] {
+            assert_eq!(figure(score, name), 1.0, "{word}");
+        }
+        // The target's centre of brightness is a little off its origin.
+        assert!((figure(score, "centroid_x_mean_px") - 0.5).abs() < 0.1, "{score}");
+        assert!(figure(score, "centroid_y_rms_px") < 0.1, "{score}");
+        assert_eq!(figure(score, "line_of_sight_rate"), 0.0);
+    }
+    for name in ["ra_within_1px", "dec_within_2px", "ra_rms_deg", "dec_mean_deg", "ra_median_deg"] {
+        assert!(none["figures"][name]["value"].is_null(), "{name}");
+    }
+    // The nominal mounting is 0.03° off, and telemetry has noise.
+    let size = |score: &Value| libm::hypot(figure(score, "ra_rms_deg"), figure(score, "dec_rms_deg"));
+    assert!(size(&granted) < 0.015 && size(&telemetry) > 0.02, "{} {}", size(&granted), size(&telemetry));
+
+    let table = |words: &str| bench.boresight(&format!("score run outside.csv {words}")).done().stdout;
+    assert!(table("").contains("No answer has a line of sight"));
+    assert!(table("--attitude true").contains("by the attitude `true`"));
+
+    // A pipeline with a line of sight of its own is granted nothing.
+    let own = bench.boresight("score run run/measurements.csv --attitude true --json").done().json();
+    assert_eq!(own, bench.json("run/score.json"));
+    assert_eq!((&own["attitude"], figure(&own, "line_of_sight_rate")), (&"own".into(), 1.0));
+}
+
+/// The option of a run is kept in its `run.toml`: whoever scores it again does as the run did, to the bit.
+#[test]
+fn a_run_keeps_the_attitude_that_it_grants() {
+    let bench = Bench::new();
+    let program = format!("exec:python3 '{}/docs/examples/brightest.py'", env!("CARGO_MANIFEST_DIR"));
+    let words = ["run", "argon", "--frames", "8000..8006", "--attitude", "telemetry", "--out", "run"];
+    bench.boresight_words(&[&words[..], &["--pipeline", &program]].concat()).done();
+    let score = bench.json("run/score.json");
+    assert_eq!(score["attitude"], "telemetry");
+    assert!(score["figures"]["ra_rms_deg"]["of"].as_u64() > Some(0), "{score}");
+    assert_eq!(bench.boresight("score run run/measurements.csv --json").done().json(), score);
+    assert!(bench.read("run/report.html").contains("by the attitude `telemetry`"));
+    let message = "expected with a run of the far range alone";
+    bench.boresight("run docking --frames 0..2 --attitude true --out other").refused(&[message]);
+    bench.boresight("run docking --frames 0..2 --no-report --out docking").done();
+    bench.boresight("score docking docking/measurements.csv --attitude true").refused(&[message]);
+}
+
+#[test]
+fn within_a_pixel_means_the_pixel_of_the_scenarios_own_camera() {
+    let bench = Bench::new();
+    bench.boresight("run starting-point --frames 0..2 --no-report --out run").done();
+    let camera: toml::Table = bench.read("run/camera.toml").parse().unwrap();
+    let number = |key: &str| camera["camera"][key].as_float().unwrap();
+    let pixel = |side: &str| libm::atan(number(side) / (1000.0 * number("focal_length_mm"))).to_degrees();
+    let figures = &bench.json("run/score.json")["figures"];
+    for (name, expected) in [
+        ("ra_within_1px", pixel("pixel_width_um")),
+        ("dec_within_1px", pixel("pixel_height_um")),
+        ("ra_within_2px", 2.0 * pixel("pixel_width_um")),
+    ] {
+        let limit = figures[name]["limit_deg"].as_f64().unwrap();
+        assert!((limit / expected - 1.0).abs() < 1e-6, "{name}: {limit}, not {expected}");
+    }
+    // The paper's own, which a scenario states, and which go into run.toml with it.
+    bench.boresight("run argon --frames 0..2 --no-report --out argon").done();
+    let figures = &bench.json("argon/score.json")["figures"];
+    assert_eq!(
+        (&figures["ra_within_1px"]["limit_deg"], &figures["dec_within_2px"]["limit_deg"]),
+        (&0.024.into(), &0.048.into())
+    );
+    assert!(bench.read("argon/run.toml").contains("within_deg = [0.024, 0.048]"));
+    assert!(figures["hit_rate"].get("limit_deg").is_none());
 }
 
 #[test]

@@ -296,6 +296,8 @@ fn a_study_that_is_wrong_says_where() {
     refused("psf.sigma_px", "psf.sigma", &["case 0", "psf", "sigma"]);
     refused("psf.sigma_px", "psff.sigma_px", &["vary[0].path", "no `psff`"]);
     refused("\"psf.sigma_px\"", "\"title\"", &["vary[0].path", "is `title`", "seed of its own"]);
+    // How cases are scored is no parameter: figures within one limit and another, or by one attitude and another, have no mean.
+    refused("\"psf.sigma_px\"", "\"score.within_deg[0]\"", &["vary[0].path", "is `score.within_deg[0]`"]);
     refused("psf.sigma_px", "schedule[9].count", &["vary[0].path", "has 5 of these"]);
     refused("psf.sigma_px", "sensor.hot_pixels", &["vary[1].path", "sensor.hot_pixels"]);
     refused("sigma = 0.1", "sigma = -0.1", &["vary[0].law.sigma", "-0.1", "above 0"]);

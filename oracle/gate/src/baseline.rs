@@ -88,6 +88,12 @@ pub struct BaselineFigure {
     pub value: Option<f64>,
     /// How many values it is counted over.
     pub of: u64,
+    /// Of a rate of errors "within" something: the limit, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit_deg: Option<f64>,
+    /// Of a figure of lines of sight: the attitude that they rest on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude: Option<String>,
 }
 
 /// A baseline in memory.
@@ -221,7 +227,10 @@ impl Baseline {
             let message = format!("is not that of {}: one of the two files was changed", rows_path.display());
             return Err(refuse("rows_sha256", message));
         }
-        let (table, numbers) = rows::read(&rows_path, &figures)?;
+        let (mut table, numbers) = rows::read(&rows_path, &figures)?;
+        for (figure, told) in table.figures.iter_mut().zip(header.figures.values()) {
+            (figure.limit_deg, figure.attitude) = (told.limit_deg, told.attitude.clone());
+        }
         let (told, units) = (header.units, table.units.len());
         if told != units as u64 {
             return Err(refuse(
@@ -258,6 +267,8 @@ fn told_of(figure: &FigureTerms) -> BaselineFigure {
         by: figure.reduction.code().to_owned(),
         value: value(figure.reduction, &figure.terms),
         of: figure.terms.iter().map(|term| u64::from(term.of)).sum(),
+        limit_deg: figure.limit_deg,
+        attitude: figure.attitude.clone(),
     }
 }
 
@@ -320,6 +331,21 @@ mod tests {
             let sums = std::fs::read_to_string(folder.path().join("SHA256SUMS")).unwrap();
             assert!(NAMES.iter().all(|name| sums.contains(name)), "{sums}");
         }
+    }
+
+    /// What a figure counts by stands in the header alone.
+    #[test]
+    fn limits_and_attitudes_are_read_back() {
+        let mut sample = run(6);
+        let figure = &mut sample.table.figures[1];
+        (figure.limit_deg, figure.attitude) = (Some(0.024), Some("true".to_owned()));
+        let mut baseline = Baseline::new(sample, "a test", Some(1)).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        let told = &Baseline::read(folder.path()).unwrap();
+        assert_eq!(told, &baseline);
+        assert_eq!(told.header.figures["ra_median_deg"].limit_deg, Some(0.024));
+        assert_eq!(told.header.figures["ra_median_deg"].attitude.as_deref(), Some("true"));
     }
 
     /// The states that a `--replace` goes through, as a kill leaves them: there is always one of the two.
@@ -386,7 +412,13 @@ mod tests {
         let header = &baseline.header;
         assert_eq!((header.format, header.units, header.reason.as_str()), (1, 8, "a test"));
         assert_eq!((header.blocks.count, header.blocks.length), (8, 1));
-        let told = |by: &str, value, of| BaselineFigure { by: by.to_owned(), value, of };
+        let told = |by: &str, value, of| BaselineFigure {
+            by: by.to_owned(),
+            value,
+            of,
+            limit_deg: None,
+            attitude: None,
+        };
         assert_eq!(header.figures["hit_rate"], told("rate", Some(0.875), 8));
         // 0.5, 1, … 3.5.
         assert_eq!(header.figures["ra_median_deg"], told("median", Some(2.0), 7));

@@ -157,7 +157,7 @@ mod tests {
                 Term { sum: slow, of: 1 }
             };
             let terms = (0..20_000).map(|_| term()).collect();
-            FigureTerms { name: name.to_owned(), reduction: Reduction::Mean, terms }
+            FigureTerms::counted(name, Reduction::Mean, terms)
         };
         table.figures = vec![figure("white", 0.0), figure("slow", 0.9)];
         let memory = memory(SourceKind::Run, "far_range", &table);
@@ -199,7 +199,7 @@ mod tests {
         let mut table = table(&[("day 1", 100)]);
         let figure = |name: &str, value: fn(u8) -> f64| {
             let terms = (0..100).map(|i| Term { sum: value(i), of: 1 }).collect();
-            FigureTerms { name: name.to_owned(), reduction: Reduction::Mean, terms }
+            FigureTerms::counted(name, Reduction::Mean, terms)
         };
         table.figures = vec![figure("constant", |_| 0.3), figure("alternating", |i| f64::from(i % 2))];
         let memory = memory(SourceKind::Run, "far_range", &table);

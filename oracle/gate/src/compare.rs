@@ -1,7 +1,7 @@
 //! A result against a baseline.
 use files::{Failure, toml_file};
 use indexmap::IndexMap;
-use score::{Better, FigureTerms, Kind, Sense, UnitVerdict, sense};
+use score::{Better, FigureTerms, Kind, Sense, UnitVerdict, attitude_note, sense};
 use statistics::{BlockEffects, Exchanges, JointTest, joint_test, normal_quantile};
 
 use super::baseline::Baseline;
@@ -169,7 +169,9 @@ fn pairs<'a>(
         .map(|before| {
             let after = result.table.figures.iter().find(|figure| figure.name == before.name);
             match after {
-                Some(after) if after.reduction == before.reduction => Ok((before, after)),
+                Some(after) if after.reduction == before.reduction => {
+                    check_alike(before, after).map(|()| (before, after))
+                }
                 Some(after) => Err(Failure::Usage(format!(
                     "cannot compare: `{}` is a `{}` in the baseline and a `{}` in the result, expected the same",
                     before.name,
@@ -185,6 +187,31 @@ fn pairs<'a>(
         .collect()
 }
 
+/// Refuses a figure that counts other things under the same name: within another limit, or of lines of sight by another attitude. Where
+/// nothing was detected there is no attitude, and nothing to be confused.
+fn check_alike(before: &FigureTerms, after: &FigureTerms) -> Result<(), Failure> {
+    let cannot = |is: &str, of_baseline: String, of_result: String, hint: &str| {
+        Err(Failure::Usage(format!(
+            "cannot compare: `{}` {is} {of_baseline} in the baseline and {of_result} in the result, expected the same ({hint}); --figures \
+             chooses others",
+            before.name
+        )))
+    };
+    if before.limit_deg != after.limit_deg {
+        let shown =
+            |limit: Option<f64>| limit.map_or("a limit that is not recorded".to_owned(), |l| format!("{l}°"));
+        let (before, after) = (shown(before.limit_deg), shown(after.limit_deg));
+        return cannot("counts errors below", before, after, "`within_deg` of the scenario's [score]");
+    }
+    match (&before.attitude, &after.attitude) {
+        (Some(before), Some(after)) if before != after => {
+            let [before, after] = [before, after].map(|attitude| format!("`{attitude}`"));
+            cannot("is of lines of sight by the attitude", before, after, "--attitude")
+        }
+        _ => Ok(()),
+    }
+}
+
 /// What a reader must know. `correlation` is the largest of neighbouring blocks, and of how many figures it is that.
 fn notes(
     baseline: &Baseline,
@@ -193,6 +220,8 @@ fn notes(
     (correlation, figures): (f64, usize),
 ) -> Vec<String> {
     let mut notes = Vec::new();
+    let attitude = result.table.figures.iter().find_map(|figure| figure.attitude.as_deref());
+    notes.extend(attitude_note(attitude));
     let (before, after) = (&baseline.sample.identity, &result.identity);
     if pairing == Pairing::Blocks && before.seed == after.seed {
         notes.push(format!(
@@ -503,6 +532,38 @@ mod tests {
         };
         assert_eq!(with(7.01 / 12.0), FigureVerdict::NoWorse);
         assert_eq!(with(6.99 / 12.0), FigureVerdict::Worse);
+    }
+
+    #[test]
+    fn a_figure_must_count_within_the_same_limit_and_by_the_same_attitude() {
+        let of = |limit_deg, attitude: Option<&str>| {
+            let figure = FigureTerms { limit_deg, ..rate("ra_within_1px", &BEFORE) };
+            let attitude = attitude.map(str::to_owned);
+            sample(vec![figure.resting_on(attitude.as_ref()), rate("hit_rate", &BEFORE)])
+        };
+        let refused = |before: Sample, after: Sample, part: &str| {
+            let message = refusal(before.clone(), &after, &CompareOptions::default());
+            assert!(message.contains(part) && message.contains("--figures chooses others"), "{message}");
+            let options =
+                CompareOptions { figures: vec!["hit_rate".to_owned()], ..CompareOptions::default() };
+            assert_eq!(compare(&baseline(before), &after, &options).unwrap().verdict, FigureVerdict::NoWorse);
+        };
+        refused(
+            of(Some(0.024), None),
+            of(Some(0.25), None),
+            "`ra_within_1px` counts errors below 0.024° in the baseline and 0.25° in the result, expected the same (`within_deg`",
+        );
+        refused(of(None, None), of(Some(0.25), None), "a limit that is not recorded in the baseline");
+        refused(
+            of(Some(0.024), Some("true")),
+            of(Some(0.024), Some("own")),
+            "`ra_within_1px` is of lines of sight by the attitude `true` in the baseline and `own` in the result",
+        );
+        // What found nothing has no attitude: it is worse, and no other thing.
+        let report = compared(of(None, Some("own")), &of(None, None));
+        assert!(report.notes.is_empty(), "{:?}", report.notes);
+        let report = compared(of(None, Some("true")), &of(None, Some("true")));
+        assert!(report.notes[0].contains("by the attitude `true`"), "{:?}", report.notes);
     }
 
     #[test]

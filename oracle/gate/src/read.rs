@@ -5,6 +5,7 @@ use std::path::Path;
 use files::sha256::{hex, sha256_hex};
 use files::{Checksums, Failure, FileError, file_sha256, table_sha256, toml_file};
 use run::{world_of_run, worlds};
+use scenario::AttitudeChoice;
 use scenario::identity::split;
 use scenario::run_file::RunFile;
 use score::{FigureTerms, Kind, Reduction, Term, UnitTable, UnitVerdict, sense};
@@ -15,15 +16,22 @@ use toml::Table;
 use super::identity::{Identity, SourceKind};
 use super::sample::Sample;
 
-/// Reads a run directory (its measurements are scored anew), or the directory of a study that is complete.
+/// Reads a run directory (its measurements are scored anew, centroids with `attitude` in place of what the run's scenario says), or the
+/// directory of a study that is complete.
 ///
 /// # Errors
-/// A [`Failure`] for a directory that is neither, or files that cannot be read.
-pub fn read_result(directory: &Path) -> Result<Sample, Failure> {
+/// A [`Failure`] for a directory that is neither, files that cannot be read, or an attitude for a study, whose cases are scored already.
+pub fn read_result(directory: &Path, attitude: Option<AttitudeChoice>) -> Result<Sample, Failure> {
     let (run_file, cases) = (directory.join("run.toml"), directory.join("cases.parquet"));
     let sample = if run_file.is_file() {
-        run(directory, &run_file)?
+        run(directory, &run_file, attitude)?
     } else if cases.is_file() {
+        if attitude.is_some() {
+            return Err(Failure::Usage(format!(
+                "--attitude is given, expected with a run alone: the cases of {} are scored already, by [score] of their scenario",
+                directory.display()
+            )));
+        }
         study(directory, &cases)?
     } else {
         return Err(Failure::Usage(format!(
@@ -44,12 +52,13 @@ fn scenario_of(path: &Path, text: &str) -> Result<Table, Failure> {
     }
 }
 
-fn run(directory: &Path, path: &Path) -> Result<Sample, Failure> {
+fn run(directory: &Path, path: &Path, attitude: Option<AttitudeChoice>) -> Result<Sample, Failure> {
     let world = world_of_run(path)?;
     let RunFile { name, version, catalog_sha256, inject, files, mitsuba, scenario, .. } =
         world.read_run(path)?;
     let evidence = world.evidence_file().map(|name| directory.join(name)).filter(|path| path.is_file());
-    let scored = world.score(directory, &directory.join("measurements.csv"), evidence.as_deref())?;
+    let scored =
+        world.score(directory, &directory.join("measurements.csv"), evidence.as_deref(), attitude)?;
     let mut digest = FrameDigest::default();
     world.telemetry_rows(directory, &mut |row| digest.add(row))?;
     for (name, sha256) in truth_digests(&directory.join("truth"))? {
@@ -60,7 +69,10 @@ fn run(directory: &Path, path: &Path) -> Result<Sample, Failure> {
         doing: "read",
         source,
     })?;
-    let split = split(world.code(), scenario_of(path, &text)?, &files)?;
+    let mut scenario_table = scenario_of(path, &text)?;
+    // How it is scored is compared figure by figure: those that do not depend on it may be.
+    scenario_table.remove("score");
+    let split = split(world.code(), scenario_table, &files)?;
     let identity = Identity {
         kind: SourceKind::Run,
         world: world.code().to_owned(),
@@ -104,6 +116,8 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
         digest.add(&(row.case, row.seed, &row.drawn));
     }
     let world = record.world;
+    let granted = record.scenario.get("score").and_then(|score| score.get("attitude")?.as_str());
+    let attitude = table.attitude(granted);
     let mut split = split(&world, record.scenario, &record.files)?;
     split.scenario = Table::from_iter([
         ("study".to_owned(), toml::Value::Table(record.study)),
@@ -125,12 +139,12 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
         scenario: split.scenario,
         world,
     };
-    Ok(Sample::new(identity, units_of_cases(&table)))
+    Ok(Sample::new(identity, units_of_cases(&table, attitude.as_ref())))
 }
 
 /// The cases of a study as units: rates over all frames of all cases, amounts as means over the cases, as the study sums them up.
 #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
-fn units_of_cases(table: &CaseTable) -> UnitTable {
+fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
     let figure = |(index, name): (usize, &String)| {
         let is_rate = sense(name).kind == Kind::Rate;
         let term = |figure: CaseFigure| match figure.value {
@@ -140,7 +154,7 @@ fn units_of_cases(table: &CaseTable) -> UnitTable {
         };
         let reduction = if is_rate { Reduction::Rate } else { Reduction::Mean };
         let terms = table.rows.iter().map(|row| term(row.figures[index])).collect();
-        FigureTerms { name: name.clone(), reduction, terms }
+        FigureTerms::counted(name, reduction, terms).resting_on(attitude)
     };
     let headlines: Vec<&str> = worlds().into_iter().map(|world| world.headline()).collect();
     let verdict = table.figures.iter().position(|name| headlines.contains(&name.as_str()));
@@ -197,9 +211,12 @@ mod tests {
                 },
             ],
         };
-        let units = units_of_cases(&table);
+        let units = units_of_cases(&table, Some(&"own".to_owned()));
         assert_eq!(units.units[0].verdict, "30 of 40");
         assert_eq!(units.figures[0].terms, [Term { sum: 30.0, of: 40 }, Term { sum: 0.0, of: 40 }]);
         assert_eq!(units.figures[1].terms, [Term { sum: 0.5, of: 1 }, Term::default()]);
+        assert_eq!(units.figures[0].attitude, None);
+        assert_eq!(units.figures[1].attitude.as_deref(), Some("own"));
+        assert_eq!(table.attitude(Some("true")), None, "the figure is not recorded");
     }
 }

@@ -54,11 +54,7 @@ pub(super) fn read(
         units: Vec::new(),
         figures: figures
             .iter()
-            .map(|(name, reduction)| FigureTerms {
-                name: name.clone(),
-                reduction: *reduction,
-                terms: Vec::new(),
-            })
+            .map(|(name, reduction)| FigureTerms::counted(name, *reduction, Vec::new()))
             .collect(),
     };
     let mut blocks = Vec::new();
@@ -169,7 +165,7 @@ mod tests {
     fn table() -> UnitTable {
         let term = |sum, of| Term { sum, of };
         let pooled = vec![term(2.0, 3), Term::default(), term(0.0, 1), term(0.0, 2)];
-        let pooled = FigureTerms { name: "held_rate".to_owned(), reduction: Reduction::Rate, terms: pooled };
+        let pooled = FigureTerms::counted("held_rate", Reduction::Rate, pooled);
         let rate = figure("hit_rate", Reduction::Rate, &[None, Some(1.0), Some(0.0), Some(1.0)]);
         let amount = figure("ra_rms_deg", Reduction::Rms, &[Some(0.5), Some(-0.25), None, Some(0.0)]);
         let mut table = sample(vec![pooled, rate, amount]).table;
@@ -199,7 +195,7 @@ mod tests {
         assert_eq!(there_and_back(&table, &[0, 0, 1, 2]).unwrap(), (table, vec![0, 0, 1, 2]));
         // Of two values or none, none alone.
         let terms = vec![Term { sum: 1.0, of: 2 }, Term::default()];
-        let pairs = FigureTerms { name: "held_rate".to_owned(), reduction: Reduction::Rate, terms };
+        let pairs = FigureTerms::counted("held_rate", Reduction::Rate, terms);
         let table = sample(vec![pairs]).table;
         assert_eq!(there_and_back(&table, &[0, 1]).unwrap().0, table);
     }

@@ -26,7 +26,7 @@ pub(super) fn run_page(directory: &Path) -> Result<Page, Failure> {
         return Err(missing(directory, "measurements.csv"));
     }
     let evidence = world.evidence_file().map(|name| directory.join(name)).filter(|path| path.is_file());
-    let scored = world.score(directory, &measurements, evidence.as_deref())?;
+    let scored = world.score(directory, &measurements, evidence.as_deref(), None)?;
     let units = scored.units().units;
     let mut counts: IndexMap<(&str, &str), u64> = IndexMap::new();
     for unit in &units {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use files::{Failure, FileError};
-use score::{Better, FigureLabel, Kind, sense};
+use score::{Better, FigureLabel, Kind, attitude_note, sense};
 use study::{CaseTable, Estimate, FigureSummary, Summary};
 
 use super::chart::{
@@ -84,7 +84,7 @@ pub fn study_page(study: &StudyResult) -> Page {
         },
         kind: "Study",
         version: summary.version.clone(),
-        lead: vec![lead],
+        lead: [lead].into_iter().chain(attitude_note(summary.attitude.as_deref())).collect(),
         warnings: Vec::new(),
         facts: vec![
             ("Study", summary.study.clone()),

@@ -10,8 +10,8 @@ use contract::{Interface, OutOfRange, PipelineFactory};
 use files::toml_file::{self, TomlError};
 use files::{Failure, RunDirectory};
 use indexmap::IndexMap;
-use scenario::Stage;
 use scenario::run_file::{RunFile, ScenarioFile};
+use scenario::{AttitudeChoice, Stage};
 use schemars::{Schema, SchemaGenerator};
 use score::{Figure, UnitTable};
 use serde_json::Value;
@@ -27,6 +27,8 @@ use crate::run_result::{FirstFailure, RunResult};
 pub struct Options {
     /// The stage of the built-in pipeline whose result is replaced by the truth.
     pub inject: Option<Stage>,
+    /// The attitude granted to answers with a centroid alone, in place of what the scenario says.
+    pub attitude: Option<AttitudeChoice>,
     /// Who draws the scene.
     pub renderer: DockingRenderer,
 }
@@ -125,6 +127,7 @@ pub trait AnyWorld: Sync {
         directory: &Path,
         measurements: &Path,
         evidence: Option<&Path>,
+        attitude: Option<AttitudeChoice>,
     ) -> Result<Box<dyn AnyScored>, Failure>;
 
     /// [`World::telemetry_rows`](crate::World::telemetry_rows).

@@ -12,6 +12,7 @@ use files::toml_file::TomlError;
 use files::{Failure, RunDirectory, format_utc};
 use indexmap::IndexMap;
 use pipeline::external::ExternalFactory;
+use scenario::AttitudeChoice;
 use scenario::run_file::{RunFile, ScenarioFile};
 use schemars::{Schema, SchemaGenerator};
 use score::{Figure, UnitTable};
@@ -173,8 +174,9 @@ impl<W: World> AnyWorld for Of<W> {
         directory: &Path,
         measurements: &Path,
         evidence: Option<&Path>,
+        attitude: Option<AttitudeChoice>,
     ) -> Result<Box<dyn AnyScored>, Failure> {
-        Ok(Box::new(W::score_files(directory, measurements, evidence)?))
+        Ok(Box::new(W::score_files(directory, measurements, evidence, attitude)?))
     }
 
     fn telemetry_rows(&self, directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {

@@ -33,5 +33,7 @@ pub use far_range::{Prepared, SceneTruth};
 pub use flight::{Expectation, Flight};
 pub use run_result::{FirstFailure, NotFlown, RunResult};
 pub use source::world_of_run;
-pub use world::{OpenDataset, Processed, ProcessedFrame, Scored, World, process, process_into};
+pub use world::{
+    OpenDataset, Processed, ProcessedFrame, Scored, World, process, process_into, refuse_attitude,
+};
 pub use worlds::{json_schema, register, world_called, worlds};

@@ -5,6 +5,7 @@ use std::path::Path;
 use files::{ColumnValues, Failure, FileError, ParquetFile, Place, read_origins};
 use hifitime::Epoch;
 use indexmap::IndexMap;
+use scenario::AttitudeChoice;
 use scenario::identity::{first_difference, split};
 use scenario::run_file::RunFile;
 use sim::truth::clock;
@@ -19,7 +20,8 @@ const TIME_TOLERANCE_S: f64 = 1e-3;
 const ROWS: usize = 8192;
 
 impl dyn AnyWorld {
-    /// Scores answers with the truth of `directory`, if they are of its frames as far as records tell.
+    /// Scores answers with the truth of `directory`, if they are of its frames as far as records tell; centroids with `attitude` in the place
+    /// of what the scenario says.
     ///
     /// # Errors
     /// [`Failure::Usage`] for answers that are of other frames; those of [`AnyWorld::score_files`].
@@ -28,12 +30,13 @@ impl dyn AnyWorld {
         directory: &Path,
         measurements: &Path,
         evidence: Option<&Path>,
+        attitude: Option<AttitudeChoice>,
     ) -> Result<Box<dyn AnyScored>, Failure> {
         for file in [Some(measurements), evidence].into_iter().flatten() {
             check_record_beside(self, directory, file)?;
         }
         check_origins(self, directory, measurements)?;
-        self.score_files(directory, measurements, evidence)
+        self.score_files(directory, measurements, evidence, attitude)
     }
 }
 
@@ -72,7 +75,9 @@ fn check_record_beside(world: &dyn AnyWorld, directory: &Path, answers: &Path) -
 fn frames(world: &dyn AnyWorld, run: &RunFile<Box<dyn AnyScenario>>) -> Result<Table, Failure> {
     let text = run.scenario.to_toml()?;
     let unreadable = |error| Failure::Usage(format!("the scenario cannot be read again: {error}"));
-    let scenario = split(world.code(), text.parse().map_err(unreadable)?, &run.files)?.scenario;
+    let mut scenario = split(world.code(), text.parse().map_err(unreadable)?, &run.files)?.scenario;
+    // How a run is scored is no property of its frames.
+    scenario.remove("score");
     let optional = [
         ("catalog_sha256", run.catalog_sha256.clone()),
         ("inject", run.inject.map(|stage| stage.to_string())),

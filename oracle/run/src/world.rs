@@ -10,6 +10,7 @@ use contract::{FailedStarts, Interface, Pipeline, PipelineFactory};
 use files::{Failure, FileError, PartialFiles, RunDirectory, WholeFile};
 use indexmap::IndexMap;
 use pipeline::external::Protocol;
+use scenario::AttitudeChoice;
 use scenario::run_file::{RunFile, ScenarioFile};
 use score::{Figure, UnitTable};
 use serde::Serialize;
@@ -249,14 +250,16 @@ pub trait World: Sized + Send + Sync + 'static {
     /// A scorer that has seen no frame.
     fn scorer(&self) -> Self::Scorer<'_>;
 
-    /// Scores measurements, somebody's or our own, against the truth in `directory`, with what lies beside them: clusters, or motions.
+    /// Scores measurements, somebody's or our own, against the truth in `directory`, with what lies beside them: clusters, or motions;
+    /// `attitude` is granted to answers with a centroid alone, in place of what the run's scenario says.
     ///
     /// # Errors
-    /// A [`Failure`] for a file that cannot be read, or a row of a frame that the truth does not have.
+    /// A [`Failure`] for a file that cannot be read, a row of a frame that the truth does not have, or an attitude in a world without it.
     fn score_files(
         directory: &Path,
         measurements: &Path,
         beside: Option<&Path>,
+        attitude: Option<AttitudeChoice>,
     ) -> Result<Self::Scored, Failure>;
 
     /// Makes frames and writes them as a dataset; `done` is called after each.
@@ -304,7 +307,7 @@ pub trait World: Sized + Send + Sync + 'static {
             first_failure =
                 first_failure.take().or_else(|| FirstFailure::of::<Self::Interface>(number, &outcome));
             answers.add(number, &outcome)?;
-            scorer.add(&truth, &outcome)?;
+            scorer.add(&truth, &telemetry, &outcome)?;
             dataset.add(&image, telemetry, truth)?;
             go_on()?;
             running.check_starts().map(|()| image)
@@ -371,7 +374,7 @@ pub trait World: Sized + Send + Sync + 'static {
             let processed = running.process(self.expose(&mut workspace, frame)?)?;
             let failure = || FirstFailure::of::<Self::Interface>(frame, &processed.outcome);
             first_failure = first_failure.or_else(failure);
-            scorer.add(&processed.truth, &processed.outcome)?;
+            scorer.add(&processed.truth, &processed.telemetry, &processed.outcome)?;
             Self::reuse(&mut workspace, processed.image);
             if running.check_starts().is_err() {
                 break;
@@ -472,7 +475,12 @@ pub trait Scorer<W: World> {
     ///
     /// # Errors
     /// A [`Failure`] for a truth that cannot be scored.
-    fn add(&mut self, truth: &W::Truth, outcome: &OutcomeOf<W>) -> Result<(), Failure>;
+    fn add(
+        &mut self,
+        truth: &W::Truth,
+        telemetry: &TelemetryOf<W>,
+        outcome: &OutcomeOf<W>,
+    ) -> Result<(), Failure>;
 
     /// The score, with what it was counted from.
     fn finish(self) -> W::Scored;
@@ -644,6 +652,16 @@ pub struct Processed {
     pub frames: u64,
     /// The first failure of the pipeline, if it failed at all.
     pub first_failure: Option<FirstFailure>,
+}
+
+/// Refuses to grant an attitude in a world whose answers are not lines of sight.
+///
+/// # Errors
+/// [`Failure::Usage`] when one is asked for.
+pub fn refuse_attitude(attitude: Option<AttitudeChoice>) -> Result<(), Failure> {
+    attitude.map_or(Ok(()), |_| {
+        Err(Failure::Usage("--attitude is given, expected with a run of the far range alone".to_owned()))
+    })
 }
 
 pub(crate) fn unscorable(error: score::ScoreError) -> Failure {

@@ -1,6 +1,7 @@
 //! The far-range world: star fields with a distant spacecraft.
 
-use contract::{Camera, Readout};
+use clap::ValueEnum;
+use contract::{Camera, OutOfRange, Readout, bounds};
 use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -68,9 +69,53 @@ pub struct FarRangeScenario {
     /// Whether the Moon and the planets are drawn, "on" or "off" (the default). They are in no star list.
     #[serde(default = "off")]
     pub solar_system: Switch,
+    /// How answers are scored; nothing of it is simulated.
+    // Not written where it says nothing: resolved scenarios, and their hashes, are those from before there was such a table.
+    #[serde(default, skip_serializing_if = "ScoreConfig::is_default")]
+    pub score: ScoreConfig,
     /// Parameters of the pipeline `far_range`.
     #[serde(default)]
     pub far_range: FarRangeConfig,
+}
+
+/// How answers are scored.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ScoreConfig {
+    /// What "within one pixel" and "within two" mean on both axes, degrees, ascending, each 1e-6 to 180; absent: one and two pixels of the
+    /// camera, each axis by its own scale.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 1e-6, max = 180)))]
+    pub within_deg: Option<[f64; 2]>,
+    /// The attitude that is granted to answers with a centroid alone; absent: none, and they have no line of sight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude: Option<AttitudeChoice>,
+}
+
+impl ScoreConfig {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for the first that is not allowed.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "score")?;
+        let Some([one, two]) = self.within_deg else { return Ok(()) };
+        bounds::require("score.within_deg[1]", two, format!("more than {one}"), |two| two > one)
+    }
+}
+
+/// The attitude that the score grants to answers with a centroid alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum AttitudeChoice {
+    /// The measured attitude of telemetry, with the nominal mounting
+    Telemetry,
+    /// The true attitude
+    True,
 }
 
 /// The one world of a [`FarRangeScenario`].

@@ -22,5 +22,5 @@ mod stage;
 pub use builtin::{BUILT_IN, BuiltIn, DOCKING, STARTING_POINT, is_argon};
 pub use cameras::CAMERAS;
 pub use docking::{DockingScenario, DockingWorld};
-pub use far_range::{FarRangeScenario, FarRangeWorld, StarListConfig};
+pub use far_range::{AttitudeChoice, FarRangeScenario, FarRangeWorld, ScoreConfig, StarListConfig};
 pub use stage::Stage;

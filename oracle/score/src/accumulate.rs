@@ -7,7 +7,9 @@ use indexmap::IndexMap;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
 use thiserror::Error;
 
-use super::angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
+use super::angles::{
+    AnswerError, AttitudeUsed, GrantedAttitude, LineOfSightError, WithinLimits, attitude_word,
+};
 use super::argon_table2::Table2;
 use super::cause::{Cause, Detector};
 use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
@@ -28,6 +30,8 @@ pub struct ScoreContext<'a> {
     pub columns: usize,
     /// Rows of the detector.
     pub rows: usize,
+    /// What "within one pixel" and "within two" mean.
+    pub limits: WithinLimits,
     /// Inverse projection of the true camera.
     pub unproject: Box<Unproject<'a>>,
 }
@@ -39,6 +43,8 @@ pub struct Scored {
     pub score: Score,
     /// One verdict a frame, in order.
     pub verdicts: Vec<FrameVerdict>,
+    /// What "within one pixel" and "within two" mean in it.
+    pub limits: WithinLimits,
     /// The published figures of the same scenario, where there are any.
     pub published: Option<&'static Table2>,
 }
@@ -104,7 +110,7 @@ fn check_possible(truth: &FrameTruth, objects: &[ObjectTruth]) -> Result<(), Sco
 /// Scores the frames of a far-range run one after the other.
 ///
 /// ```
-/// use boresight_score::{ScoreContext, Scorer};
+/// use boresight_score::{ScoreContext, Scorer, WithinLimits};
 /// let context = ScoreContext {
 ///     scenario: "argon".to_owned(),
 ///     seed: 1,
@@ -112,6 +118,7 @@ fn check_possible(truth: &FrameTruth, objects: &[ObjectTruth]) -> Result<(), Sco
 ///     inject: None,
 ///     columns: 752,
 ///     rows: 580,
+///     limits: WithinLimits::of_degrees([0.024, 0.048]),
 ///     unproject: Box::new(|_| Some(contract::Direction::z())),
 /// };
 /// let scored = Scorer::new(context).finish();
@@ -129,7 +136,7 @@ impl<'a> Scorer<'a> {
     }
 
     /// Judges the next frame. `objects` are those of this frame, target included; `outcome` is `None` when the
-    /// measurements have no row for it.
+    /// measurements have no row for it; `granted` is the attitude for an answer that has a centroid alone.
     ///
     /// # Errors
     /// [`ScoreError::Order`] unless the number is larger than the one before, [`ScoreError::ForeignObject`] when an
@@ -139,6 +146,7 @@ impl<'a> Scorer<'a> {
         truth: &FrameTruth,
         objects: &[ObjectTruth],
         outcome: Option<&Outcome>,
+        granted: GrantedAttitude,
     ) -> Result<&FrameVerdict, ScoreError> {
         let frame = truth.frame;
         if let Some(last) = self.verdicts.last()
@@ -158,7 +166,7 @@ impl<'a> Scorer<'a> {
         let verdict = FrameVerdict {
             frame,
             group,
-            verdict: judge(truth, objects, outcome, detector, &self.context.unproject),
+            verdict: judge(truth, objects, outcome, detector, &self.context.unproject, granted),
             n_stars: outcome.and_then(|outcome| outcome.n_stars),
             attitude_source: outcome.and_then(|outcome| outcome.attitude_source),
         };
@@ -173,14 +181,17 @@ impl<'a> Scorer<'a> {
             groups.entry(&verdict.group).or_default().push(verdict);
         }
         let sequences: Vec<&[&FrameVerdict]> = groups.values().map(Vec::as_slice).collect();
-        let all = group_score(&sequences);
+        let limits = self.context.limits;
+        let all = group_score(&sequences, &limits);
+        let of_group = |sequence: &Vec<&FrameVerdict>| group_score(&[sequence], &limits);
         let groups =
-            groups.iter().map(|(group, sequence)| ((*group).to_owned(), group_score(&[sequence]))).collect();
+            groups.iter().map(|(group, sequence)| ((*group).to_owned(), of_group(sequence))).collect();
         let score = Score {
             scenario: self.context.scenario,
             seed: self.context.seed,
             version: self.context.version,
             inject: self.context.inject,
+            attitude: attitude_of(&self.verdicts),
             frames: all.frames,
             figures: all.figures,
             groups,
@@ -188,17 +199,28 @@ impl<'a> Scorer<'a> {
             wrong: all.wrong,
             wrong_taken: all.wrong_taken,
         };
-        Scored { score, verdicts: self.verdicts, published: None }
+        Scored { score, verdicts: self.verdicts, limits, published: None }
     }
 }
 
 /// Names of the figures of every score, in their order.
 pub fn figure_names() -> Vec<String> {
-    figures(&[]).into_keys().collect()
+    let limits = WithinLimits::of_degrees([0.0; 2]);
+    definitions(&limits).into_iter().map(|definition| definition.name).collect()
+}
+
+/// The attitude that the lines of sight of some frames rest on.
+fn attitude_of(frames: &[FrameVerdict]) -> Option<String> {
+    let of = |frame: &FrameVerdict| Some(frame.verdict.error()?.line_of_sight.map(|error| error.attitude));
+    let is_own = |used: &Option<AttitudeUsed>| *used == Some(AttitudeUsed::Own);
+    let granted = frames.iter().filter_map(of).flatten().find(|used| *used != AttitudeUsed::Own);
+    let [own, centroids] =
+        [true, false].map(|own| frames.iter().filter_map(of).any(|used| is_own(&used) == own));
+    attitude_word(own, centroids, granted.map(AttitudeUsed::code))
 }
 
 /// The score of some sequences of frames taken together.
-fn group_score(sequences: &[&[&FrameVerdict]]) -> GroupScore {
+fn group_score(sequences: &[&[&FrameVerdict]], limits: &WithinLimits) -> GroupScore {
     let frames = || sequences.iter().copied().flatten();
     let causes = |of: &dyn Fn(&Verdict) -> Option<Cause>| {
         let codes = Cause::ALL.map(Cause::code);
@@ -206,7 +228,7 @@ fn group_score(sequences: &[&[&FrameVerdict]]) -> GroupScore {
     };
     GroupScore {
         frames: frames().count() as u64,
-        figures: figures(sequences),
+        figures: figures(sequences, limits),
         misses: causes(&|verdict| match verdict {
             Verdict::Missed { cause } => Some(*cause),
             _ => None,
@@ -246,44 +268,62 @@ pub(super) fn counts(
     counts
 }
 
-fn figures(sequences: &[&[&FrameVerdict]]) -> IndexMap<String, Figure> {
-    definitions().iter().map(|figure| (figure.name.clone(), figure.figure(sequences))).collect()
+fn figures(sequences: &[&[&FrameVerdict]], limits: &WithinLimits) -> IndexMap<String, Figure> {
+    definitions(limits).iter().map(|figure| (figure.name.clone(), figure.figure(sequences))).collect()
 }
 
 /// The figures of a far-range score, in their order.
-fn definitions() -> Vec<Definition<'static, FrameVerdict>> {
+fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> {
     let of_all = |name: &str, holds: fn(&FrameVerdict) -> bool| {
         Definition::rate(name, move |frame: &FrameVerdict| Some(holds(frame)))
     };
-    let of_detected = |name: &str, component: fn(LineOfSightError) -> Angle, limit: Angle| {
-        Definition::rate(name, move |frame: &FrameVerdict| {
-            frame.verdict.error().map(|error| component(error).abs() < limit)
-        })
+    let of_detected = |name: &str, component: fn(LineOfSightError) -> Angle, limit_deg: f64| {
+        let limit = Angle::from_degrees(limit_deg);
+        let holds = move |frame: &FrameVerdict| {
+            frame.verdict.line_of_sight_error().map(|error| component(error).abs() < limit)
+        };
+        Definition::rate(name, holds).within(limit_deg)
     };
-    let of_correct = |name: &str, reduction: Reduction, component: fn(LineOfSightError) -> Angle| {
+    let of_correct = |name: &str, reduction: Reduction, component: fn(AnswerError) -> Option<f64>| {
         Definition::of(name, reduction, move |frame: &FrameVerdict| match frame.verdict {
-            Verdict::Correct { error } => Some(component(error).degrees()),
+            Verdict::Correct { error } => component(error),
             _ => None,
         })
     };
     let ra = |error: LineOfSightError| error.ra;
     let dec = |error: LineOfSightError| error.dec;
+    let ra_deg = |error: AnswerError| Some(error.line_of_sight?.ra.degrees());
+    let dec_deg = |error: AnswerError| Some(error.line_of_sight?.dec.degrees());
+    let x_px = |error: AnswerError| error.centroid_px.map(|[x, _]| x);
+    let y_px = |error: AnswerError| error.centroid_px.map(|[_, y]| y);
+    let has_own = |frame: &FrameVerdict| {
+        let error = frame.verdict.error()?.line_of_sight;
+        Some(error.is_some_and(|error| error.attitude == AttitudeUsed::Own))
+    };
+    let ([ra_1px, ra_2px], [dec_1px, dec_2px]) = (limits.ra_deg, limits.dec_deg);
     let stars = |frame: &FrameVerdict| frame.n_stars.map(f64::from);
     vec![
         of_all(names::HIT_RATE, |frame| frame.verdict.is_detected()),
-        of_detected(names::RA_WITHIN_1PX, ra, ONE_PIXEL),
-        of_detected(names::RA_WITHIN_2PX, ra, TWO_PIXELS),
-        of_detected(names::DEC_WITHIN_1PX, dec, ONE_PIXEL),
-        of_detected(names::DEC_WITHIN_2PX, dec, TWO_PIXELS),
+        of_detected(names::RA_WITHIN_1PX, ra, ra_1px),
+        of_detected(names::RA_WITHIN_2PX, ra, ra_2px),
+        of_detected(names::DEC_WITHIN_1PX, dec, dec_1px),
+        of_detected(names::DEC_WITHIN_2PX, dec, dec_2px),
         of_all(names::CORRECT_RATE, |frame| matches!(frame.verdict, Verdict::Correct { .. })),
         of_all(names::WRONG_RATE, |frame| matches!(frame.verdict, Verdict::Wrong { .. })),
         of_all(names::MISS_RATE, |frame| matches!(frame.verdict, Verdict::Missed { .. })),
-        of_correct(names::RA_RMS_DEG, Reduction::Rms, ra),
-        of_correct(names::DEC_RMS_DEG, Reduction::Rms, dec),
-        of_correct(names::RA_MEAN_DEG, Reduction::Mean, ra),
-        of_correct(names::DEC_MEAN_DEG, Reduction::Mean, dec),
-        of_correct(names::RA_MEDIAN_DEG, Reduction::Median, ra),
-        of_correct(names::DEC_MEDIAN_DEG, Reduction::Median, dec),
+        of_correct(names::RA_RMS_DEG, Reduction::Rms, ra_deg),
+        of_correct(names::DEC_RMS_DEG, Reduction::Rms, dec_deg),
+        of_correct(names::RA_MEAN_DEG, Reduction::Mean, ra_deg),
+        of_correct(names::DEC_MEAN_DEG, Reduction::Mean, dec_deg),
+        of_correct(names::RA_MEDIAN_DEG, Reduction::Median, ra_deg),
+        of_correct(names::DEC_MEDIAN_DEG, Reduction::Median, dec_deg),
+        of_correct(names::CENTROID_X_RMS_PX, Reduction::Rms, x_px),
+        of_correct(names::CENTROID_Y_RMS_PX, Reduction::Rms, y_px),
+        of_correct(names::CENTROID_X_MEAN_PX, Reduction::Mean, x_px),
+        of_correct(names::CENTROID_Y_MEAN_PX, Reduction::Mean, y_px),
+        of_correct(names::CENTROID_X_MEDIAN_PX, Reduction::Median, x_px),
+        of_correct(names::CENTROID_Y_MEDIAN_PX, Reduction::Median, y_px),
+        Definition::rate(names::LINE_OF_SIGHT_RATE, has_own),
         Definition::of(names::STARS_MEAN, Reduction::Mean, stars),
         of_all(names::ATTITUDE_FROM_STARS_RATE, |frame| frame.attitude_source == Some(AttitudeSource::Stars)),
     ]
@@ -291,7 +331,7 @@ fn definitions() -> Vec<Definition<'static, FrameVerdict>> {
 
 impl UnitTable {
     /// The frames of a far-range run, from their verdicts.
-    pub fn of_frames(frames: &[FrameVerdict]) -> Self {
+    pub fn of_frames(frames: &[FrameVerdict], limits: &WithinLimits) -> Self {
         let unit = |frame: &FrameVerdict| {
             let row = frame.row();
             UnitVerdict {
@@ -301,9 +341,13 @@ impl UnitTable {
                 cause: row.cause.map(str::to_owned),
             }
         };
+        let attitude = attitude_of(frames);
         Self {
             units: frames.iter().map(unit).collect(),
-            figures: definitions().iter().map(|figure| FigureTerms::new(figure, frames)).collect(),
+            figures: definitions(limits)
+                .iter()
+                .map(|figure| FigureTerms::new(figure, frames).resting_on(attitude.as_ref()))
+                .collect(),
         }
     }
 }
@@ -314,6 +358,9 @@ mod tests {
     use crate::hand_made::{CENTRE, COLUMNS, PIXEL, ROWS, detected_at, frame, target_with, unproject};
     use contract::{NoSolution, PixelPoint};
 
+    /// The paper's, of the hand-made camera's square pixels too.
+    const LIMITS: WithinLimits = WithinLimits { ra_deg: [0.024, 0.048], dec_deg: [0.024, 0.048] };
+
     fn scorer() -> Scorer<'static> {
         Scorer::new(ScoreContext {
             scenario: "hand-made".to_owned(),
@@ -322,6 +369,7 @@ mod tests {
             inject: None,
             columns: COLUMNS,
             rows: ROWS,
+            limits: LIMITS,
             unproject: Box::new(unproject),
         })
     }
@@ -331,12 +379,16 @@ mod tests {
     }
 
     fn score(outcomes: &[Option<Outcome>]) -> Score {
+        granted(outcomes, GrantedAttitude::True)
+    }
+
+    fn granted(outcomes: &[Option<Outcome>], granted: GrantedAttitude) -> Score {
         let mut scorer = scorer();
         for (number, outcome) in outcomes.iter().enumerate() {
             let mut truth = frame(number as u64);
             truth.group = format!("day {}", 1 + number / 10);
             let objects = [ObjectTruth { frame: truth.frame, ..target_with(1000.0) }];
-            scorer.add(&truth, &objects, outcome.as_ref()).unwrap();
+            scorer.add(&truth, &objects, outcome.as_ref(), granted).unwrap();
         }
         scorer.finish().score
     }
@@ -356,7 +408,9 @@ mod tests {
     #[test]
     fn what_no_frame_has_is_refused() {
         let refused = |truth: FrameTruth, objects: &[ObjectTruth], parts: [&str; 2]| {
-            let message = scorer().add(&truth, objects, None).unwrap_err().to_string();
+            let mut scorer = scorer();
+            let refusal = scorer.add(&truth, objects, None, GrantedAttitude::None);
+            let message = refusal.unwrap_err().to_string();
             assert!(
                 message.starts_with("frame 0") && parts.iter().all(|part| message.contains(part)),
                 "{message}"
@@ -399,6 +453,54 @@ mod tests {
         assert!((score.figures[names::RA_RMS_DEG].value.unwrap() - rms_px * 0.024).abs() < 1e-7);
     }
 
+    /// A pipeline that measures in the image alone was scored with the true attitude: its errors stood beside those of pipelines that had
+    /// to find theirs.
+    #[test]
+    fn centroids_have_figures_in_pixels_and_of_lines_of_sight_only_where_they_are_granted() {
+        let [none, with] =
+            [GrantedAttitude::None, GrantedAttitude::True].map(|attitude| granted(&day(), attitude));
+        for name in ["ra_within_1px", "dec_within_2px", "ra_rms_deg", "dec_mean_deg", "ra_median_deg"] {
+            assert_eq!((none.figures[name].value, none.figures[name].of), (None, 0), "{name}");
+            assert!(with.figures[name].of > 0, "{name}");
+        }
+        assert_eq!((none.attitude.as_deref(), with.attitude.as_deref()), (Some("none"), Some("true")));
+        for score in [&none, &with] {
+            assert_eq!(counts_of(score, names::HIT_RATE), (7, 10));
+            assert_eq!(counts_of(score, names::LINE_OF_SIGHT_RATE), (0, 7));
+            let value = |name: &str| score.figures[name].value.unwrap();
+            // Of the correct: 0, 0.1, −0.5, 1.2, −1.2, 0.3.
+            let rms_px = ((0.01 + 0.25 + 1.44 + 1.44 + 0.09) / 6.0f64).sqrt();
+            assert!((value(names::CENTROID_X_RMS_PX) - rms_px).abs() < 1e-9);
+            assert!((value(names::CENTROID_X_MEAN_PX) + 0.1 / 6.0).abs() < 1e-9);
+            assert!((value(names::CENTROID_X_MEDIAN_PX) - 0.05).abs() < 1e-9);
+            assert_eq!(value(names::CENTROID_Y_RMS_PX), 0.0);
+            assert_eq!(counts_of(score, names::CENTROID_Y_MEDIAN_PX), (6, 6));
+        }
+    }
+
+    #[test]
+    fn a_rate_of_errors_within_a_limit_records_the_limit() {
+        let limits = WithinLimits { ra_deg: [0.5, 1.0], dec_deg: [0.25, 0.75] };
+        let mut scorer = Scorer::new(ScoreContext { limits, ..scorer().context });
+        // 1.2 px, 0.0288°.
+        let objects = [target_with(1000.0)];
+        scorer.add(&frame(0), &objects, Some(&right_of_target(1.2)), GrantedAttitude::True).unwrap();
+        let scored = scorer.finish();
+        let figures = &scored.score.figures;
+        let limit = |name: &str| figures[name].limit_deg;
+        let within = ["ra_within_1px", "ra_within_2px", "dec_within_1px", "dec_within_2px"];
+        assert_eq!(within.map(limit), [Some(0.5), Some(1.0), Some(0.25), Some(0.75)]);
+        assert!(within.iter().all(|name| figures[*name].value == Some(1.0)));
+        assert!(
+            figures
+                .iter()
+                .all(|(name, figure)| figure.limit_deg.is_some() == within.contains(&name.as_str()))
+        );
+        let table = UnitTable::of_frames(&scored.verdicts, &limits);
+        let terms = table.figures.iter().find(|figure| figure.name == "dec_within_2px").unwrap();
+        assert_eq!((terms.limit_deg, terms.attitude.as_deref()), (Some(0.75), Some("true")));
+    }
+
     #[test]
     fn every_frame_is_counted_exactly_once() {
         let outcomes: Vec<_> = day().into_iter().cycle().take(37).collect();
@@ -418,7 +520,8 @@ mod tests {
     #[test]
     fn an_error_of_exactly_one_pixel_is_not_within_it() {
         let with_error = |ra: Angle| {
-            let error = LineOfSightError { ra, dec: Angle::ZERO };
+            let error = LineOfSightError { ra, dec: Angle::ZERO, attitude: AttitudeUsed::Own };
+            let error = AnswerError { centroid_px: None, line_of_sight: Some(error) };
             let verdict = FrameVerdict {
                 frame: 0,
                 group: "day 1".into(),
@@ -426,7 +529,7 @@ mod tests {
                 n_stars: None,
                 attitude_source: None,
             };
-            figures(&[&[&verdict]])[names::RA_WITHIN_1PX].count
+            figures(&[&[&verdict]], &LIMITS)[names::RA_WITHIN_1PX].count
         };
         assert_eq!(with_error(Angle::from_degrees(0.024)), 0);
         assert_eq!(with_error(Angle::from_degrees(-0.024)), 0);
@@ -451,13 +554,13 @@ mod tests {
     #[test]
     fn a_frame_twice_or_out_of_order_is_refused_and_not_counted() {
         let mut scorer = scorer();
-        scorer.add(&frame(4), &[], None).unwrap();
+        scorer.add(&frame(4), &[], None, GrantedAttitude::None).unwrap();
         assert_eq!(
-            scorer.add(&frame(4), &[], None).unwrap_err(),
+            scorer.add(&frame(4), &[], None, GrantedAttitude::None).unwrap_err(),
             ScoreError::Order { previous: 4, frame: 4 }
         );
         assert_eq!(
-            scorer.add(&frame(5), &[target_with(1.0)], None).unwrap_err(),
+            scorer.add(&frame(5), &[target_with(1.0)], None, GrantedAttitude::None).unwrap_err(),
             ScoreError::ForeignObject { frame: 5, object: 0 }
         );
         assert_eq!(scorer.finish().score.frames, 1);
@@ -498,7 +601,7 @@ mod tests {
 
     #[test]
     fn every_score_has_the_figures_of_the_list_in_its_order() {
-        assert!(figure_names().iter().eq(score(&day()).figures.keys()) && figure_names().len() == 16);
+        assert!(figure_names().iter().eq(score(&day()).figures.keys()) && figure_names().len() == 23);
     }
 
     #[test]
@@ -506,7 +609,7 @@ mod tests {
         let mut scorer = scorer();
         for (number, group) in ["day 1", "day 1", "day 2", "day 1"].into_iter().enumerate() {
             let truth = FrameTruth { group: group.to_owned(), ..frame(number as u64) };
-            scorer.add(&truth, &[], None).unwrap();
+            scorer.add(&truth, &[], None, GrantedAttitude::None).unwrap();
         }
         let groups: Vec<_> = scorer.finish().verdicts.into_iter().map(|verdict| verdict.group).collect();
         assert_eq!(groups, ["day 1", "day 1", "day 2", "day 1"].map(Arc::from));
@@ -519,10 +622,10 @@ mod tests {
         for (number, outcome) in day().iter().enumerate() {
             let truth = frame(number as u64);
             let objects = [ObjectTruth { frame: truth.frame, ..target_with(1000.0) }];
-            scorer.add(&truth, &objects, outcome.as_ref()).unwrap();
+            scorer.add(&truth, &objects, outcome.as_ref(), GrantedAttitude::True).unwrap();
         }
         let scored = scorer.finish();
-        let table = UnitTable::of_frames(&scored.verdicts);
+        let table = UnitTable::of_frames(&scored.verdicts, &scored.limits);
         assert_eq!(
             table.units.iter().map(|unit| unit.number).collect::<Vec<_>>(),
             (0..10).collect::<Vec<_>>()
@@ -535,6 +638,6 @@ mod tests {
     /// The pixel of the hand-made camera is the paper's.
     #[test]
     fn the_hand_made_pixel_is_one_pixel() {
-        assert!((PIXEL - ONE_PIXEL.radians()).abs() < 1e-15);
+        assert!((PIXEL - Angle::from_degrees(LIMITS.ra_deg[0]).radians()).abs() < 1e-15);
     }
 }

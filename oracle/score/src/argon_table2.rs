@@ -99,7 +99,7 @@ mod tests {
     fn score(off: impl Fn(&str, usize) -> f64) -> Score {
         let figure = |points: f64| {
             let value = Some(points / 100.0);
-            Figure { value, count: 0, of: 1, effective: 1.0, low: None, high: None }
+            Figure { value, count: 0, of: 1, effective: 1.0, low: None, high: None, limit_deg: None }
         };
         let figures = |column: usize| {
             let of = |(name, rates): (&str, [f64; 6])| {
@@ -119,6 +119,7 @@ mod tests {
             seed: 1,
             version: "0.1.0".to_owned(),
             inject: None,
+            attitude: None,
             frames: 5,
             figures: figures(5),
             groups: (0..5).map(|day| (format!("day {day}"), group(day))).collect(),

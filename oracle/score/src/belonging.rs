@@ -29,6 +29,11 @@ pub(super) fn transmitted_electrons(object: &ObjectTruth) -> f64 {
     object.electrons * (1.0 - object.cut)
 }
 
+/// The objects that a cluster with its centre at `position` can be of: those that it holds, and of which something was transmitted.
+pub(super) fn members(position: PixelPoint, objects: &[ObjectTruth]) -> impl Iterator<Item = &ObjectTruth> {
+    objects.iter().filter(move |object| holds(position, object) && transmitted_electrons(object) > 0.0)
+}
+
 /// Whether a cluster with its centre at `position` holds the object: it lies within max(`radius_px`/2, 1.5) px of its centre,
 /// or, where wells overflowed, of the line that reaches `bloom_px`/2 from the centre up and down its column.
 pub(super) fn holds(position: PixelPoint, object: &ObjectTruth) -> bool {
@@ -44,7 +49,7 @@ pub(super) fn covers(position: PixelPoint, object: &ObjectTruth) -> bool {
 /// The object that a cluster with its centre at `position` belongs to: of those that it holds, the one with the most
 /// transmitted electrons; `None` when it holds none.
 pub fn belonging_to(position: PixelPoint, objects: &[ObjectTruth]) -> Option<&ObjectTruth> {
-    brightest(objects.iter().filter(|object| holds(position, object) && transmitted_electrons(object) > 0.0))
+    brightest(members(position, objects))
 }
 
 /// Whether the images of two objects touch, so that they may be one cluster.

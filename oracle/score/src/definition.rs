@@ -44,6 +44,8 @@ pub struct Definition<'a, U> {
     pub name: String,
     /// How its values are summed up.
     pub reduction: Reduction,
+    /// Of a rate of errors "within" something: the limit, degrees.
+    pub limit_deg: Option<f64>,
     values: Values<'a, U>,
 }
 
@@ -57,13 +59,19 @@ impl<'a, U> Definition<'a, U> {
 
     /// A rate of values, 0 or 1, of which a unit may have several.
     pub fn pooled(name: impl Into<String>, values: impl Fn(&U, &mut Vec<f64>) + 'a) -> Self {
-        Self { name: name.into(), reduction: Reduction::Rate, values: Box::new(values) }
+        Self { name: name.into(), reduction: Reduction::Rate, limit_deg: None, values: Box::new(values) }
     }
 
     /// A mean, median or root mean square of the units that have a value.
     pub fn of(name: impl Into<String>, reduction: Reduction, value: impl Fn(&U) -> Option<f64> + 'a) -> Self {
         let values: Values<'a, U> = Box::new(move |unit, values| values.extend(value(unit)));
-        Self { name: name.into(), reduction, values }
+        Self { name: name.into(), reduction, limit_deg: None, values }
+    }
+
+    /// The same, of errors below a limit, degrees.
+    #[must_use]
+    pub fn within(self, limit_deg: f64) -> Self {
+        Self { limit_deg: Some(limit_deg), ..self }
     }
 
     /// The figure over some sequences of units, each in order of time.
@@ -76,7 +84,7 @@ impl<'a, U> Definition<'a, U> {
                 values
             })
             .collect();
-        match self.reduction {
+        let figure = match self.reduction {
             Reduction::Rate => {
                 let held = |values: &Vec<f64>| values.iter().map(|value| *value != 0.0).collect();
                 Figure::rate(&collected.iter().map(held).collect::<Vec<Vec<bool>>>())
@@ -84,7 +92,8 @@ impl<'a, U> Definition<'a, U> {
             Reduction::Mean => Figure::mean(&collected),
             Reduction::Rms => Figure::rms(&collected),
             Reduction::Median => Figure::median(&collected),
-        }
+        };
+        Figure { limit_deg: self.limit_deg, ..figure }
     }
 
     /// What one unit adds to the figure.
@@ -111,18 +120,32 @@ pub struct FigureTerms {
     pub name: String,
     /// How its values are summed up.
     pub reduction: Reduction,
+    /// Of a rate of errors "within" something: the limit, degrees.
+    pub limit_deg: Option<f64>,
+    /// Of a figure of lines of sight: the attitude that they rest on ([`crate::attitude_word`]).
+    pub attitude: Option<String>,
     /// One a unit, in their order.
     pub terms: Vec<Term>,
 }
 
 impl FigureTerms {
+    /// The same figure with the attitude that its lines of sight rest on, if it is one of lines of sight.
+    #[must_use]
+    pub fn resting_on(self, attitude: Option<&String>) -> Self {
+        let is_of_lines_of_sight = ["ra_", "dec_"].iter().any(|axis| self.name.starts_with(axis));
+        Self { attitude: attitude.filter(|_| is_of_lines_of_sight).cloned(), ..self }
+    }
+
     /// The terms of units by a definition.
     pub fn new<U>(definition: &Definition<'_, U>, units: &[U]) -> Self {
-        Self {
-            name: definition.name.clone(),
-            reduction: definition.reduction,
-            terms: units.iter().map(|unit| definition.term(unit)).collect(),
-        }
+        let terms = units.iter().map(|unit| definition.term(unit)).collect();
+        let counted = Self::counted(&definition.name, definition.reduction, terms);
+        Self { limit_deg: definition.limit_deg, ..counted }
+    }
+
+    /// Terms that were counted, of a figure without a limit that rests on no attitude.
+    pub fn counted(name: &str, reduction: Reduction, terms: Vec<Term>) -> Self {
+        Self { name: name.to_owned(), reduction, limit_deg: None, attitude: None, terms }
     }
 }
 
@@ -160,6 +183,22 @@ mod tests {
             Reduction::ALL.map(Some)
         );
         assert_eq!(Reduction::parse("mode"), None);
+    }
+
+    #[test]
+    fn figures_of_lines_of_sight_alone_rest_on_an_attitude() {
+        let attitude = |name: &str| {
+            let definition = Definition::rate(name, |unit: &u32| Some(*unit > 0));
+            FigureTerms::new(&definition, &[1]).resting_on(Some(&"true".to_owned())).attitude
+        };
+        for (name, rests) in [
+            ("ra_rms_deg", true),
+            ("dec_within_1px", true),
+            ("hit_rate", false),
+            ("centroid_x_rms_px", false),
+        ] {
+            assert_eq!(attitude(name).is_some(), rests, "{name}");
+        }
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! A scene made by hand: a camera of 752 × 580 px with pixels of 0.024° looking at the target in its centre.
 
 use contract::{
-    CameraFrame, Cluster, Direction, Icrs, Label, Measurement, Outcome, PixelPoint, Rotation, Solution,
+    Camera, CameraFrame, Cluster, Direction, Icrs, Label, Measurement, Outcome, PixelPoint, Rotation,
+    Solution,
 };
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
@@ -13,6 +14,21 @@ pub(crate) const CENTRE: PixelPoint = PixelPoint::new(395.0, 288.0);
 
 /// Tangent of one pixel's angle, 0.024°.
 pub(crate) const PIXEL: f64 = 0.024 * std::f64::consts::PI / 180.0;
+
+/// The paper's camera.
+pub(crate) fn camera() -> Camera {
+    Camera {
+        columns: COLUMNS,
+        rows: ROWS,
+        focal_length_mm: 20.187,
+        pixel_width_um: 8.6,
+        pixel_height_um: 8.3,
+        principal_x_px: CENTRE.x,
+        principal_y_px: CENTRE.y,
+        radial: [2.6e-8, 0.0, 0.0],
+        tangential: [0.0; 2],
+    }
+}
 
 pub(crate) fn direction_at(point: PixelPoint) -> Direction<CameraFrame> {
     let vector = Vector3::new((point.x - CENTRE.x) * PIXEL, (point.y - CENTRE.y) * PIXEL, 1.0);

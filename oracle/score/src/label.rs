@@ -54,6 +54,12 @@ impl fmt::Display for FigureLabel {
     }
 }
 
+/// A limit of an error as people read it, to three significant digits: `0.024°`, `0.0236°`.
+pub fn angle(degrees: f64) -> String {
+    let rounded: f64 = format!("{degrees:.2e}").parse().unwrap_or(degrees);
+    format!("{rounded}°")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -71,6 +77,11 @@ mod tests {
         ] {
             assert_eq!(FigureLabel::of(key).to_string(), label);
         }
+    }
+
+    #[test]
+    fn a_limit_has_three_digits() {
+        assert_eq!([0.024, 0.023_557_1, 0.048_819, 2.0].map(angle), ["0.024°", "0.0236°", "0.0488°", "2°"]);
     }
 
     #[test]

@@ -40,12 +40,14 @@ mod sense;
 mod verdict;
 
 pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, figure_names};
-pub use angles::{LineOfSightError, ONE_PIXEL, TWO_PIXELS};
+pub use angles::{
+    AnswerError, AttitudeUsed, GrantedAttitude, LineOfSightError, WithinLimits, attitude_note, attitude_word,
+};
 pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
 pub use belonging::belonging_to;
 pub use cause::Cause;
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
-pub use label::FigureLabel;
+pub use label::{FigureLabel, angle};
 pub use report::{Figure, GroupScore, Score, names};
 pub use sense::{Better, Kind, Sense, sense};
 pub use verdict::{FrameVerdict, Taken, Unproject, Verdict, VerdictRow};

@@ -1,7 +1,9 @@
 //! What `score.json` holds.
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
-use statistics::{Interval, effective_size, mean_interval, median, median_interval, rms_interval, wilson};
+use statistics::{
+    Interval, below_median, effective_size, mean_interval, median, median_interval, rms_interval, wilson,
+};
 
 /// Names of the far-range figures. Rates are fractions from 0 to 1.
 pub mod names {
@@ -13,26 +15,40 @@ pub mod names {
     pub const CORRECT_RATE: &str = "correct_rate";
     /// Wrong, of all frames.
     pub const WRONG_RATE: &str = "wrong_rate";
-    /// |RA error| < 0.024°, of the detected.
+    /// Answers with a line of sight of their own, of the detected.
+    pub const LINE_OF_SIGHT_RATE: &str = "line_of_sight_rate";
+    /// |RA error| below the limit of one pixel, of the detected with a line of sight.
     pub const RA_WITHIN_1PX: &str = "ra_within_1px";
-    /// |RA error| < 0.048°, of the detected.
+    /// |RA error| below the limit of two pixels, of the same.
     pub const RA_WITHIN_2PX: &str = "ra_within_2px";
-    /// |Dec error| < 0.024°, of the detected.
+    /// |Dec error| below the limit of one pixel, of the same.
     pub const DEC_WITHIN_1PX: &str = "dec_within_1px";
-    /// |Dec error| < 0.048°, of the detected.
+    /// |Dec error| below the limit of two pixels, of the same.
     pub const DEC_WITHIN_2PX: &str = "dec_within_2px";
-    /// Root mean square of the RA error of the correct, degrees.
+    /// Root mean square of the RA error of the correct with a line of sight, degrees.
     pub const RA_RMS_DEG: &str = "ra_rms_deg";
-    /// Root mean square of the Dec error of the correct, degrees.
+    /// Root mean square of the Dec error of the correct with a line of sight, degrees.
     pub const DEC_RMS_DEG: &str = "dec_rms_deg";
-    /// Mean RA error (bias) of the correct, degrees.
+    /// Mean RA error (bias) of the correct with a line of sight, degrees.
     pub const RA_MEAN_DEG: &str = "ra_mean_deg";
-    /// Mean Dec error (bias) of the correct, degrees.
+    /// Mean Dec error (bias) of the correct with a line of sight, degrees.
     pub const DEC_MEAN_DEG: &str = "dec_mean_deg";
-    /// Median RA error of the correct, degrees.
+    /// Median RA error of the correct with a line of sight, degrees.
     pub const RA_MEDIAN_DEG: &str = "ra_median_deg";
-    /// Median Dec error of the correct, degrees.
+    /// Median Dec error of the correct with a line of sight, degrees.
     pub const DEC_MEDIAN_DEG: &str = "dec_median_deg";
+    /// Root mean square of the centroid's error across columns, of the correct, px.
+    pub const CENTROID_X_RMS_PX: &str = "centroid_x_rms_px";
+    /// Root mean square of the centroid's error across rows, of the correct, px.
+    pub const CENTROID_Y_RMS_PX: &str = "centroid_y_rms_px";
+    /// Mean error of the centroid across columns (bias), of the correct, px.
+    pub const CENTROID_X_MEAN_PX: &str = "centroid_x_mean_px";
+    /// Mean error of the centroid across rows (bias), of the correct, px.
+    pub const CENTROID_Y_MEAN_PX: &str = "centroid_y_mean_px";
+    /// Median error of the centroid across columns, of the correct, px.
+    pub const CENTROID_X_MEDIAN_PX: &str = "centroid_x_median_px";
+    /// Median error of the centroid across rows, of the correct, px.
+    pub const CENTROID_Y_MEDIAN_PX: &str = "centroid_y_median_px";
     /// Mean number of identified stars, over the frames whose answer tells it.
     pub const STARS_MEAN: &str = "stars_mean";
     /// Attitude solved from the stars of the frame itself, of all frames.
@@ -55,6 +71,9 @@ pub struct Figure {
     pub low: Option<f64>,
     /// Upper limit of the 95 % interval.
     pub high: Option<f64>,
+    /// Of a rate of errors "within" something: the limit, degrees. Absent in other figures.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit_deg: Option<f64>,
 }
 
 impl Figure {
@@ -86,7 +105,7 @@ impl Figure {
 
     /// A median.
     pub fn median(sequences: &[Vec<f64>]) -> Self {
-        Self::location(sequences, effective_size(sequences), median, median_interval)
+        Self::location(sequences, effective_size(&below_median(sequences)), median, median_interval)
     }
 
     fn location(
@@ -107,6 +126,7 @@ impl Figure {
             effective,
             low: interval.map(|interval| interval.low),
             high: interval.map(|interval| interval.high),
+            limit_deg: None,
         }
     }
 }
@@ -129,6 +149,10 @@ pub struct Score {
     /// The stage whose result was replaced by the truth: with one, this is no score of the pipeline. Absent without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inject: Option<String>,
+    /// The attitude that the lines of sight rest on: `own`, `telemetry` or `true`, `own and …` where answers differ, `none` where no
+    /// answer has one ([`crate::attitude_word`]). Absent when nothing is detected.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude: Option<String>,
     /// Number of frames: detected and missed, each counted once.
     pub frames: u64,
     /// Figures over all frames, by name (see [`names`] for far range).
@@ -215,6 +239,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// What is summed up decides what the values are worth: of a median whether they are below it, not how far.
+    #[test]
+    fn a_median_has_an_effective_number_of_its_own() {
+        let series = [vec![0.0, 1.0, 2.0, 3.0, 4.0, 3.0, 5.0, 5.0, 5.0, 3.0, 9.0, 5.0, 5.0, 6.0, 8.0, 5.0]];
+        let figure = Figure::median(&series);
+        // Worked out apart from this code: see `values_at_the_median_are_not_below_it`.
+        assert!((figure.effective - 4.287).abs() < 5e-4, "{figure:?}");
+        assert!((figure.effective - Figure::mean(&series).effective).abs() > 0.1);
     }
 
     #[test]

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use contract::{AttitudeSource, CameraFrame, Direction, Measurement, NoSolution, Outcome, PixelPoint};
+use contract::{AttitudeSource, CameraFrame, Direction, NoSolution, Outcome, PixelPoint};
 use serde::Serialize;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
 
-use super::angles::LineOfSightError;
-use super::belonging::{brightest, holds, transmitted_electrons};
+use super::angles::{AnswerError, GrantedAttitude, LineOfSightError};
+use super::belonging::{brightest, members, target, transmitted_electrons};
 use super::cause::{Cause, Detector, cause};
 
 /// The true camera's inverse projection: the direction whose image is at a point, `None` where there is none.
@@ -16,8 +16,8 @@ pub type Unproject<'a> = dyn Fn(PixelPoint) -> Option<Direction<CameraFrame>> + 
 /// What the oracle says about one frame: exactly one of three.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Verdict {
-    /// The pipeline has no target. An answer whose place is not on the detector, or which has no direction, is no answer
-    /// and is missed too.
+    /// The pipeline has no target. An answer whose place is not on the detector, or whose line of sight is no direction, is no
+    /// answer and is missed too.
     Missed {
         /// Why.
         cause: Cause,
@@ -29,13 +29,13 @@ pub enum Verdict {
     /// of all that belongs to it (stars, hot pixels and tracks of particles included) are the target's. Only transmitted electrons
     /// count: electrons × (1 − cut).
     Correct {
-        /// Error of the line of sight.
-        error: LineOfSightError,
+        /// Error of the answer.
+        error: AnswerError,
     },
     /// The pipeline has a target that is not one: detected by the paper's count, and wrong.
     Wrong {
-        /// Error of the line of sight, from the true target.
-        error: LineOfSightError,
+        /// Error of the answer, from the true target.
+        error: AnswerError,
         /// What was taken for the target.
         taken: Taken,
         /// Why the target itself was not taken.
@@ -99,12 +99,17 @@ impl Verdict {
         !matches!(self, Self::Missed { .. })
     }
 
-    /// The error of the line of sight of a detected target, right or wrong.
-    pub fn error(&self) -> Option<LineOfSightError> {
+    /// The error of a detected target, right or wrong.
+    pub fn error(&self) -> Option<AnswerError> {
         match self {
             Self::Missed { .. } => None,
             Self::Correct { error } | Self::Wrong { error, .. } => Some(*error),
         }
+    }
+
+    /// The error of its line of sight, where it has one.
+    pub fn line_of_sight_error(&self) -> Option<LineOfSightError> {
+        self.error()?.line_of_sight
     }
 }
 
@@ -131,7 +136,8 @@ impl FrameVerdict {
             Verdict::Correct { .. } => (None, None),
             Verdict::Wrong { taken, cause, .. } => (Some(taken), Some(cause)),
         };
-        let error = self.verdict.error();
+        let centroid_px = self.verdict.error().and_then(|error| error.centroid_px);
+        let error = self.verdict.line_of_sight_error();
         VerdictRow {
             frame: self.frame,
             group: &self.group,
@@ -139,8 +145,11 @@ impl FrameVerdict {
             cause: cause.map(Cause::code),
             taken: taken.map(Taken::code),
             taken_id: taken.and_then(Taken::id),
+            centroid_x_error_px: centroid_px.map(|[x, _]| x),
+            centroid_y_error_px: centroid_px.map(|[_, y]| y),
             ra_error_deg: error.map(|error| error.ra.degrees()),
             dec_error_deg: error.map(|error| error.dec.degrees()),
+            line_of_sight: error.map(|error| error.attitude.code()),
             n_stars: self.n_stars,
             attitude_source: self.attitude_source.map(AttitudeSource::code),
         }
@@ -162,10 +171,16 @@ pub struct VerdictRow<'a> {
     pub taken: Option<&'static str>,
     /// Number of the star or hot pixel taken.
     pub taken_id: Option<u32>,
-    /// Error across columns, degrees, when detected.
+    /// Error of the centroid across columns, px, when detected.
+    pub centroid_x_error_px: Option<f64>,
+    /// Error of the centroid across rows, px, when detected.
+    pub centroid_y_error_px: Option<f64>,
+    /// Error of the line of sight across columns, degrees, where there is one.
     pub ra_error_deg: Option<f64>,
-    /// Error across rows, degrees, when detected.
+    /// Error of the line of sight across rows, degrees, where there is one.
     pub dec_error_deg: Option<f64>,
+    /// [`crate::AttitudeUsed::code`] of the line of sight.
+    pub line_of_sight: Option<&'static str>,
     /// Stars identified; empty when the frame was not answered.
     pub n_stars: Option<u32>,
     /// [`AttitudeSource::code`].
@@ -179,14 +194,21 @@ pub(super) fn judge(
     outcome: Option<&Outcome>,
     detector: Detector,
     unproject: &Unproject<'_>,
+    granted: GrantedAttitude,
 ) -> Verdict {
     let missed = |outcome| Verdict::Missed { cause: cause(truth, objects, outcome, detector) };
     let Some(answer) = outcome else { return missed(None) };
     let Some(measurement) = answer.measurement() else { return missed(outcome) };
-    let Some(error) = sound_error(measurement, truth, detector, unproject) else {
+    let line_of_sight = LineOfSightError::of(measurement, truth, unproject, granted);
+    let is_on_detector = measurement.position.is_on_detector(detector.columns, detector.rows);
+    if !is_on_detector || (measurement.line_of_sight.is_some() && line_of_sight.is_none()) {
         let no_answer = Outcome::none(NoSolution::Failed("the answer is no direction".to_owned()));
         return missed(Some(&no_answer));
-    };
+    }
+    let centre = target(objects).map(|target| target.position).or(truth.target_position);
+    let centroid_px =
+        centre.map(|centre| [measurement.position.x - centre.x, measurement.position.y - centre.y]);
+    let error = AnswerError { centroid_px, line_of_sight };
     match chosen(measurement.position, objects) {
         Chosen::Target => Verdict::Correct { error },
         Chosen::TargetOutshone(by) => {
@@ -197,20 +219,6 @@ pub(super) fn judge(
             taken: other.map_or(Taken::Nothing, taken),
             cause: cause(truth, objects, outcome, detector),
         },
-    }
-}
-
-/// The error of a measurement that has a position on the detector and a direction.
-fn sound_error(
-    measurement: &Measurement,
-    truth: &FrameTruth,
-    detector: Detector,
-    unproject: &Unproject<'_>,
-) -> Option<LineOfSightError> {
-    if measurement.position.is_on_detector(detector.columns, detector.rows) {
-        LineOfSightError::of(measurement, truth, unproject)
-    } else {
-        None
     }
 }
 
@@ -225,7 +233,7 @@ enum Chosen<'a> {
 }
 
 fn chosen(position: PixelPoint, objects: &[ObjectTruth]) -> Chosen<'_> {
-    let members = || objects.iter().filter(|object| holds(position, object));
+    let members = || members(position, objects);
     let (mut of_target, mut total) = (0.0, 0.0);
     for object in members() {
         let electrons = transmitted_electrons(object);
@@ -264,7 +272,12 @@ mod tests {
     use contract::Label;
 
     fn verdict(objects: &[ObjectTruth], outcome: &Outcome) -> Verdict {
-        judge(&frame(0), objects, Some(outcome), Detector { columns: COLUMNS, rows: ROWS }, &unproject)
+        granted(objects, outcome, GrantedAttitude::None)
+    }
+
+    fn granted(objects: &[ObjectTruth], outcome: &Outcome, granted: GrantedAttitude) -> Verdict {
+        let detector = Detector { columns: COLUMNS, rows: ROWS };
+        judge(&frame(0), objects, Some(outcome), detector, &unproject, granted)
     }
 
     fn right_of_target(px: f64) -> PixelPoint {
@@ -347,14 +360,57 @@ mod tests {
         let missed = Verdict::Missed { cause: Cause::PipelineFailed };
         assert_eq!(verdict(&objects, &detected_at(PixelPoint::new(f64::NAN, 1.0))), missed);
         assert_eq!(verdict(&objects, &detected_at(PixelPoint::new(1.0, f64::INFINITY))), missed);
+    }
+
+    /// It has a centroid, whatever the camera images there.
+    #[test]
+    fn an_answer_without_a_direction_is_judged_by_its_centroid() {
         let nowhere = judge(
             &frame(0),
-            &objects,
-            Some(&detected_at(CENTRE)),
+            &[target_with(1000.0)],
+            Some(&detected_at(right_of_target(0.5))),
             Detector { columns: COLUMNS, rows: ROWS },
             &|_| None,
+            GrantedAttitude::True,
         );
-        assert_eq!(nowhere, missed);
+        let error = AnswerError { centroid_px: Some([0.5, 0.0]), line_of_sight: None };
+        assert_eq!(nowhere, Verdict::Correct { error });
+    }
+
+    #[test]
+    fn the_centroid_is_held_against_the_centre_of_the_targets_light() {
+        let mut target = target_with(1000.0);
+        target.position = PixelPoint::new(CENTRE.x + 0.75, CENTRE.y - 0.25);
+        let error = |objects: &[ObjectTruth]| verdict(objects, &detected_at(right_of_target(1.0))).error();
+        assert_eq!(error(&[target]).unwrap().centroid_px, Some([0.25, 0.25]));
+        // Without light in the image: where the line of sight meets it.
+        assert_eq!(error(&[]).unwrap().centroid_px, Some([1.0, 0.0]));
+    }
+
+    #[test]
+    fn what_is_granted_changes_no_verdict() {
+        let objects = [target_with(1000.0)];
+        for (px, code) in [(1.0, "correct"), (30.0, "wrong")] {
+            let answer = detected_at(right_of_target(px));
+            let [none, with] =
+                [GrantedAttitude::None, GrantedAttitude::True].map(|given| granted(&objects, &answer, given));
+            assert_eq!((none.code(), with.code()), (code, code));
+            assert!(none.line_of_sight_error().is_none() && with.line_of_sight_error().is_some());
+        }
+    }
+
+    #[test]
+    fn what_the_regions_cut_away_entirely_was_not_taken() {
+        let far = right_of_target(50.0);
+        let cut = ObjectTruth { cut: 1.0, ..star_at(7, far, 500.0) };
+        let taken = |objects: &[ObjectTruth]| match verdict(objects, &detected_at(far)) {
+            Verdict::Wrong { taken, .. } => taken,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(taken(&[target_with(1000.0), cut.clone()]), Taken::Nothing);
+        // Nor did it outshine a target of which nothing is left.
+        let gone = ObjectTruth { position: far, cut: 1.0, ..target_with(1000.0) };
+        assert_eq!(taken(&[gone, cut]), Taken::Nothing);
     }
 
     #[test]
@@ -404,7 +460,7 @@ mod tests {
         let missed = frame_verdict(Verdict::Missed { cause: Cause::TooFaint });
         assert_eq!(
             serde_json::to_string(&missed.row()).unwrap(),
-            r#"{"frame":3,"group":"day 1","verdict":"missed","cause":"too_faint","taken":null,"taken_id":null,"ra_error_deg":null,"dec_error_deg":null,"n_stars":12,"attitude_source":"stars"}"#
+            r#"{"frame":3,"group":"day 1","verdict":"missed","cause":"too_faint","taken":null,"taken_id":null,"centroid_x_error_px":null,"centroid_y_error_px":null,"ra_error_deg":null,"dec_error_deg":null,"line_of_sight":null,"n_stars":12,"attitude_source":"stars"}"#
         );
     }
 }

@@ -41,6 +41,6 @@ pub use autocorrelation::effective_size;
 pub use clopper_pearson::{binomial_at_least, clopper_pearson};
 pub use exchange::{BlockEffects, Exchanges, JointTest, Tested, interval_by_sets, joint_test};
 pub use interval::{Interval, Z_95};
-pub use location::{mean_interval, median, median_interval, rms_interval};
+pub use location::{below_median, mean_interval, median, median_interval, rms_interval};
 pub use normal_quantile::normal_quantile;
 pub use proportion::wilson;

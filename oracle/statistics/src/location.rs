@@ -41,16 +41,20 @@ pub fn median_interval(sequences: &[Vec<f64>]) -> Option<Interval> {
     if sequences.iter().map(Vec::len).sum::<usize>() < 3 {
         return None;
     }
-    let median = median(sequences)?;
-    let below: Vec<Vec<f64>> = sequences
-        .iter()
-        .map(|sequence| sequence.iter().map(|x| f64::from(u8::from(*x < median))).collect())
-        .collect();
-    let ranks = wilson(0.5, effective_size(&below))?;
+    let ranks = wilson(0.5, effective_size(&below_median(sequences)))?;
     let sorted = sorted(sequences);
     // Of the rate ½ both bounds are between 0 and 1: there is a value at either.
     let at = |share: f64| sorted.get((share * sorted.len() as f64) as usize).copied();
     Some(Interval { low: at(ranks.low)?, high: at(ranks.high)? })
+}
+
+/// Whether each value is below the median, 1 or 0: of what the effective size of a median is.
+pub fn below_median(sequences: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let below = |median: f64| {
+        let of = |sequence: &Vec<f64>| sequence.iter().map(|x| f64::from(u8::from(*x < median))).collect();
+        sequences.iter().map(of).collect()
+    };
+    median(sequences).map_or_else(Vec::new, below)
 }
 
 fn sorted(sequences: &[Vec<f64>]) -> Vec<f64> {

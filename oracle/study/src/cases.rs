@@ -8,6 +8,7 @@ use files::{
     Cell, Cells, Column, ColumnType, ColumnValues, FileError, ParquetFile, TableOptions, write_table,
 };
 use indexmap::IndexMap;
+use score::{attitude_word, names};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -258,6 +259,14 @@ impl CaseTable {
         Some(self.rows.iter().map(|row| row.figures[index]).collect())
     }
 
+    /// The attitude that the lines of sight of the cases rest on, where the figures recorded tell ([`score::attitude_word`]); `granted` is
+    /// what the scenario grants to centroids.
+    pub fn attitude(&self, granted: Option<&str>) -> Option<String> {
+        let told = self.figure(names::LINE_OF_SIGHT_RATE)?;
+        let (own, of) = told.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
+        attitude_word(own > 0, of > own, granted)
+    }
+
     /// The numbers of a drawn value, case by case; `None` for what is no number.
     #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
     pub fn numbers(&self, name: &str) -> Option<Vec<f64>> {
@@ -272,4 +281,33 @@ impl CaseTable {
 
 fn no_column(path: &Path, name: &str, column_type: ColumnType) -> FileError {
     FileError::format(path, "Parquet", format!("it has no column `{name}` of the type {column_type}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cases_of_a_study_tell_what_their_lines_of_sight_rest_on() {
+        let word = |counts: &[(u64, u64)], granted| {
+            let row = |&(count, of): &(u64, u64)| CaseRow {
+                case: 0,
+                seed: 3,
+                has_failed: false,
+                drawn: Vec::new(),
+                figures: vec![CaseFigure { value: None, count, of }],
+            };
+            let table = CaseTable {
+                drawn: IndexMap::new(),
+                figures: vec![names::LINE_OF_SIGHT_RATE.to_owned()],
+                rows: counts.iter().map(row).collect(),
+            };
+            table.attitude(granted)
+        };
+        assert_eq!(word(&[(30, 30), (0, 0)], Some("true")).as_deref(), Some("own"));
+        assert_eq!(word(&[(0, 30)], Some("true")).as_deref(), Some("true"));
+        assert_eq!(word(&[(0, 30)], None).as_deref(), Some("none"));
+        assert_eq!(word(&[(30, 30), (0, 30)], Some("true")).as_deref(), Some("own and true"));
+        assert_eq!(word(&[(0, 0)], Some("true")), None);
+    }
 }

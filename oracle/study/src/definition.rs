@@ -20,7 +20,7 @@ use super::law::{Drawable, Law, boresight, euler_123};
 use super::overlay::ValuePath;
 
 /// What is no parameter.
-const NOT_VARIED: [&str; 3] = ["title", "world", "seed"];
+const NOT_VARIED: [&str; 4] = ["title", "world", "seed", "score"];
 
 /// Names of the angles of an attitude: of a boresight, or of Euler's.
 const BORESIGHT: [&str; 3] = ["ra_deg", "dec_deg", "roll_deg"];
@@ -72,6 +72,11 @@ pub struct Case {
 }
 
 impl Study {
+    /// The attitude that its scenario grants to answers with a centroid alone.
+    pub(super) fn granted_attitude(&self) -> Option<&str> {
+        self.base_values.get("score")?.get("attitude")?.as_str()
+    }
+
     /// Reads and checks a study, the scenario that it names included; the first case is made, so that a path that leads nowhere or a
     /// value of the wrong type is found before anything runs.
     ///
@@ -451,9 +456,9 @@ impl Varied {
 type Problem = (&'static str, String);
 
 fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String> {
-    if NOT_VARIED.contains(&path.text()) {
+    if path.text().split('.').next().is_some_and(|first| NOT_VARIED.contains(&first)) {
         return Err(format!(
-            "is `{}`, expected a parameter of what is simulated or of the pipeline: every case has a seed of its own already",
+            "is `{}`, expected a parameter of what is simulated or of the pipeline: every case has a seed of its own already, and all are scored alike",
             path.text()
         ));
     }

@@ -68,6 +68,9 @@ pub struct Summary {
     pub hash: String,
     /// Version of Boresight.
     pub version: String,
+    /// The attitude that the lines of sight of the far range rest on ([`CaseTable::attitude`]).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude: Option<String>,
     /// Cases that were run.
     pub cases: u64,
     /// Cases that were asked for, the most there are.
@@ -100,6 +103,7 @@ impl Summary {
             title: study.file.title.clone(),
             hash: study.hash_with(pipeline),
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            attitude: table.attitude(study.granted_attitude()),
             cases: table.rows.len() as u64,
             of: study.cases(),
             failed_cases: table.rows.iter().filter(|row| row.has_failed).count() as u64,

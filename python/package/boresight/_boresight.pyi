@@ -265,14 +265,19 @@ def run(
     its message; only what is no `Exception` (Ctrl-C) ends the run.
     """
 
-def score(truth: Run | _Word, measurements: _Word | Table | Mapping[str, Sequence[Any]] | Any) -> dict[str, Any]:
+def score(
+    truth: Run | _Word,
+    measurements: _Word | Table | Mapping[str, Sequence[Any]] | Any,
+    *,
+    attitude: Literal["telemetry", "true"] | None = None,
+) -> dict[str, Any]:
     """Scores measurements against the truth, as the command `boresight score` does.
 
     `truth` is a `Run`, or the directory of a run or of a rendered dataset. `measurements` is a file, or a table: boresight's own, one of
     polars, pandas or pyarrow, or a dictionary of columns. Its columns are those of measurements.csv (docs/formats.md), px, degrees and m as
     their names say; `frame`, `status`, `x_px`, `y_px` are enough (docking: `field`, `status`, `d1_m` ... `phi3_deg`). A frame of the truth
     without a row is a miss. Of a file, `clusters.parquet` (docking: `motion.csv`) beside it is read too: evidence for the causes of misses.
-    Gives the dictionary of score.json.
+    `attitude`, `telemetry` or `true`, turns centroids without a line of sight into one. Gives the dictionary of score.json.
     """
 
 def study(

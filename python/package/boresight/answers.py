@@ -15,8 +15,8 @@ class Detection:
     y_px: float
     """Row of the centre of its image."""
     los_j2000: Sequence[float] | None = None
-    """Line of sight to the target, unit vector along the axes of ICRS. Without it the score takes the pixel through the true camera, and
-    only the image counts."""
+    """Line of sight to the target, unit vector along the axes of ICRS. Without it the score has the error of the centroid,
+    px, and no figures of RA and Dec unless it is told by which attitude (docs/score.md)."""
     q_cam_j2000: Sequence[float] | None = None
     """Attitude of the camera, unit quaternion (w, x, y, z); recorded, not scored."""
     n_stars: int | None = None

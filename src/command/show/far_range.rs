@@ -8,7 +8,7 @@ use files::{
 };
 use run::ScenarioSource;
 use scenario::run_file::RunFile;
-use score::{ScoreContext, Scorer, Verdict};
+use score::{GrantedAttitude, ScoreContext, Scorer, Verdict};
 use show::{
     Class, Mark, Panel, Pixels, PlateScale, Reduction, Shape, Stretch, Table, Tone, Verdict as Words,
 };
@@ -152,9 +152,10 @@ fn verdict(
         inject: None,
         columns: camera.columns,
         rows: camera.rows,
+        limits: run::far_range::limits(&run_file.scenario),
         unproject: Box::new(|point| projection.unproject(point)),
     });
-    let judged = scorer.add(truth, objects, answer);
+    let judged = scorer.add(truth, objects, answer, GrantedAttitude::None);
     judged
         .map(|judged| judged.verdict)
         .map_err(|error| Failure::Usage(format!("frame {} cannot be scored: {error}", truth.frame)))

@@ -136,6 +136,21 @@ fn an_array_of_fixed_length_has_exactly_its_values() {
 }
 
 #[test]
+fn limits_that_are_none_and_attitudes_that_there_are_not_are_refused() {
+    let with = |line: &str| format!("[score]\n{line}\n\n[target]\n");
+    for (line, parts) in [
+        ("within_deg = [0.0, 1.0]", ["score.within_deg[0]", "1e-6 to 180"]),
+        ("within_deg = [nan, 1.0]", ["score.within_deg[0]", "1e-6 to 180"]),
+        ("within_deg = [0.048, 0.024]", ["score.within_deg[1]", "more than 0.048"]),
+        ("within_deg = [0.024, 0.048, 0.1]", ["score.within_deg", "2"]),
+        ("attitude = \"own\"", ["score.attitude", "telemetry"]),
+        ("within = 1", ["score.within", "within_deg"]),
+    ] {
+        check_mistake("[target]\n", &with(line), &parts);
+    }
+}
+
+#[test]
 fn a_time_that_is_none_is_refused() {
     check_edited(
         "start_utc = \"2012-04-25T00:10:00Z\"",

@@ -3,7 +3,9 @@
 use boresight::gate::{
     Baseline, CompareOptions, FigureVerdict, Identity, Pairing, Sample, SourceKind, compare,
 };
-use boresight::score::{Cause, FrameVerdict, LineOfSightError, Taken, UnitTable, Verdict};
+use boresight::score::{
+    AnswerError, AttitudeUsed, Cause, FrameVerdict, LineOfSightError, Taken, UnitTable, Verdict, WithinLimits,
+};
 use contract::{Angle, AttitudeSource};
 use sim::randomness::{Effect, Seed, Stream, normal, uniform};
 
@@ -44,7 +46,7 @@ impl Fault {
         let correct = frames.iter().filter(|frame| matches!(frame.verdict, Verdict::Correct { .. })).count();
         let correct = correct as f64 / frames.len() as f64;
         let dec_of = |frame: &FrameVerdict| match frame.verdict {
-            Verdict::Correct { error } => error.dec.degrees(),
+            Verdict::Correct { error } => dec_deg(error),
             _ => 0.0,
         };
         let away = frames.iter().map(dec_of).sum::<f64>().signum() * PIXEL_DEG;
@@ -75,11 +77,26 @@ impl Fault {
     }
 }
 
+fn dec_deg(error: AnswerError) -> f64 {
+    error.line_of_sight.map_or(0.0, |error| error.dec.degrees())
+}
+
+/// An error, degrees, of a pipeline that knows its attitude: all of it is the centroid's.
+fn of_degrees(ra: f64, dec: f64) -> AnswerError {
+    let line_of_sight = LineOfSightError {
+        ra: Angle::from_degrees(ra),
+        dec: Angle::from_degrees(dec),
+        attitude: AttitudeUsed::Own,
+    };
+    AnswerError { centroid_px: Some([ra / PIXEL_DEG, dec / PIXEL_DEG]), line_of_sight: Some(line_of_sight) }
+}
+
 /// A verdict with another error, degrees.
 fn with_error(verdict: Verdict, change: impl Fn(f64, f64) -> (f64, f64)) -> Verdict {
-    let changed = |error: LineOfSightError| {
-        let (ra, dec) = change(error.ra.degrees(), error.dec.degrees());
-        LineOfSightError { ra: Angle::from_degrees(ra), dec: Angle::from_degrees(dec) }
+    let changed = |error: AnswerError| {
+        let ra_deg = error.line_of_sight.map_or(0.0, |error| error.ra.degrees());
+        let (ra, dec) = change(ra_deg, dec_deg(error));
+        of_degrees(ra, dec)
     };
     match verdict {
         Verdict::Correct { error } => Verdict::Correct { error: changed(error) },
@@ -125,10 +142,7 @@ impl Synthetic {
         };
         (0..self.frames)
             .map(|frame| {
-                let error = LineOfSightError {
-                    ra: Angle::from_degrees(0.014 * next(&mut ra, 0.6)),
-                    dec: Angle::from_degrees(0.014 * next(&mut dec, 0.6)),
-                };
+                let error = of_degrees(0.014 * next(&mut ra, 0.6), 0.014 * next(&mut dec, 0.6));
                 // 95 % detected, 7 % of them wrong.
                 let (is_hit, is_wrong) = (next(&mut hit, 0.7) < 1.645, next(&mut right, 0.7) > 1.476);
                 let verdict = match (is_hit, is_wrong) {
@@ -152,7 +166,10 @@ impl Synthetic {
 
 /// A run as the gate reads it; runs of a seed are of the same frames.
 pub(crate) fn sample_of(seed: u64, frames: &[FrameVerdict]) -> Sample {
-    Sample::new(identity("far_range", seed), UnitTable::of_frames(frames))
+    Sample::new(
+        identity("far_range", seed),
+        UnitTable::of_frames(frames, &WithinLimits::of_degrees([PIXEL_DEG, 2.0 * PIXEL_DEG])),
+    )
 }
 
 /// The same of a docking run.

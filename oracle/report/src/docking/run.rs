@@ -69,7 +69,7 @@ impl DockingRun {
         let measurements = directory.join("measurements.csv");
         let motion = Some(directory.join("motion.csv")).filter(|path| path.is_file());
         let verdicts =
-            PreparedDocking::score_files(directory, &measurements, motion.as_deref())?.units().units;
+            PreparedDocking::score_files(directory, &measurements, motion.as_deref(), None)?.units().units;
         let mut truths = Vec::with_capacity(verdicts.len());
         for field in TableReader::<FieldTruth>::open(&directory.join("truth/fields.parquet"))? {
             truths.extend(field?.1);

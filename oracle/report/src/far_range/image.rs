@@ -127,7 +127,7 @@ pub(super) fn regions(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, 
         return Ok(section.text("The camera of this scenario sends whole images: nothing is cut."));
     }
     let dec = |row: usize| match run.verdicts[row].verdict {
-        Verdict::Correct { error } => Some(error.dec.degrees().abs()),
+        Verdict::Correct { error } => error.centroid_px.map(|[_, y]| y.abs()),
         _ => None,
     };
     let mut by_error: Vec<usize> = (0..run.verdicts.len()).filter(|&row| dec(row).is_some()).collect();
@@ -136,7 +136,7 @@ pub(super) fn regions(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Section, 
     let truncated = sheet.first_region(run, by_error.iter().copied().take(12), |cut| cut > 0.05)?;
     // The nearest of some ranges from near to far: there the image is as large as that of the other.
     let mut near: Vec<usize> =
-        by_error.iter().copied().filter(|&row| dec(row).is_some_and(|error| error < 0.012)).collect();
+        by_error.iter().copied().filter(|&row| dec(row).is_some_and(|error| error < 0.5)).collect();
     near.sort_by(|&a, &b| run.truths[a].range_km.total_cmp(&run.truths[b].range_km).then(a.cmp(&b)));
     let step = near.len().div_ceil(30).max(1);
     let whole = sheet.first_region(run, near.into_iter().step_by(step), |cut| cut < 0.02)?;

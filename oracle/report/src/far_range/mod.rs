@@ -25,7 +25,7 @@ use super::plotly::Trace;
 use super::words::spoken;
 use files::Failure;
 use scenario::is_argon;
-use score::{ARGON_TABLE_2, GroupScore};
+use score::{ARGON_TABLE_2, AttitudeUsed, GroupScore, angle, attitude_note};
 
 /// The page of a far-range run; `sheet` renders its frames anew.
 ///
@@ -68,7 +68,7 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Page, Fai
         title: scenario.title.clone(),
         kind: "Far range: a run",
         version: run.run_file.version.clone(),
-        lead: vec![lead],
+        lead: [lead].into_iter().chain(attitude_note(run.score.attitude.as_deref())).collect(),
         warnings,
         facts: vec![
             fact("Scenario", run.run_file.name.clone()),
@@ -89,6 +89,8 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Page, Fai
 fn figures_section(run: &FarRangeRun) -> Section {
     let score = &run.score;
     let published = is_argon(&run.run_file.scenario).then_some(&ARGON_TABLE_2);
+    let attitude = score.attitude.as_deref().filter(|attitude| *attitude != AttitudeUsed::Own.code());
+    let attitude = attitude.map_or_else(String::new, |attitude| format!(" (attitude: {attitude})"));
     let groups: Vec<&String> = score.groups.keys().collect();
     let is_whole = published.is_some_and(|table| score.frames == u64::from(table.images[5]));
     let mut head = vec![String::new()];
@@ -106,11 +108,14 @@ fn figures_section(run: &FarRangeRun) -> Section {
     };
     let row = |name: &str, cells: Vec<String>| [name.to_owned()].into_iter().chain(cells).collect::<Vec<_>>();
     table.push(row("images", columns().map(|(frames, _)| frames.to_string()).collect()));
-    let labels =
-        ["hit rate", "RA error < 0.024°", "RA error < 0.048°", "Dec error < 0.024°", "Dec error < 0.048°"];
-    for ((name, rates), label) in ARGON_TABLE_2.rates().into_iter().zip(labels) {
+    for ((name, rates), label) in
+        ARGON_TABLE_2.rates().into_iter().zip(["hit rate", "RA error", "RA error", "Dec error", "Dec error"])
+    {
         let ours = columns().map(|(_, figures)| percent_cell(figures.get(name)));
-        table.push(row(label, ours.collect()));
+        let limit = score.figures.get(name).and_then(|figure| figure.limit_deg);
+        let label =
+            limit.map_or_else(|| label.to_owned(), |limit| format!("{label} < {}{attitude}", angle(limit)));
+        table.push(row(&label, ours.collect()));
         if published.is_some() {
             // A group is the paper's day of the same name; all is the paper's only where every frame was flown.
             let day = |group: &&String| {

@@ -58,7 +58,7 @@ impl FarRangeRun {
         check_files(directory)?;
         let clusters = Some(directory.join("clusters.parquet")).filter(|path| path.is_file());
         let scored =
-            Prepared::score_files(directory, &directory.join("measurements.csv"), clusters.as_deref())?;
+            Prepared::score_files(directory, &directory.join("measurements.csv"), clusters.as_deref(), None)?;
         Self::with_verdicts(directory, scored.verdicts)
     }
 

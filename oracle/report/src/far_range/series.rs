@@ -1,6 +1,7 @@
 //! What is measured over time: errors, stars.
 
-use score::Verdict;
+use run::far_range::limits;
+use score::{Verdict, angle};
 
 use super::run::{FarRangeRun, axis_time, broken, by_bins, time_axis};
 use crate::chart::{
@@ -14,12 +15,17 @@ const MEAN_OF: usize = 100;
 
 /// Fig. 5: errors over time.
 pub(super) fn errors(run: &FarRangeRun) -> Section {
+    let section = Section::new("fig-5", "Fig. 5: errors of right ascension and declination");
+    if run.score.attitude.as_deref() == Some("none") {
+        return section.text("There are none: \"All figures\" has the errors of the centroid, in pixels.");
+    }
     let component = |row: usize, index: usize| {
-        let error = run.verdicts[row].verdict.error();
+        let error = run.verdicts[row].verdict.line_of_sight_error();
         error.map_or(f64::NAN, |error| [error.ra, error.dec][index].degrees())
     };
     let rows_of = |is_wrong: bool| -> Vec<usize> {
         (0..run.verdicts.len())
+            .filter(|&row| component(row, 0).is_finite())
             .filter(|&row| match run.verdicts[row].verdict {
                 Verdict::Correct { .. } => !is_wrong,
                 Verdict::Wrong { .. } => is_wrong,
@@ -32,6 +38,7 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
     // Errors of wrong answers are those of another object: they would leave nothing to be seen of the others.
     let limit = (1.15 * largest.fold(0.0, f64::max)).max(0.06);
     let ends = [&run.truths[0], &run.truths[run.truths.len() - 1]].map(|truth| axis_time(truth.time));
+    let limits = limits(&run.run_file.scenario);
     let panel = |index: usize, title: &str| {
         let of = |rows: &[usize]| -> (Vec<f64>, Vec<f64>, Vec<u64>) {
             let y = rows.iter().map(|&row| rounded(component(row, index), 5)).collect();
@@ -45,8 +52,10 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
         let kept: Vec<usize> = sampled(wrong.len()).into_iter().map(|i| wrong[i]).collect();
         let (x, y, frames) = of(&kept);
         traces.push(crosses("wrong", x, y, WRONG).custom_data(frames).hover_template(hover));
-        for (name, at) in [("0.024° (1 px)", 0.024), ("−0.024°", -0.024)] {
-            let limit = dashed(name, ends.to_vec(), vec![at; 2], BESIDE);
+        let pixel = [limits.ra_deg, limits.dec_deg][index][0];
+        let name = angle(pixel);
+        for (name, at) in [(format!("{name} (1 px)"), pixel), (format!("−{name}"), -pixel)] {
+            let limit = dashed(&name, ends.to_vec(), vec![at; 2], BESIDE);
             traces.push(if at > 0.0 { limit } else { limit.not_in_legend() });
         }
         Panel { range: Some([-limit, limit]), ..Panel::new(title, traces) }
@@ -65,7 +74,7 @@ pub(super) fn errors(run: &FarRangeRun) -> Section {
             ("Dec error of the right, °", &|row| right_only(row, 1), 4),
         ],
     );
-    Section::new("fig-5", "Fig. 5: errors of right ascension and declination").chart(Chart::new(
+    section.chart(Chart::new(
         format!(
             "Angles of the line of sight in the camera system, measured minus true: RA across columns, Dec across rows. The axes \
              fit the right answers; {beyond} of {} wrong ones lie beyond them and are seen by zooming out (double click). {}",

@@ -23,7 +23,7 @@ use files::{
 use indexmap::IndexMap;
 use pipeline::docking::{DockingConfig, DockingFactory};
 use scenario::run_file::RunFile;
-use scenario::{DOCKING, DockingScenario};
+use scenario::{AttitudeChoice, DOCKING, DockingScenario};
 use score::docking::{DockingContext, DockingScore, DockingScorer, TrueField, names};
 use score::{Figure, UnitTable};
 use serde_json::{Value, json};
@@ -36,7 +36,7 @@ use crate::any_world::{Options, ScenarioSource};
 use crate::by_number::ByNumber;
 use crate::derived::{View, size};
 use crate::flight::{Expectation, Flight, in_order};
-use crate::world::{self, OpenDataset, World, unscorable};
+use crate::world::{self, OpenDataset, World, refuse_attitude, unscorable};
 
 impl World for PreparedDocking {
     const STARTING_POINT: &'static str = DOCKING;
@@ -62,6 +62,7 @@ impl World for PreparedDocking {
     type Scored = ScoredFields;
 
     fn prepare(source: &ScenarioSource, _: &DockingScenario, options: Options) -> Result<Self, Failure> {
+        refuse_attitude(options.attitude)?;
         match options.inject {
             Some(stage) => {
                 Err(Failure::Usage(format!("--inject is {stage}, expected with a far-range scenario alone")))
@@ -240,7 +241,9 @@ impl World for PreparedDocking {
         directory: &Path,
         measurements: &Path,
         motion: Option<&Path>,
+        attitude: Option<AttitudeChoice>,
     ) -> Result<ScoredFields, Failure> {
+        refuse_attitude(attitude)?;
         let run_file = RunFile::<DockingScenario>::read(&directory.join("run.toml"))?;
         let setup = SetupFile::read(&directory.join("setup.toml"))?.setup();
         let mut scorer = Scorer::new(&run_file, &setup);
@@ -289,7 +292,12 @@ impl Scorer {
 
 impl world::Scorer<PreparedDocking> for Scorer {
     /// Truth and answer are judged as their files would give them back, so that a run and its files have the same score to the bit.
-    fn add(&mut self, truth: &FieldTruth, outcome: &DockingOutcome) -> Result<(), Failure> {
+    fn add(
+        &mut self,
+        truth: &FieldTruth,
+        _: &FieldTelemetry,
+        outcome: &DockingOutcome,
+    ) -> Result<(), Failure> {
         let truth = self.true_field(&truth_as_filed(truth.clone()));
         self.scorer.add(&truth, Some(&answer_as_filed(outcome))).map_err(unscorable)
     }

@@ -11,7 +11,9 @@ pub use prepared::{Prepared, SceneTruth, simulator};
 use std::fmt::Debug;
 use std::path::Path;
 
-use contract::{FarRange, Frame, Outcome, PipelineFactory, Setup, Telemetry};
+use contract::{
+    Body, CameraFrame, FarRange, Frame, Icrs, Outcome, PipelineFactory, Rotation, Setup, Telemetry,
+};
 use files::{
     Dataset, Expected, Failure, FrameCluster, FrameHeader, ImageFormat, RunDirectory, StarRow, TableReader,
     TelemetryRow, read_measurements, read_stars, read_telemetry, write_expected, write_frame,
@@ -19,8 +21,11 @@ use files::{
 use indexmap::IndexMap;
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
 use scenario::run_file::RunFile;
-use scenario::{FarRangeScenario, STARTING_POINT, is_argon};
-use score::{ARGON_TABLE_2, Figure, Score, ScoreContext, ScoreError, Scored, UnitTable, names};
+use scenario::{AttitudeChoice, FarRangeScenario, STARTING_POINT, is_argon};
+use score::{
+    ARGON_TABLE_2, Figure, GrantedAttitude, Score, ScoreContext, ScoreError, Scored, UnitTable, WithinLimits,
+    names,
+};
 use serde_json::{Value, json};
 use sim::catalog::Catalog;
 use sim::onboard::image_bytes;
@@ -74,7 +79,7 @@ impl World for Prepared {
             let message = "--renderer is mitsuba, expected with a docking scenario alone";
             return Err(Failure::Usage(message.to_owned()));
         }
-        Self::with_truth_for(source, options.inject)
+        Self::with_options(source, options.inject, options.attitude)
     }
 
     fn run_file(&self) -> &RunFile<FarRangeScenario> {
@@ -275,14 +280,23 @@ impl World for Prepared {
         directory: &Path,
         measurements: &Path,
         clusters: Option<&Path>,
+        attitude: Option<AttitudeChoice>,
     ) -> Result<Scored, Failure> {
-        let run_file = RunFile::<FarRangeScenario>::read(&directory.join("run.toml"))?;
+        let mut run_file = RunFile::<FarRangeScenario>::read(&directory.join("run.toml"))?;
+        run_file.scenario.score.attitude = attitude.or(run_file.scenario.score.attitude);
         let projection = Projection::new(&run_file.scenario.camera)?;
         let mut scorer = Scorer::new(&run_file, &projection);
         let truth = directory.join(Self::TRUTH_FILE);
         let table = directory.join("truth/objects.parquet");
         let mut objects = TableReader::<ObjectTruth>::open(&table)?;
         let frames = TableReader::<FrameTruth>::open(&truth)?;
+        let telemetry = directory.join("telemetry.csv");
+        let rows = match run_file.scenario.score.attitude {
+            Some(AttitudeChoice::Telemetry) => read_telemetry(&telemetry)?,
+            Some(AttitudeChoice::True) | None => Vec::new(),
+        };
+        let rows = rows.into_iter().map(|row| (row.frame, row.telemetry.body_from_icrs)).collect();
+        let mut measured_attitudes = ByNumber::new(rows, &telemetry, "frame", &truth);
         let mut clusters = clusters.map(TableReader::<FrameCluster>::open).transpose()?;
         let mut answers = ByNumber::new(
             read_measurements(measurements, &run_file.scenario.camera)?,
@@ -297,8 +311,14 @@ impl World for Prepared {
             if let Some((outcome, table)) = outcome.as_mut().zip(clusters.as_mut()) {
                 outcome.clusters = table.rows_of(number)?.into_iter().map(|row| row.cluster).collect();
             }
+            let granted = scorer.granted(measured_attitudes.of(number)?).ok_or_else(|| {
+                Failure::Usage(format!(
+                    "{}: there is no row of frame {number}, expected its attitude for --attitude telemetry",
+                    telemetry.display()
+                ))
+            })?;
             for of_frame in &truths {
-                scorer.scorer.add(of_frame, &objects, outcome.as_ref()).map_err(|error| {
+                scorer.scorer.add(of_frame, &objects, outcome.as_ref(), granted).map_err(|error| {
                     let is_of_frames = matches!(
                         error,
                         ScoreError::Order { .. } | ScoreError::Impossible { field: "range_km", .. }
@@ -339,18 +359,38 @@ fn setup_of(directory: &Path, dataset: &Dataset) -> Result<Setup, Failure> {
 pub struct Scorer<'a> {
     scorer: score::Scorer<'a>,
     is_argon: bool,
+    attitude: Option<AttitudeChoice>,
+    nominal_camera_from_body: Rotation<CameraFrame, Body>,
 }
 
 impl<'a> Scorer<'a> {
     fn new(run_file: &RunFile, projection: &'a Projection) -> Self {
         let scorer = score::Scorer::new(context(run_file, projection));
-        Self { scorer, is_argon: is_argon(&run_file.scenario) }
+        let scenario = &run_file.scenario;
+        Self {
+            scorer,
+            is_argon: is_argon(scenario),
+            attitude: scenario.score.attitude,
+            nominal_camera_from_body: scenario.mounting.nominal.camera_from_body(),
+        }
+    }
+
+    /// What is granted in a frame with this measured attitude; `None` where that is asked for and there is none.
+    fn granted(&self, measured: Option<Rotation<Body, Icrs>>) -> Option<GrantedAttitude> {
+        Some(match self.attitude {
+            None => GrantedAttitude::None,
+            Some(AttitudeChoice::True) => GrantedAttitude::True,
+            Some(AttitudeChoice::Telemetry) => {
+                GrantedAttitude::Telemetry(self.nominal_camera_from_body * measured?)
+            }
+        })
     }
 }
 
 impl world::Scorer<Prepared> for Scorer<'_> {
-    fn add(&mut self, truth: &SceneTruth, outcome: &Outcome) -> Result<(), Failure> {
-        self.scorer.add(&truth.frame, &truth.objects, Some(outcome)).map_err(unscorable)?;
+    fn add(&mut self, truth: &SceneTruth, telemetry: &Telemetry, outcome: &Outcome) -> Result<(), Failure> {
+        let granted = self.granted(Some(telemetry.body_from_icrs)).unwrap_or_default();
+        self.scorer.add(&truth.frame, &truth.objects, Some(outcome), granted).map_err(unscorable)?;
         Ok(())
     }
 
@@ -371,8 +411,14 @@ impl world::Scored for Scored {
     }
 
     fn units(&self) -> UnitTable {
-        UnitTable::of_frames(&self.verdicts)
+        UnitTable::of_frames(&self.verdicts, &self.limits)
     }
+}
+
+/// What "within one pixel" and "within two" mean in a scenario.
+pub fn limits(scenario: &FarRangeScenario) -> WithinLimits {
+    let of_camera = || WithinLimits::of_pixels(&scenario.camera);
+    scenario.score.within_deg.map_or_else(of_camera, WithinLimits::of_degrees)
 }
 
 fn context<'a>(run_file: &RunFile, projection: &'a Projection) -> ScoreContext<'a> {
@@ -383,6 +429,7 @@ fn context<'a>(run_file: &RunFile, projection: &'a Projection) -> ScoreContext<'
         inject: run_file.inject.map(|stage| stage.to_string()),
         columns: run_file.scenario.camera.columns,
         rows: run_file.scenario.camera.rows,
+        limits: limits(&run_file.scenario),
         unproject: Box::new(|point| projection.unproject(point)),
     }
 }

@@ -4,7 +4,7 @@ use contract::{Setup, bounds};
 use files::{Failure, StarRow};
 use hifitime::Epoch;
 use scenario::run_file::RunFile;
-use scenario::{FarRangeScenario, Stage};
+use scenario::{AttitudeChoice, FarRangeScenario, Stage};
 use sim::Simulator;
 use sim::truth::{FrameTruth, ObjectTruth};
 
@@ -35,15 +35,21 @@ impl Prepared {
     /// # Errors
     /// A [`Failure`] with the place of the first value that is not allowed.
     pub fn new(source: &ScenarioSource) -> Result<Self, Failure> {
-        Self::with_truth_for(source, None)
+        Self::with_options(source, None, None)
     }
 
-    /// [`Prepared::new`], for a run of the built-in pipeline in which the truth stands in the place of a stage's result.
+    /// [`Prepared::new`], for a run of the built-in pipeline in which the truth stands in the place of a stage's result, or with an
+    /// attitude granted to answers with a centroid alone.
     ///
     /// # Errors
     /// As [`Prepared::new`]; [`Failure::Usage`] for the regions of interest of a scenario that has none.
-    pub fn with_truth_for(source: &ScenarioSource, inject: Option<Stage>) -> Result<Self, Failure> {
+    pub fn with_options(
+        source: &ScenarioSource,
+        inject: Option<Stage>,
+        attitude: Option<AttitudeChoice>,
+    ) -> Result<Self, Failure> {
         let mut scenario = source.typed::<FarRangeScenario>("far range")?.clone();
+        scenario.score.attitude = attitude.or(scenario.score.attitude);
         if inject == Some(Stage::Roi) && scenario.roi.take().is_none() {
             return Err(Failure::Usage(format!(
                 "--inject is roi, expected a scenario with regions of interest: `{}` has no [roi]",
@@ -80,6 +86,7 @@ impl Prepared {
 pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result<Simulator, Failure> {
     bounds::check(&scenario.star_list, "star_list").map_err(|error| source.out_of_range(&error))?;
     source.check_part("far_range", scenario.far_range.check())?;
+    scenario.score.check().map_err(|error| source.out_of_range(&error))?;
     Simulator::new(&scenario.simulation(), &source.folder).map_err(|error| source.explain(error))
 }
 
