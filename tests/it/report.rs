@@ -52,6 +52,7 @@ impl PageText {
             assert!(self.html.contains(&format!("<section id=\"{section}\">")), "no section {section}");
         }
         self.check_asks_nothing();
+        self.check_shows_no_keys();
         assert!(self.html.contains("prefers-color-scheme: dark") && self.html.contains("@media print"));
         let charts = self.charts();
         assert!(!charts.is_empty());
@@ -62,6 +63,36 @@ impl PageText {
             assert!(!chart["data"].as_array().unwrap().is_empty() && chart["layout"].is_object());
         }
         self.check_what_is_drawn();
+    }
+
+    /// A reader meets figures and causes by their words, never by the keys that files have. Settings and names of files stand as they are written.
+    fn check_shows_no_keys(&self) {
+        const CAUSES: [&str; 10] = [
+            "not_reported",
+            "lost_motion_test",
+            "not_linked",
+            "taken_for_star",
+            "cut_by_roi",
+            "no_previous_frame",
+            "too_few_features",
+            "lost_lines",
+            "pipeline_failed",
+            "outside_field",
+        ];
+        let mut shown = String::new();
+        // Past the data for machines; what charts draw stands in their JSON.
+        for (n, part) in self.html.split("<script").enumerate() {
+            let (script, text) = if n == 0 { ("", part) } else { part.split_once("</script>").unwrap() };
+            shown += if script.contains("report-data") { "" } else { script };
+            shown += text;
+        }
+        let figures = run::worlds().into_iter().flat_map(|world| world.figure_names());
+        for key in figures.chain(CAUSES.map(str::to_owned)).filter(|key| key.contains('_')) {
+            let found = shown
+                .find(&key)
+                .map(|at| shown[at.saturating_sub(80)..].chars().take(200).collect::<String>());
+            assert_eq!(found, None, "{key}");
+        }
     }
 
     /// Charts with what is said below them.

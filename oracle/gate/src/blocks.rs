@@ -1,4 +1,5 @@
 //! Blocks: stretches of a sequence that are long enough to be independent of one another.
+use run::world_called;
 use score::UnitTable;
 use statistics::effective_size;
 
@@ -78,12 +79,13 @@ impl Blocks {
 /// approach is one sequence, but for gaps; its groups are ranges. A study: every case is by itself.
 fn sequences(kind: SourceKind, world: &str, table: &UnitTable) -> Vec<usize> {
     let units = &table.units;
+    let are_groups_apart = world_called(world).is_ok_and(|world| world.are_groups_apart());
     let mut begins = vec![0];
     for unit in 1..units.len() {
         let (before, this) = (&units[unit - 1], &units[unit]);
         let is_apart = kind == SourceKind::Study
             || before.number + 1 != this.number
-            || (world == "far_range" && before.group != this.group);
+            || (are_groups_apart && before.group != this.group);
         if is_apart {
             begins.push(unit);
         }

@@ -52,8 +52,8 @@ pub fn compare(
     let identity = &baseline.sample.identity;
     let pairing = identity.pairing(&result.identity)?;
     let units = identity.kind.units(&identity.world);
-    check_units(baseline, result, units)?;
-    check_reported(baseline, result, units)?;
+    check_units(baseline, result, &units)?;
+    check_reported(baseline, result, &units)?;
     let pairs = pairs(baseline, result, options)?;
 
     let blocks = &baseline.blocks;
@@ -90,7 +90,7 @@ pub fn compare(
         name: identity.name.clone(),
         world: identity.world.clone(),
         reason: baseline.header.reason.clone(),
-        units: units.to_owned(),
+        units,
         count: baseline.header.units,
         pairing,
         baseline_seed: identity.seed,

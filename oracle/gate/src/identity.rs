@@ -1,5 +1,6 @@
 //! What was run, and whether two runs can be compared.
 use files::Failure;
+use run::world_called;
 use scenario::identity::first_difference;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
@@ -16,11 +17,10 @@ pub enum SourceKind {
 
 impl SourceKind {
     /// What its units are called, of a world.
-    pub fn units(self, world: &str) -> &'static str {
+    pub fn units(self, world: &str) -> String {
         match self {
-            Self::Study => "cases",
-            Self::Run if world == "docking" => "fields",
-            Self::Run => "frames",
+            Self::Study => "cases".to_owned(),
+            Self::Run => format!("{}s", world_called(world).map_or("frame", |world| world.image())),
         }
     }
 }
@@ -31,7 +31,7 @@ impl SourceKind {
 pub struct Identity {
     /// Run or study.
     pub kind: SourceKind,
-    /// `far_range` or `docking`.
+    /// Code of a world, as in `far_range`.
     pub world: String,
     /// Name of the scenario or study.
     pub name: String,

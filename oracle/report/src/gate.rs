@@ -1,5 +1,6 @@
 //! The report of a gate: what changed, and the frames that flipped.
 
+use run::{Prepared, PreparedDocking, World as _};
 use std::path::Path;
 
 use files::Failure;
@@ -42,18 +43,20 @@ impl FlippedFrames {
             return Ok(none);
         }
         let chosen = chosen(&flips.units);
-        let (mut pictures, reason) = if report.units == "frames" {
+        let (mut pictures, reason) = if report.world == Prepared::CODE {
             let run = FarRangeRun::read(result)?;
             let rows =
                 rows_of(&chosen, |number| run.truths.binary_search_by_key(&number, |truth| truth.frame).ok());
             let sheet = FrameSheet::open(result)?;
             (sheet.pictures(&run, &rows)?, sheet.reason().map(str::to_owned))
-        } else {
+        } else if report.world == PreparedDocking::CODE {
             let run = DockingRun::read(result)?;
             let rows =
                 rows_of(&chosen, |number| run.truths.binary_search_by_key(&number, |truth| truth.field).ok());
             let sheet = FieldSheet::open(result)?;
             (sheet.pictures(&run, &rows)?, sheet.reason().map(str::to_owned))
+        } else {
+            return Ok(none);
         };
         for (picture, flip) in pictures.iter_mut().zip(&chosen) {
             picture.title = format!("{}: {}.", kind_words(flip.kind), change(flip));
@@ -268,14 +271,14 @@ fn changed(report: &GateReport, frames: FlippedFrames) -> Section {
     };
     let mut table = DataTable::new(["number", "group", "how", "from", "cause", "to", "cause"]);
     for flip in flips.units.iter().take(MOST_ROWS) {
-        let cause = |cause: &Option<String>| cause.clone().unwrap_or_default();
+        let cause = |cause: &Option<String>| cause.as_deref().map(spoken).unwrap_or_default();
         table.push([
             flip.number.to_string(),
             flip.group.clone(),
             kind_words(flip.kind).to_lowercase(),
-            flip.baseline.clone(),
+            spoken(&flip.baseline),
             cause(&flip.baseline_cause),
-            flip.result.clone(),
+            spoken(&flip.result),
             cause(&flip.result_cause),
         ]);
     }

@@ -178,7 +178,7 @@ fn figures(study: &StudyResult) -> Section {
     let mut data = DataTable::new(["rate", "all", "low", "high"]);
     for (name, all, _) in &rates {
         let bound = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
-        data.push([(*name).clone(), number(name, all.value), bound(all.low), bound(all.high)]);
+        data.push([FigureLabel::of(name).words, number(name, all.value), bound(all.low), bound(all.high)]);
     }
     let height = 110 + 30 * rates.len() as u32;
     let caption = "Rates over all frames, and how far the cases spread about them.";
@@ -334,7 +334,7 @@ fn scatter(study: &StudyResult) -> Section {
         let Some(numbers) = table.numbers(parameter) else { continue };
         let rows: Vec<usize> = (0..numbers.len()).filter(|&row| values[row].value.is_some()).collect();
         let value = |row: usize| scale(name) * values[row].value.unwrap_or(f64::NAN);
-        let traces = cloud(name, &rows, Some(&value), MEASURED, |rows| {
+        let traces = cloud(&FigureLabel::of(name).words, &rows, Some(&value), MEASURED, |rows| {
             let x: Vec<f64> = rows.iter().map(|&row| numbers[row]).collect();
             let y = rows.iter().map(|&row| rounded(value(row), 9)).collect();
             let cases: Vec<u64> = rows.iter().map(|&row| table.rows[row].case).collect();

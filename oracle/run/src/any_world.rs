@@ -53,6 +53,9 @@ pub trait AnyWorld: Sync {
     /// [`World::EVIDENCE_FILE`](crate::World::EVIDENCE_FILE).
     fn evidence_file(&self) -> Option<&'static str>;
 
+    /// [`World::ARE_GROUPS_APART`](crate::World::ARE_GROUPS_APART).
+    fn are_groups_apart(&self) -> bool;
+
     /// [`World::HEADLINE`](crate::World::HEADLINE).
     fn headline(&self) -> &'static str;
 

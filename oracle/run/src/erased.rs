@@ -94,6 +94,10 @@ impl<W: World> AnyWorld for Of<W> {
         W::EVIDENCE_FILE
     }
 
+    fn are_groups_apart(&self) -> bool {
+        W::ARE_GROUPS_APART
+    }
+
     fn headline(&self) -> &'static str {
         W::HEADLINE
     }

@@ -49,6 +49,8 @@ pub trait World: Sized + Send + Sync + 'static {
     const EVIDENCE_FILE: Option<&'static str>;
     /// The rate by which runs are good or bad, a figure of the score.
     const HEADLINE: &'static str;
+    /// Whether a group of frames is apart from the next in time, so that what went wrong in the one says nothing of the other.
+    const ARE_GROUPS_APART: bool = true;
     /// How images of a rendered dataset are kept, unless told otherwise.
     const IMAGES: Self::Images;
     /// The word of the format in which a person looks at images.

@@ -165,6 +165,10 @@ fn answer_words(outcome: Option<&DockingOutcome>) -> String {
             format!("ρ measured {:.3} m", measured.best.pose.position_m.norm())
         }
         Some(DockingSolution::RangeOnly { range_m, .. }) => format!("range alone {range_m:.2} m"),
-        Some(DockingSolution::NoSolution(reason)) => format!("the pipeline says: {reason}"),
+        Some(DockingSolution::NoSolution(reason)) => match reason.to_string() {
+            // Words of the pipeline's own.
+            text if text.contains(' ') => format!("the pipeline says: {text}"),
+            code => format!("the pipeline says: {}", spoken(&code)),
+        },
     }
 }

@@ -106,7 +106,7 @@ fn verdicts(run: &DockingRun) -> Section {
         if all == 0 {
             return;
         }
-        let mut cells = vec![what.to_owned(), cause.to_owned()];
+        let mut cells = vec![what.to_owned(), spoken(cause)];
         cells.extend(counts.iter().map(u64::to_string));
         cells.push(all.to_string());
         data.push(cells);

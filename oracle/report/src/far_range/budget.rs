@@ -1,6 +1,6 @@
 //! The error budget: the same frames with the truth in the place of one stage's result, beside the honest run.
 
-use score::{Score, names};
+use score::{FigureLabel, Score, names};
 
 use super::FarRangeRun;
 use crate::chart::{BESIDE, Chart, MEASURED, axes, intervals, rounded};
@@ -32,8 +32,12 @@ pub(super) fn budget(run: &FarRangeRun) -> Section {
         names::DEC_WITHIN_1PX,
     ];
     let amounts = [names::RA_RMS_DEG, names::DEC_RMS_DEG, names::RA_MEAN_DEG, names::DEC_MEAN_DEG];
-    let mut table = DataTable::new(["true stage"].into_iter().chain(rates).chain(amounts))
-        .caption("Rates in percent with 95 % intervals, errors of the right answers in degrees.");
+    let mut table = DataTable::new(
+        ["true stage".to_owned()]
+            .into_iter()
+            .chain(rates.into_iter().chain(amounts).map(|name| FigureLabel::of(name).words)),
+    )
+    .caption("Rates in percent with 95 % intervals, errors of the right answers in degrees.");
     for (stage, score) in &rows {
         let mut cells = vec![stage.clone()];
         cells.extend(rates.map(|name| percent_cell(score.figures.get(name))));

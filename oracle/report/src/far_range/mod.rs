@@ -166,7 +166,7 @@ fn causes(run: &FarRangeRun) -> Section {
         for (cause, total) in all {
             let counts: Vec<u64> =
                 score.groups.values().map(|group| of(group).get(cause).copied().unwrap_or(0)).collect();
-            let mut cells = vec![cause.clone()];
+            let mut cells = vec![spoken(cause)];
             cells.extend(counts.iter().map(u64::to_string));
             cells.push(total.to_string());
             data.push(cells);

@@ -41,6 +41,8 @@ use crate::world::{self, OpenDataset, World, refuse_attitude, unscorable};
 impl World for PreparedDocking {
     const STARTING_POINT: &'static str = DOCKING;
     const SETUP_FILE: &'static str = "setup.toml";
+    /// An approach is one sequence; its groups are ranges.
+    const ARE_GROUPS_APART: bool = false;
     const TRUTH_FILE: &'static str = "truth/fields.parquet";
     const EVIDENCE_FILE: Option<&'static str> = Some("motion.csv");
     const HEADLINE: &'static str = names::SUCCESS_RATE;
