@@ -18,7 +18,7 @@ const ARROWS: [(&str, &str); 19] = [
     ("mitsuba", "contract files sim"),
     ("run", "contract files mitsuba pipeline scenario score sim"),
     ("study", "contract files pipeline run scenario score sim statistics"),
-    ("gate", "contract files run scenario score sim statistics study"),
+    ("gate", "files run scenario score sim statistics study"),
     ("visibility", "contract files pipeline run scenario sim statistics"),
     ("show", "contract"),
     ("report", "contract files gate run scenario score sim study visibility"),
