@@ -31,7 +31,8 @@ pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
     let fits = one_line.lines().next().is_some_and(|line| line.chars().count() <= style.width);
     let mut text = if fits { one_line } else { sheet(&columns, &rows, "\n", style.styled) };
     text.push_str(
-        "Rates in percent with their 95 % intervals; RMS over the correct, of RA and Dec in seconds of arc, of the centroid (x, y) in pixels.\n\
+        "Rates in percent with their 95 % intervals; RMS over the correct, of RA and Dec in seconds of arc,\n\
+         of the centroid (x, y) in pixels.\n\
          The cause of a wrong answer is what kept the target itself from being taken.\n",
     );
     if let Some(note) = attitude_note(score.attitude.as_deref()) {
@@ -285,6 +286,25 @@ mod tests {
         let text = far_range(&score(5, 3000), TableStyle { width: 100, ..TableStyle::default() });
         assert!(widest(&text) <= 100, "{}\n{text}", widest(&text));
         assert_eq!(line(&text, "hit rate").matches('(').count(), 0, "{text}");
+    }
+
+    #[test]
+    fn what_ra_and_dec_rest_on_is_told() {
+        let text = |attitude: Option<&str>| {
+            let score = Score { attitude: attitude.map(str::to_owned), ..score(5, 3000) };
+            far_range(&score, TableStyle { width: 100, ..TableStyle::default() })
+        };
+        assert!(text(Some("own and telemetry")).contains("by the attitude `own and telemetry`"));
+        assert!(text(Some("none")).contains("No answer has a line of sight"));
+        assert_eq!(text(Some("own")), text(None));
+        assert!(["own and telemetry", "none"].iter().all(|word| widest(&text(Some(word))) <= 100));
+    }
+
+    #[test]
+    fn limits_are_those_of_the_figures() {
+        let mut score = score(1, 300);
+        score.figures[names::DEC_WITHIN_1PX].limit_deg = Some(0.0236);
+        assert!(far_range(&score, TableStyle::default()).contains("\nDec < 0.0236°"));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use hifitime::Unit;
 
 use super::error::Place;
 use super::time::format_utc;
-use super::{BeyondSip, FileError, FrameHeader, SipTerm, TanSip, windows};
+use super::{FileError, FrameHeader, SipTerm, TanSip, windows};
 
 /// Cards under construction; each is checked as it is added.
 struct Cards<'a> {
@@ -106,7 +106,7 @@ fn times(cards: &mut Cards<'_>, header: &FrameHeader) -> Result<(), FileError> {
 
 fn world_coordinates(cards: &mut Cards<'_>, wcs: &TanSip) -> Result<(), FileError> {
     cards.whole("WCSAXES", 2, "")?;
-    let suffix = if wcs.sip.is_ok() { "-SIP" } else { "" };
+    let suffix = if wcs.sip.is_some() { "-SIP" } else { "" };
     cards.text("CTYPE1", &format!("RA---TAN{suffix}"), "")?;
     cards.text("CTYPE2", &format!("DEC--TAN{suffix}"), "")?;
     cards.text("CUNIT1", "deg", "")?;
@@ -124,7 +124,7 @@ fn world_coordinates(cards: &mut Cards<'_>, wcs: &TanSip) -> Result<(), FileErro
     cards.number("LONPOLE", 180.0, "[deg]")?;
     let astrometric = "World coordinates are astrometric, made from the truth: stellar";
     match &wcs.sip {
-        Ok(sip) => {
+        Some(sip) => {
             for (name, terms) in [("A", &sip.a), ("B", &sip.b), ("AP", &sip.ap), ("BP", &sip.bp)] {
                 polynomial(cards, name, sip.order, terms)?;
             }
@@ -132,10 +132,10 @@ fn world_coordinates(cards: &mut Cards<'_>, wcs: &TanSip) -> Result<(), FileErro
             cards.comment("aberration is folded into CRVAL, CD and the SIP polynomials,");
             cards.comment(&format!("which are fitted; largest residual {:.1e} pix.", sip.residual_px));
         }
-        Err(BeyondSip { radius_px }) => {
+        None => {
             cards.comment(astrometric);
             cards.comment("aberration is folded into CRVAL and CD. No SIP follows the distortion");
-            cards.comment(&format!("beyond {radius_px:.0} pix of CRPIX: right near CRPIX alone."));
+            cards.comment("to the corners: they are right near CRPIX alone.");
         }
     }
     Ok(())

@@ -94,6 +94,6 @@ pub use video::{
     AviCoding, AviWriter, FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions, Y4mWriter,
     read_listed_field, write_field,
 };
-pub use wcs::{BeyondSip, Sip, SipTerm, TanSip, WcsError};
+pub use wcs::{Sip, SipTerm, TanSip, WcsError};
 pub use whole_file::{Earlier, WholeFile};
 pub use whole_table::{WholeTable, read_csv_table, read_parquet_table};

@@ -45,14 +45,6 @@ pub struct Sip {
     pub residual_px: f64,
 }
 
-/// A distortion that SIP cannot follow to the corners of the detector: its highest order leaves more than 0.01 px there, or the
-/// distortion is so steep that it is not undone step by step.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BeyondSip {
-    /// Distance from the principal point, px, from which on it is so.
-    pub radius_px: f64,
-}
-
 /// World coordinates TAN-SIP (Calabretta & Greisen 2002, A&A 395, 1077; Shupe et al. 2005, ASP Conf. Ser. 347, 491).
 ///
 /// With (u, v) the offset of a pixel from CRPIX, the offset without distortion is (u + A(u, v), v + B(u, v)); CD
@@ -66,10 +58,13 @@ pub struct TanSip {
     pub crpix: [f64; 2],
     /// Rows: east, north; columns: along columns, along rows; degrees per pixel.
     pub cd_deg_per_px: [[f64; 2]; 2],
-    /// The distortion; without it the coordinates are right at the principal point alone.
-    pub sip: Result<Sip, BeyondSip>,
+    /// The distortion; `None` when no SIP follows it to the corners of the detector: the coordinates are then right at the principal
+    /// point alone.
+    pub sip: Option<Sip>,
 }
 
+/// Halvings of the detector's half diagonal in the search for the radius that SIP reaches.
+const HALVINGS: usize = 8;
 /// The residual at which no higher order is tried: a tenth of what is promised.
 const GOOD_ENOUGH_PX: f64 = 0.001;
 /// The residual that is promised.
@@ -92,16 +87,55 @@ impl TanSip {
         boresight: Direction<Icrs>,
         pixel_from_sky: impl Fn(&Direction<Icrs>) -> Option<PixelPoint>,
     ) -> Result<Self, WcsError> {
-        let center = direction_of_pixel(principal, boresight, &pixel_from_sky)?;
+        Self::fit_within(columns, rows, principal, boresight, f64::INFINITY, &pixel_from_sky)
+    }
+
+    /// The distance from the principal point, px, to which SIP follows a mapping, to some pixels; infinite when that is the whole
+    /// detector.
+    ///
+    /// # Errors
+    /// As [`TanSip::fit`].
+    pub fn reach_px(
+        columns: usize,
+        rows: usize,
+        principal: PixelPoint,
+        boresight: Direction<Icrs>,
+        pixel_from_sky: impl Fn(&Direction<Icrs>) -> Option<PixelPoint>,
+    ) -> Result<f64, WcsError> {
+        let follows = |within_px: f64| {
+            let wcs = Self::fit_within(columns, rows, principal, boresight, within_px, &pixel_from_sky)?;
+            Ok(wcs.sip.is_some())
+        };
+        if follows(f64::INFINITY)? {
+            return Ok(f64::INFINITY);
+        }
+        let farthest = grid(columns, rows).map(|[x, y]| principal.distance(PixelPoint::new(x, y)));
+        let (mut reached, mut step) = (0.0, farthest.fold(0.0, f64::max));
+        for _ in 0..HALVINGS {
+            step *= 0.5;
+            if follows(reached + step)? {
+                reached += step;
+            }
+        }
+        Ok(reached)
+    }
+
+    fn fit_within(
+        columns: usize,
+        rows: usize,
+        principal: PixelPoint,
+        boresight: Direction<Icrs>,
+        within_px: f64,
+        pixel_from_sky: &impl Fn(&Direction<Icrs>) -> Option<PixelPoint>,
+    ) -> Result<Self, WcsError> {
+        let center = direction_of_pixel(principal, boresight, pixel_from_sky)?;
         let plane = TangentPlane::at(&center);
         let offset = |tangent: Vector2<f64>| {
             pixel_from_sky(&plane.direction(tangent))
                 .map(|p| Vector2::new(p.x - principal.x, p.y - principal.y))
         };
-        let not_mapped =
-            |at: Vector2<f64>| WcsError::NotMapped { x: at.x + principal.x, y: at.y + principal.y };
-        let jacobian = jacobian(&offset).ok_or_else(|| not_mapped(Vector2::zeros()))?;
-        let cd = jacobian.try_inverse().ok_or_else(|| not_mapped(Vector2::zeros()))?;
+        let not_mapped = WcsError::NotMapped { x: principal.x, y: principal.y };
+        let cd = jacobian(&offset).and_then(|jacobian| jacobian.try_inverse()).ok_or(not_mapped)?;
 
         let cd_deg = cd.map(|c| Angle::from_radians(c).degrees());
         let (x, y) = principal.to_fits();
@@ -109,61 +143,48 @@ impl TanSip {
             crval_deg: [center.ra().degrees(), center.dec().degrees()],
             crpix: [x, y],
             cd_deg_per_px: [[cd_deg.m11, cd_deg.m12], [cd_deg.m21, cd_deg.m22]],
-            sip: Sip::fit(columns, rows, principal, |ideal| offset(cd * ideal)),
+            sip: Sip::fit(columns, rows, principal, within_px, |ideal| offset(cd * ideal)),
         })
     }
 }
 
 impl Sip {
-    /// Fits `distort`, from undistorted offsets from the principal point to distorted ones, px.
+    /// Fits `distort`, from undistorted offsets from the principal point to distorted ones, px, within a distance from the principal
+    /// point. `None` when order 9 leaves more than 0.01 px, or the distortion is so steep that it is not undone step by step.
     fn fit(
         columns: usize,
         rows: usize,
         principal: PixelPoint,
+        within_px: f64,
         distort: impl Fn(Vector2<f64>) -> Option<Vector2<f64>>,
-    ) -> Result<Self, BeyondSip> {
-        let (mut samples, mut lost_px) = (Vec::new(), f64::INFINITY);
-        for [x, y] in grid(columns, rows) {
-            let distorted = Vector2::new(x - principal.x, y - principal.y);
-            match undistort(distorted, &distort) {
-                Some(ideal) => samples.push(Sample { distorted, ideal }),
-                None => lost_px = lost_px.min(distorted.norm()),
-            }
-        }
-        if lost_px.is_finite() {
-            return Err(BeyondSip { radius_px: lost_px });
-        }
+    ) -> Option<Self> {
+        let offsets = grid(columns, rows).map(|[x, y]| Vector2::new(x - principal.x, y - principal.y));
+        let samples = offsets
+            .filter(|distorted| distorted.norm() <= within_px)
+            .map(|distorted| Some(Sample { distorted, ideal: undistort(distorted, &distort)? }))
+            .collect::<Option<Vec<_>>>()?;
 
         // A scale of one at the border keeps the powers of the fit near one.
         let scale = columns.max(rows) as f64;
-        let mut best = None;
-        let mut residual_px = f64::INFINITY;
+        let mut best: Option<Self> = None;
         for order in 3..=9 {
             let forward = Distortion::fit(&samples, 2, order, scale, |s| (s.distorted, s.ideal));
             let inverse = Distortion::fit(&samples, 1, order, scale, |s| (s.ideal, s.distorted));
             let Some((forward, inverse)) = forward.zip(inverse) else { break };
-            let residual = samples.iter().fold(0.0_f64, |worst, s| worst.max(s.residual(&forward, &inverse)));
-            if residual < residual_px {
-                residual_px = residual;
-                best = Some((order, forward, inverse));
+            let residual_px = samples.iter().fold(0.0_f64, |worst, s| {
+                let there = (forward.apply(s.distorted) - s.ideal).norm();
+                let back = (inverse.apply(s.ideal) - s.distorted).norm();
+                worst.max(there).max(back)
+            });
+            if best.as_ref().is_none_or(|best| residual_px < best.residual_px) {
+                let (a, b, ap, bp) = (forward.u, forward.v, inverse.u, inverse.v);
+                best = Some(Self { order, a, b, ap, bp, residual_px });
             }
-            if residual < GOOD_ENOUGH_PX {
+            if residual_px < GOOD_ENOUGH_PX {
                 break;
             }
         }
-        match best {
-            Some((order, forward, inverse)) if residual_px <= PROMISED_PX => {
-                let (a, b, ap, bp) = (forward.u, forward.v, inverse.u, inverse.v);
-                Ok(Self { order, a, b, ap, bp, residual_px })
-            }
-            best => {
-                let is_off = |s: &&Sample| {
-                    best.as_ref().is_none_or(|(_, there, back)| s.residual(there, back) > PROMISED_PX)
-                };
-                let off = samples.iter().filter(is_off).map(|s| s.distorted.norm());
-                Err(BeyondSip { radius_px: off.fold(f64::INFINITY, f64::min) })
-            }
-        }
+        best.filter(|best| best.residual_px <= PROMISED_PX)
     }
 }
 
@@ -255,15 +276,6 @@ fn grid(columns: usize, rows: usize) -> impl Iterator<Item = [f64; 2]> {
 struct Sample {
     distorted: Vector2<f64>,
     ideal: Vector2<f64>,
-}
-
-impl Sample {
-    /// How far off two fits are, there and back, px.
-    fn residual(&self, forward: &Distortion, inverse: &Distortion) -> f64 {
-        let there = (forward.apply(self.distorted) - self.ideal).norm();
-        let back = (inverse.apply(self.ideal) - self.distorted).norm();
-        there.max(back)
-    }
 }
 
 /// A pair of polynomials that are added to an offset.
@@ -421,21 +433,28 @@ pub(super) mod tests {
         assert!(shift > 5.0 && shift < 20.6, "{shift}");
     }
 
-    /// The barrel that order 9 no longer follows at the corners, the pincushion that is too steep for the iteration, the one that folds.
+    /// The barrel that order 9 no longer follows at the corners, pincushions that are too steep, and a barrel that folds.
     #[test]
-    fn a_distortion_beyond_sip_leaves_the_plane_and_says_from_where_on() {
-        let plain = fit(&camera(), 0.0, 0.0).unwrap();
-        let mut radii = Vec::new();
-        for k1 in [-4e-7, 2e-6, 5e-6, 1e-4, -4e-6] {
-            let wcs = fit(&Camera { radial: [k1, 0.0, 0.0], ..camera() }, 0.0, 0.0).unwrap();
-            assert_eq!((wcs.crpix, wcs.cd_deg_per_px.len()), (plain.crpix, 2));
-            let corner_px = libm::hypot(395.5, 291.5);
-            let radius_px = wcs.sip.unwrap_err().radius_px;
-            assert!(radius_px > 20.0 && radius_px <= corner_px, "{k1}: {radius_px}");
-            radii.push(radius_px);
+    fn a_distortion_beyond_sip_leaves_the_plane_and_says_how_far_it_goes() {
+        let reach = |k1: f64| {
+            let camera = Camera { radial: [k1, 0.0, 0.0], ..camera() };
+            let wcs = fit(&camera, 0.0, 0.0).unwrap();
+            assert_eq!(wcs.crpix, [396.0, 289.0]);
+            let rotation = camera_from_icrs(0.0, 0.0);
+            let boresight = rotation.inverse() * Direction::z();
+            let principal = PixelPoint::new(camera.principal_x_px, camera.principal_y_px);
+            let map = mapping(&camera, rotation);
+            let reach_px = TanSip::reach_px(camera.columns, camera.rows, principal, boresight, map).unwrap();
+            assert_eq!(wcs.sip.is_some(), reach_px.is_infinite());
+            reach_px
+        };
+        assert_eq!(reach(2.6e-8), f64::INFINITY);
+        let corner_px = libm::hypot(395.5, 291.5);
+        for steeper in [[-4e-7, -6e-7, -4e-6], [2e-6, 5e-6, 2e-5]] {
+            let reached = steeper.map(reach);
+            assert!(reached.is_sorted_by(|a, b| a > b), "{reached:?}");
+            assert!(reached[0] < corner_px && reached[0] > 300.0 && reached[2] > 10.0, "{reached:?}");
         }
-        // The steeper, the nearer.
-        assert!(radii[1] > radii[2] && radii[2] > radii[3], "{radii:?}");
     }
 
     #[test]

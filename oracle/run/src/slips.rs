@@ -61,7 +61,7 @@ mod tests {
             "camera": { "focal_length_mm": 0.020187, "pixel_width_um": 8.6 },
             "shutter": { "max_s": 250.0, "min_s": 0.001 },
             // As strange, but no thousandfold.
-            "cameras": [{ "camera": { "focal_length_mm": 1e6 } }, { "camera": { "focal_length_mm": 24211.1 } }],
+            "cameras": [{ "camera": { "focal_length_mm": 1e8 } }, { "camera": { "focal_length_mm": 24211.1 } }],
             "sensor": { "cosmic_rays": { "readout_s": 0.0 } },
         });
         let told = slips(&scenario);

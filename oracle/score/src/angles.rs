@@ -68,12 +68,11 @@ pub fn attitude_word(own: bool, centroids: bool, granted: Option<&str>) -> Optio
 pub fn attitude_note(word: Option<&str>) -> Option<String> {
     match word? {
         "own" => None,
-        "none" => Some(
-            "No answer has a line of sight: RA and Dec have no figures unless an attitude is granted (docs/score.md)."
-                .to_owned(),
-        ),
+        "none" => {
+            Some("No answer has a line of sight: RA and Dec have no figures (docs/score.md).".to_owned())
+        }
         word => Some(format!(
-            "RA and Dec are of lines of sight by the attitude `{word}` (docs/score.md), not all the pipeline's own."
+            "RA and Dec are by the attitude `{word}`, not all the pipeline's own (docs/score.md)."
         )),
     }
 }

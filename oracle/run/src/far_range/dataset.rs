@@ -2,8 +2,8 @@
 
 use contract::{Camera, CameraFrame, Direction, Frame, Telemetry};
 use files::{
-    BeyondSip, CameraFile, Failure, FileError, FrameHeader, ImageFormat, RunDirectory, StarRow, TableWriter,
-    TanSip, TelemetryRow, TelemetryWriter, format_utc, write_frame, write_stars,
+    CameraFile, Failure, FileError, FrameHeader, ImageFormat, RunDirectory, StarRow, TableWriter, TanSip,
+    TelemetryRow, TelemetryWriter, format_utc, write_frame, write_stars,
 };
 use hifitime::Epoch;
 use scenario::FarRangeScenario;
@@ -109,17 +109,14 @@ pub fn save_image(
     Ok(())
 }
 
-/// Whether SIP follows a camera's distortion.
-///
-/// # Errors
-/// [`BeyondSip`] with the radius from which on it does not.
-pub(super) fn check_sip(simulator: &Simulator, camera: &Camera) -> Result<(), BeyondSip> {
+/// The distance from the principal point, px, to which SIP follows a camera's distortion, where that is not the whole detector.
+pub(super) fn sip_reach_px(simulator: &Simulator, camera: &Camera) -> Option<f64> {
     let principal = contract::PixelPoint::new(camera.principal_x_px, camera.principal_y_px);
     let ahead = Direction::from_unit(*Direction::<CameraFrame>::z().vector());
-    let fitted = TanSip::fit(camera.columns, camera.rows, principal, ahead, |direction| {
+    let reach_px = TanSip::reach_px(camera.columns, camera.rows, principal, ahead, |direction| {
         simulator.projection().project(&Direction::from_unit(*direction.vector()))
     });
-    fitted.map_or(Ok(()), |wcs| wcs.sip.map(drop))
+    reach_px.ok().filter(|reach_px| reach_px.is_finite())
 }
 
 /// World coordinates of a frame: from astrometric directions (ICRS) to pixels, aberration folded in.

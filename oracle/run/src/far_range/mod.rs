@@ -138,11 +138,10 @@ impl World for Prepared {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let beyond = dataset::check_sip(&self.simulator, &self.scenario().camera).err().map(|beyond| {
+        let beyond = dataset::sip_reach_px(&self.simulator, &self.scenario().camera).map(|reach_px| {
             format!(
-                "camera.radial, camera.tangential: no SIP follows the distortion beyond {:.0} px from the principal point; FITS \
-                 files are written without it",
-                beyond.radius_px
+                "camera.radial, camera.tangential: no SIP follows the distortion beyond {reach_px:.0} px from the principal point; \
+                 FITS files are written without it"
             )
         });
         beyond.into_iter().collect()
