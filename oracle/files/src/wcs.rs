@@ -63,7 +63,7 @@ pub struct TanSip {
     pub sip: Option<Sip>,
 }
 
-/// Halvings of the detector's half diagonal in the search for the radius that SIP reaches.
+/// Halvings of the detector's size in the search for the radius that SIP reaches.
 const HALVINGS: usize = 8;
 /// The residual at which no higher order is tried: a tenth of what is promised.
 const GOOD_ENOUGH_PX: f64 = 0.001;
@@ -87,7 +87,7 @@ impl TanSip {
         boresight: Direction<Icrs>,
         pixel_from_sky: impl Fn(&Direction<Icrs>) -> Option<PixelPoint>,
     ) -> Result<Self, WcsError> {
-        Self::fit_within(columns, rows, principal, boresight, f64::INFINITY, &pixel_from_sky)
+        Self::fit_part(columns, rows, principal, boresight, 1.0, &pixel_from_sky)
     }
 
     /// The distance from the principal point, px, to which SIP follows a mapping, to some pixels; infinite when that is the whole
@@ -102,30 +102,30 @@ impl TanSip {
         boresight: Direction<Icrs>,
         pixel_from_sky: impl Fn(&Direction<Icrs>) -> Option<PixelPoint>,
     ) -> Result<f64, WcsError> {
-        let follows = |within_px: f64| {
-            let wcs = Self::fit_within(columns, rows, principal, boresight, within_px, &pixel_from_sky)?;
+        let follows = |share: f64| {
+            let wcs = Self::fit_part(columns, rows, principal, boresight, share, &pixel_from_sky)?;
             Ok(wcs.sip.is_some())
         };
-        if follows(f64::INFINITY)? {
+        if follows(1.0)? {
             return Ok(f64::INFINITY);
         }
-        let farthest = grid(columns, rows).map(|[x, y]| principal.distance(PixelPoint::new(x, y)));
-        let (mut reached, mut step) = (0.0, farthest.fold(0.0, f64::max));
+        let (mut reached, mut step) = (0.0, 1.0);
         for _ in 0..HALVINGS {
             step *= 0.5;
             if follows(reached + step)? {
                 reached += step;
             }
         }
-        Ok(reached)
+        let farthest = grid(columns, rows).map(|[x, y]| principal.distance(PixelPoint::new(x, y)));
+        Ok(reached * farthest.fold(0.0, f64::max))
     }
 
-    fn fit_within(
+    fn fit_part(
         columns: usize,
         rows: usize,
         principal: PixelPoint,
         boresight: Direction<Icrs>,
-        within_px: f64,
+        share: f64,
         pixel_from_sky: &impl Fn(&Direction<Icrs>) -> Option<PixelPoint>,
     ) -> Result<Self, WcsError> {
         let center = direction_of_pixel(principal, boresight, pixel_from_sky)?;
@@ -143,29 +143,29 @@ impl TanSip {
             crval_deg: [center.ra().degrees(), center.dec().degrees()],
             crpix: [x, y],
             cd_deg_per_px: [[cd_deg.m11, cd_deg.m12], [cd_deg.m21, cd_deg.m22]],
-            sip: Sip::fit(columns, rows, principal, within_px, |ideal| offset(cd * ideal)),
+            sip: Sip::fit(columns, rows, principal, share, |ideal| offset(cd * ideal)),
         })
     }
 }
 
 impl Sip {
-    /// Fits `distort`, from undistorted offsets from the principal point to distorted ones, px, within a distance from the principal
-    /// point. `None` when order 9 leaves more than 0.01 px, or the distortion is so steep that it is not undone step by step.
+    /// Fits `distort`, from undistorted offsets from the principal point to distorted ones, px, over a part of the detector: it is shrunk
+    /// about the principal point to this share of its size. `None` when order 9 leaves more than 0.01 px, or the distortion is so steep that it is not undone step by step.
     fn fit(
         columns: usize,
         rows: usize,
         principal: PixelPoint,
-        within_px: f64,
+        share: f64,
         distort: impl Fn(Vector2<f64>) -> Option<Vector2<f64>>,
     ) -> Option<Self> {
         let offsets = grid(columns, rows).map(|[x, y]| Vector2::new(x - principal.x, y - principal.y));
         let samples = offsets
-            .filter(|distorted| distorted.norm() <= within_px)
+            .map(|offset| offset * share)
             .map(|distorted| Some(Sample { distorted, ideal: undistort(distorted, &distort)? }))
             .collect::<Option<Vec<_>>>()?;
 
         // A scale of one at the border keeps the powers of the fit near one.
-        let scale = columns.max(rows) as f64;
+        let scale = columns.max(rows) as f64 * share;
         let mut best: Option<Self> = None;
         for order in 3..=9 {
             let forward = Distortion::fit(&samples, 2, order, scale, |s| (s.distorted, s.ideal));
