@@ -106,7 +106,7 @@ impl ScenarioSource {
         scenario
     }
 
-    /// The same scenario with other values, from [`AnyScenario::to_json`](crate::AnyScenario::to_json), and another seed. `label` is what mistakes are told of.
+    /// The same scenario with other values, from [`AnyScenario::to_json`], and another seed. `label` is what mistakes are told of.
     ///
     /// # Errors
     /// A [`Failure`] with the path of a value of the wrong type, or of one that there is not.

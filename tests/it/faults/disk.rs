@@ -49,7 +49,7 @@ fn check_stopped_anywhere(bench: &Bench, making: &str, reader: &str) -> u32 {
         } else {
             stopped += 1;
             check_no_room(&output, "short");
-            for (path, bytes) in whole_files(&bench, "short") {
+            for (path, bytes) in whole_files(bench, "short") {
                 let is_image = path.starts_with("frames");
                 assert!(
                     is_image || whole[&path] == bytes,
