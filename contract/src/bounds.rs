@@ -22,10 +22,18 @@ pub struct OutOfRange {
     pub expected: String,
 }
 
+/// Longest number, in letters, that is shown without an exponent.
+const LONGEST_NUMBER: usize = 24;
+
 impl OutOfRange {
     /// The refusal of `value` at `path`.
     pub fn new(path: impl Into<String>, value: impl ToString, expected: impl Into<String>) -> Self {
-        Self { path: path.into(), value: value.to_string(), expected: expected.into() }
+        let value = value.to_string();
+        // 1e300, and not a line of zeros.
+        let long =
+            Some(&value).filter(|text| text.len() > LONGEST_NUMBER).and_then(|text| text.parse::<f64>().ok());
+        let value = long.map_or(value, |number| format!("{number:e}"));
+        Self { path: path.into(), value, expected: expected.into() }
     }
 
     /// The same in a table of a file.

@@ -62,7 +62,7 @@ pub(super) struct PipelineOptions {
     pub(super) memory_mb: u64,
     /// Let an `exec:` pipeline read the system, the files beside it and its frames, write temporary files, and nothing else: no truth, no
     /// scenario, no run, no network. Refused where the kernel has no Landlock
-    #[arg(long)]
+    #[arg(long, requires = "pipeline")]
     pub(super) sandbox: bool,
     /// A file or folder that an `exec:` pipeline may read in its sandbox as well; may be given for several
     #[arg(long, value_name = "PATH", requires = "sandbox")]
@@ -114,6 +114,7 @@ pub(super) struct AttitudeOption {
 pub(super) fn place() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|word| match word.to_str() {
         Some("-") => Err("expected a name: only docking's `render` and `process` write to standard output (`./-` is a file)"),
+        Some("") => Err("expected a name"),
         _ => Ok(PathBuf::from(word)),
     })
 }

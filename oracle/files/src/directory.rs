@@ -45,6 +45,9 @@ impl RunDirectory {
     /// it cannot be made or written to.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         let taken = |reason| FileError::OutputTaken { path: path.to_owned(), reason };
+        if path.as_os_str().is_empty() {
+            return Err(taken("an empty name is no directory"));
+        }
         match fs::read_dir(path) {
             Ok(mut entries) => {
                 if entries.next().is_some() {

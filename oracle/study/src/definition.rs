@@ -110,6 +110,10 @@ impl Study {
             let at = |field: &str| format!("vary[{i}].{field}");
             let checked = dispersion.law.check(&at("law"));
             checked.map_err(|error| toml_file::out_of_range(path, &text, &error))?;
+            if let Law::Choice { values, .. } = &dispersion.law {
+                check_finite(values)
+                    .map_err(|(k, message)| refuse(&at(&format!("law.values[{k}]")), message))?;
+            }
             let varied = Varied::new(&dispersion.path, &dispersion.law, &folder, &base_values)
                 .map_err(|(field, message)| refuse(&at(field), message))?;
             check_free(&mut taken, &varied.path).map_err(|message| refuse(&at("path"), message))?;
@@ -125,6 +129,8 @@ impl Study {
             if swept.values.is_empty() {
                 return Err(refuse(&at("values"), "is [], expected one value or more".to_owned()));
             }
+            check_finite(&swept.values)
+                .map_err(|(k, message)| refuse(&at(&format!("values[{k}]")), message))?;
             sweep.push(Swept { path: value_path, values: swept.values.clone() });
         }
 
@@ -454,6 +460,12 @@ impl Varied {
 
 /// What is wrong with an entry: the field, and why.
 type Problem = (&'static str, String);
+
+/// Refuses numbers that are none: JSON, in which values are kept, has null for them.
+fn check_finite(values: &[Value]) -> Result<(), (usize, String)> {
+    let message = || "is not finite, expected a finite number or another value".to_owned();
+    values.iter().position(Value::is_null).map_or(Ok(()), |place| Err((place, message())))
+}
 
 fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String> {
     if path.text().split('.').next().is_some_and(|first| NOT_VARIED.contains(&first)) {

@@ -72,8 +72,14 @@ impl ElementsConfig {
     pub fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "orbit.target")?;
         let perigee_km = self.semi_major_axis_km * (1.0 - self.eccentricity);
-        let path = "perigee radius of orbit.target (km)";
-        require(path, perigee_km, "at least 6478.1363", |p| p >= MIN_PERIGEE_KM)
+        let expected = format!(
+            "with an eccentricity of {} at least {}, so that the perigee radius is {MIN_PERIGEE_KM:.4} km or more",
+            self.eccentricity,
+            MIN_PERIGEE_KM / (1.0 - self.eccentricity)
+        );
+        require("orbit.target.semi_major_axis_km", self.semi_major_axis_km, expected, |_| {
+            perigee_km >= MIN_PERIGEE_KM
+        })
     }
 
     /// The same elements in radians.

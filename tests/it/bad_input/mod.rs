@@ -5,6 +5,7 @@ mod catalogues;
 #[cfg(unix)]
 mod devices;
 mod docking;
+mod further;
 mod images;
 mod measurements;
 mod output;

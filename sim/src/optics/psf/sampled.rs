@@ -91,6 +91,7 @@ fn matrix(text: &str) -> Result<(Vec<f64>, usize), String> {
     if CELLS.contains(&rows) {
         Ok((light, columns))
     } else {
-        Err(format!("it has {rows} rows or more, expected {} to {}", CELLS.start(), CELLS.end()))
+        let more = if rows > *CELLS.end() { " or more" } else { "" };
+        Err(format!("it has {rows} rows{more}, expected {} to {}", CELLS.start(), CELLS.end()))
     }
 }
