@@ -108,12 +108,12 @@ impl Study {
         let mut taken: Vec<ValuePath> = Vec::new();
         for (i, dispersion) in file.vary.iter().enumerate() {
             let at = |field: &str| format!("vary[{i}].{field}");
-            let checked = dispersion.law.check(&at("law"));
-            checked.map_err(|error| toml_file::out_of_range(path, &text, &error))?;
             if let Law::Choice { values, .. } = &dispersion.law {
                 check_finite(values)
                     .map_err(|(k, message)| refuse(&at(&format!("law.values[{k}]")), message))?;
             }
+            let checked = dispersion.law.check(&at("law"));
+            checked.map_err(|error| toml_file::out_of_range(path, &text, &error))?;
             let varied = Varied::new(&dispersion.path, &dispersion.law, &folder, &base_values)
                 .map_err(|(field, message)| refuse(&at(field), message))?;
             check_free(&mut taken, &varied.path).map_err(|message| refuse(&at("path"), message))?;

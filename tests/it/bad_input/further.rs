@@ -83,7 +83,7 @@ fn texts_that_are_no_scenario() {
     let utf16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
     for (content, part) in [
         (Vec::new(), "missing field `title`"),
-        (utf16, "valid UTF-8"),
+        (utf16, "s.toml:1:2"),
         (format!("{text}\0").into_bytes(), "s.toml:"),
         (format!("a = {}{}", "[".repeat(20_000), "]".repeat(20_000)).into_bytes(), "recursion"),
         (format!("a = {}1{}", "{a=".repeat(5000), "}".repeat(5000)).into_bytes(), "recursion"),
