@@ -1,8 +1,12 @@
 //! The verification of requirements: each by the analytic law, and by simulated frames.
 use std::cell::RefCell;
+use std::path::Path;
 use std::rc::Rc;
 
-use files::Failure;
+use files::{Failure, file_sha256};
+use scenario::run_file::FileDigests;
+use sim::catalog::CatalogSource;
+use sim::optics::PsfConfig;
 use statistics::clopper_pearson;
 
 use super::binding::binding_of;
@@ -58,6 +62,7 @@ pub fn assess(requirements: &Requirements, progress: impl Fn(&str)) -> Result<Vi
         name: requirements.name.clone(),
         title: file.title.clone(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        files: digests(requirements)?,
         camera: curves::camera_figures(requirements, &design)?,
         requirements: verdicts,
         detection_simulated: curves::detection_simulated(&frames, &detection),
@@ -412,4 +417,21 @@ pub fn digits(value: f64) -> String {
     }
     let places = (2.0 - libm::log10(size).floor()).clamp(0.0, 9.0) as usize;
     format!("{value:.places$}")
+}
+
+/// The content of the files that a camera reads.
+fn digests(requirements: &Requirements) -> Result<FileDigests, Failure> {
+    let mut digests = FileDigests::new();
+    let catalog = match &requirements.camera.catalog.source {
+        CatalogSource::File(path) => Some(("catalog.source", path)),
+        CatalogSource::Hipparcos2 => None,
+    };
+    let psf = match &requirements.camera.psf {
+        PsfConfig::Sampled { path, .. } => Some(("psf.path", path)),
+        _ => None,
+    };
+    for (role, path) in catalog.into_iter().chain(psf) {
+        digests.extend(file_sha256(Path::new(path))?.map(|sha256| (role.to_owned(), sha256)));
+    }
+    Ok(digests)
 }

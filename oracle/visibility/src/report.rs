@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use scenario::run_file::FileDigests;
 use serde::{Deserialize, Serialize};
 
 /// The answer to a file of requirements.
@@ -13,6 +14,9 @@ pub struct VisibilityReport {
     pub title: String,
     /// Version of Boresight that answered.
     pub version: String,
+    /// The files that the camera reads: SHA-256 by role, as in `run.toml`.
+    #[serde(default, skip_serializing_if = "FileDigests::is_empty")]
+    pub files: FileDigests,
     /// The camera, in figures.
     pub camera: CameraFigures,
     /// The verification table.
