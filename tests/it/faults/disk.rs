@@ -236,7 +236,7 @@ fn a_study_on_a_full_disk_is_gone_on_with_on_a_larger_one() {
             stopped += 1;
             check_no_room(&output, "disk/out");
         }
-        for (path, bytes) in bench.tree("disk/out") {
+        for (path, bytes) in whole_files(&bench, "disk/out") {
             assert!(bench.tree("whole")[&path] == bytes, "{kilobytes} kB: {} is not whole", path.display());
         }
     }
