@@ -79,7 +79,7 @@ pub use frame_file::{ImageFormat, read_frame, write_frame};
 pub use frame_header::FrameHeader;
 pub use lines::Lines;
 pub use measurements::{MeasurementWriter, read_measurements};
-pub use origin::{AnswerOrigin, read_origins};
+pub use origin::{AnswerOrigin, line_of, read_origins};
 pub use parquet_file::ParquetFile;
 pub use parquet_table::{Row, TableReader, TableWriter};
 pub use parquet_writer::{TableOptions, write_table};

@@ -30,6 +30,18 @@ pub struct AnswerOrigin {
     pub configuration: Option<String>,
 }
 
+/// The line of a CSV on which the row of a number is; `column` is that of the numbers. For the message of a row that does not belong there.
+pub fn line_of(path: &Path, column: &str, number: u64) -> Option<u64> {
+    let file = Lines::new(open_regular(path).ok()?);
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
+    let position = reader.headers().ok()?.iter().position(|name| name == column)?;
+    let is_of_number = |record: &csv::StringRecord| {
+        record.get(position)?.parse().ok().filter(|found: &u64| *found == number)
+    };
+    let record = reader.records().map_while(Result::ok).find(|record| is_of_number(record).is_some())?;
+    record.position().map(csv::Position::line)
+}
+
 /// Reads the origins that a table of answers has; none where it has neither column. `frame` is the column of the numbers.
 ///
 /// # Errors

@@ -4,7 +4,7 @@ use std::iter::Peekable;
 use std::path::Path;
 use std::vec::IntoIter;
 
-use files::Failure;
+use files::{Failure, line_of};
 
 /// Rows in ascending order of their numbers, which must all be numbers of the truth.
 pub(crate) struct ByNumber<'a, T> {
@@ -42,8 +42,10 @@ impl<'a, T> ByNumber<'a, T> {
     }
 
     fn foreign(&self, number: u64) -> Failure {
+        let line =
+            line_of(self.path, self.key, number).map(|line| format!(", line {line}")).unwrap_or_default();
         Failure::Usage(format!(
-            "{}: `{key}` is `{number}`, expected a {key} of {}",
+            "{}{line}: `{key}` is `{number}`, expected a {key} of {}",
             self.path.display(),
             self.truth.display(),
             key = self.key

@@ -159,3 +159,14 @@ fn words_of_the_command_line_and_of_studies() {
         check_refused(&bench, "study check study.toml", parts);
     }
 }
+
+#[test]
+fn a_row_of_a_frame_that_the_truth_lacks_has_its_line() {
+    let bench = super::dataset();
+    bench.write("mine.csv", "frame,status,x_px,y_px\n20,no_target,,\n99,no_target,,\n");
+    check_refused(
+        &bench,
+        "score set mine.csv",
+        &["mine.csv, line 3", "`frame` is `99`", "truth/frames.parquet"],
+    );
+}
