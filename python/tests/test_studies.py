@@ -102,13 +102,23 @@ def test_the_same_callable_goes_on_and_another_is_refused(study, tmp_path):
             boresight.study(study, pipeline=other, out=tmp_path / "out")
 
 
-def test_what_is_no_exception_ends_the_study_and_leaves_nothing_of_it(study, tmp_path):
-    def leaving(frame, telemetry):
-        raise SystemExit(3)
+def test_what_is_no_exception_ends_the_study_and_keeps_its_finished_cases(study, tmp_path):
+    asked = []
 
+    def leaving(frame, telemetry):
+        asked.append(frame.number)
+        if len(asked) == 4 + 3:
+            raise SystemExit(3)
+        return None
+
+    out = tmp_path / "out"
     with pytest.raises(SystemExit):
-        boresight.study(study, pipeline=leaving, out=tmp_path / "out")
-    assert not list(tmp_path.glob("out/shards/*")) and not (tmp_path / "out/cases.parquet").exists()
+        boresight.study(study, pipeline=leaving, out=out, jobs=1)
+    assert [path.suffix for path in (out / "shards").iterdir()] == [".journal"] and not (out / "cases.parquet").exists()
+
+    result = boresight.study(study, pipeline=leaving, out=out, jobs=1)
+    assert len(asked) == 7 + 5 * 4, "only the case that was ended and those after it run"
+    assert result.summary["failed_cases"] == 0 and not list(out.glob("shards/*.journal"))
 
 
 @pytest.mark.parametrize("wrong", [3, "far-range", "exec:", "docking"])
