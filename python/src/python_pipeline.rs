@@ -2,6 +2,7 @@
 //! (`pipeline::external`), and its answers are read by the same code.
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use contract::docking::Docking;
 use contract::{ContractError, FarRange, Pipeline, PipelineFactory};
@@ -82,6 +83,9 @@ impl PythonPipeline {
         question: impl FnOnce(Python<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>)>,
     ) -> Result<String, String> {
         let callable = self.callable.as_ref().map_err(Clone::clone)?;
+        if self.ended.flag().load(Ordering::Relaxed) {
+            return Err("the work was ended".to_owned());
+        }
         Python::attach(|py| {
             let asked = question(py).and_then(|(frame, telemetry)| callable.call1(py, (frame, telemetry)));
             let answer = asked.map_err(|error| reason(py, error, &self.ended))?;

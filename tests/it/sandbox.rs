@@ -97,3 +97,44 @@ fn a_path_to_be_read_needs_a_sandbox() {
     let words = "run argon --frames 0..1 --out out --pipeline exec:true --sandbox-read .";
     bench.boresight(words).refused(&["--sandbox"]);
 }
+
+/// Runs its arguments where the kernel knows no Landlock: a seccomp filter answers `landlock_create_ruleset` with ENOSYS.
+const WITHOUT_LANDLOCK: &str = r#"
+import ctypes, os, struct, sys
+
+LOAD, EQUAL, RETURN = 0x20, 0x15, 0x06
+CREATE_RULESET, ENOSYS = 444, 38
+steps = [(LOAD, 0, 0, 0), (EQUAL, 0, 1, CREATE_RULESET), (RETURN, 0, 0, 0x00050000 | ENOSYS), (RETURN, 0, 0, 0x7FFF0000)]
+code = ctypes.create_string_buffer(b"".join(struct.pack("HBBI", *step) for step in steps))
+
+class Program(ctypes.Structure):
+    _fields_ = [("length", ctypes.c_ushort), ("code", ctypes.c_void_p)]
+
+libc = ctypes.CDLL(None, use_errno=True)
+assert libc.prctl(38, 1, 0, 0, 0) == 0, "PR_SET_NO_NEW_PRIVS"
+filter = Program(len(steps), ctypes.addressof(code))
+assert libc.prctl(22, 2, ctypes.byref(filter), 0, 0) == 0, "PR_SET_SECCOMP"
+os.execv(sys.argv[1], sys.argv[1:])
+"#;
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_kernel_that_cannot_enforce_it_ends_the_command() {
+    let bench = Bench::new();
+    bench.scenario("sky.toml", "starting-point", |_| {});
+    bench.write("without.py", WITHOUT_LANDLOCK);
+    bench.write("own.py", "");
+    let run = |more: &[&str]| {
+        let mut command = std::process::Command::new("python3");
+        command.arg("without.py").arg(env!("CARGO_BIN_EXE_boresight")).current_dir(bench.path(""));
+        command.args(["run", "sky.toml", "--frames", "0..2", "--no-report"]).args(more);
+        command.output().unwrap()
+    };
+    let refused = run(&["--out", "out", "--sandbox", "--pipeline", "exec:python3 own.py"]);
+    let told = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{told}");
+    assert!(told.contains("Landlock"), "{told}");
+    assert!(!bench.path("out").exists());
+    // The filter refuses nothing else.
+    assert_eq!(run(&["--out", "out"]).status.code(), Some(0));
+}

@@ -6,9 +6,10 @@ use std::path::Path;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use contract::OutOfRange;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+use toml::{Spanned, Value};
 
 /// A mistake in a TOML file, with its place.
 #[derive(Debug)]
@@ -83,13 +84,41 @@ pub fn read_text(file: &Path) -> std::io::Result<String> {
 ///
 /// # Errors
 /// A [`TomlError`] for text that is not TOML, a key that does not exist, a value of the wrong type or a key missing.
-pub fn parse<T: DeserializeOwned>(file: &Path, text: &str) -> Result<T, Box<TomlError>> {
-    sim::exact_toml::from_str(text).map_err(|error| {
+pub fn parse<T: DeserializeOwned + Serialize>(file: &Path, text: &str) -> Result<T, Box<TomlError>> {
+    let refused = |error: toml::de::Error| {
         let span = error.span().filter(|span| !is_whole(span, text));
         let path = span.as_ref().and_then(|span| path_of(text, span)).unwrap_or_default();
         let message = error.message().trim().to_owned();
         Box::new(TomlError::new(file, text, span.unwrap_or(0..0), path, message))
-    })
+    };
+    let value = sim::exact_toml::from_str(text).map_err(refused)?;
+    let found: Value = toml::from_str(text).map(Value::Table).map_err(refused)?;
+    let meant = Value::try_from(&value).ok();
+    match meant.and_then(|meant| array_for_table(&found, &meant)) {
+        None => Ok(value),
+        Some(path) => Err(refuse(file, text, &path, "is an array, expected a table".to_owned())),
+    }
+}
+
+/// The dotted path of the first array of a file that was read as a table with its values in the order of the keys: serde's tagged enums
+/// allow it where [`sim::exact_toml`] does not see it.
+fn array_for_table(found: &Value, meant: &Value) -> Option<String> {
+    match (found, meant) {
+        (Value::Array(_), Value::Table(_)) => Some(String::new()),
+        (Value::Table(found), Value::Table(meant)) => found.iter().find_map(|(key, value)| {
+            let path = array_for_table(value, meant.get(key)?)?;
+            let joint = if path.is_empty() || path.starts_with('[') { "" } else { "." };
+            Some(format!("{key}{joint}{path}"))
+        }),
+        (Value::Array(found), Value::Array(meant)) => {
+            found.iter().zip(meant).enumerate().find_map(|(index, (found, meant))| {
+                let path = array_for_table(found, meant)?;
+                let joint = if path.is_empty() || path.starts_with('[') { "" } else { "." };
+                Some(format!("[{index}]{joint}{path}"))
+            })
+        }
+        _ => None,
+    }
 }
 
 /// A value that was read but is not allowed: `path` is its dotted path, as in `sensor.gain_e_per_dn` or
@@ -209,32 +238,35 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 
 #[cfg(test)]
 mod tests {
-    use serde::Deserialize;
+    use serde::{Deserialize, Serialize};
 
     use super::*;
 
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
-    #[allow(dead_code, reason = "read by serde only")]
     struct Outer {
         sensor: Sensor,
         mode: Option<Mode>,
     }
 
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
-    #[allow(dead_code, reason = "read by serde only")]
     struct Sensor {
         gain_e_per_dn: f64,
         bits: Option<u8>,
     }
 
-    #[derive(Debug, Deserialize)]
+    #[derive(Debug, Serialize, Deserialize)]
     #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-    #[allow(dead_code, reason = "read by serde only")]
     enum Mode {
         Fixed { exposure_s: f64 },
         Automatic { min_s: f64 },
+        Lamps { lamps: Vec<Lamp>, spare: Option<Lamp> },
+    }
+
+    #[derive(Debug, Serialize, Deserialize)]
+    struct Lamp {
+        power_w: f64,
     }
 
     fn fail(text: &str) -> TomlError {
@@ -262,6 +294,19 @@ mod tests {
         let error = fail("[sensor]\ngain_e_per_dn = 2.0\n\n[mode]\nkind = \"fixed\"\nexposure = 1.0\n");
         assert!((4..=6).contains(&error.line), "{error}");
         assert_eq!(error.help.as_deref(), Some("did you mean `exposure_s`?"), "{error}");
+    }
+
+    #[test]
+    fn an_array_is_no_table_inside_a_tagged_table_either() {
+        for (text, place, path) in [
+            ("mode = ['fixed', 1.0]", (3, 8), "mode"),
+            ("mode = { kind = 'lamps', lamps = [{ power_w = 1 }, [2]] }", (3, 52), "mode.lamps[1]"),
+            ("mode = { kind = 'lamps', lamps = [], spare = [2] }", (3, 46), "mode.spare"),
+        ] {
+            let error = fail(&format!("sensor.gain_e_per_dn = 2.0\n\n{text}\n"));
+            assert_eq!(((error.line, error.column), &*error.path), (place, path), "{error}");
+            assert_eq!(error.message, "is an array, expected a table");
+        }
     }
 
     #[test]

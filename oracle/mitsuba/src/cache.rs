@@ -1,4 +1,6 @@
 //! Images by what they are images of.
+
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use files::sha256::hex;
@@ -8,6 +10,11 @@ use sim::mitsuba::SceneFiles;
 use sim::vector::RadianceImage;
 
 use super::{MitsubaError, VARIANT, VERSION};
+
+/// How the names of folders for renderings begin.
+const RENDER: &str = "render-";
+/// The file in such a folder that its process locks.
+const LOCK: &str = "in-use";
 
 /// A folder of images. Several processes may use it at once: an image gets its name when it is complete, and two that
 /// make the same one make the same bits.
@@ -50,16 +57,46 @@ impl Cache {
         self.folder.join(hex(hash.finalize()) + ".exr")
     }
 
-    /// A fresh folder beside the images, gone when it is dropped.
+    /// A fresh folder beside the images, gone when it is dropped. Those of processes that were killed are removed first.
     ///
     /// # Errors
     /// [`FileError::Io`] when it cannot be made.
-    pub(super) fn workshop(&self) -> Result<tempfile::TempDir, FileError> {
-        tempfile::Builder::new().prefix("render-").tempdir_in(&self.folder).map_err(|source| FileError::Io {
-            path: self.folder.clone(),
-            doing: "create a folder in",
-            source,
-        })
+    pub(super) fn workshop(&self) -> Result<Workshop, FileError> {
+        let io = |source| FileError::Io { path: self.folder.clone(), doing: "create a folder in", source };
+        self.remove_abandoned();
+        let folder = tempfile::Builder::new().prefix(RENDER).tempdir_in(&self.folder).map_err(io)?;
+        // Other processes see the file when it is locked.
+        let unseen = folder.path().join("locking");
+        let lock = File::create(&unseen).map_err(io)?;
+        lock.try_lock().map_err(|error| io(error.into()))?;
+        std::fs::rename(unseen, folder.path().join(LOCK)).map_err(io)?;
+        Ok(Workshop { folder, _lock: lock })
+    }
+
+    /// Removes the folders that no process holds the lock of. That it cannot be done is no matter: nothing reads them.
+    fn remove_abandoned(&self) {
+        let entries = std::fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        for path in entries.map(|entry| entry.path()) {
+            let is_render = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(RENDER));
+            let is_free = || File::open(path.join(LOCK)).is_ok_and(|lock| lock.try_lock().is_ok());
+            if is_render && is_free() {
+                let _ = std::fs::remove_dir_all(path);
+            }
+        }
+    }
+}
+
+/// A folder for one rendering. The lock, which ends with the process, tells other processes that it is in use.
+pub(super) struct Workshop {
+    // Dropped first: the lock holds until the folder is gone.
+    folder: tempfile::TempDir,
+    _lock: File,
+}
+
+impl Workshop {
+    /// Where it is.
+    pub(super) fn path(&self) -> &Path {
+        self.folder.path()
     }
 }
 
@@ -92,4 +129,30 @@ fn users_own() -> PathBuf {
         .or_else(|| variable("HOME").map(|home| home.join(".cache")))
         .unwrap_or_else(std::env::temp_dir)
         .join("boresight/mitsuba")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_of_killed_processes_are_removed_and_those_in_use_are_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let cache = Cache::open(Some(folder.path())).unwrap();
+        let abandoned = folder.path().join("render-abc");
+        std::fs::create_dir(&abandoned).unwrap();
+        for file in [LOCK, "scene.xml"] {
+            std::fs::write(abandoned.join(file), "").unwrap();
+        }
+        std::fs::write(folder.path().join("0123.exr"), "").unwrap();
+
+        let first = cache.workshop().unwrap();
+        assert!(!abandoned.exists());
+        let second = cache.workshop().unwrap();
+        assert!(first.path().exists() && second.path().exists());
+        drop((first, second));
+        let left: Vec<_> =
+            std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(left, ["0123.exr"]);
+    }
 }

@@ -5,7 +5,7 @@ use contract::Camera;
 use files::{Failure, toml_file};
 use run::ScenarioSource;
 use scenario::{BUILT_IN, BuiltIn, CAMERAS, FarRangeScenario};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use sim::SimError;
 use sim::optics::{PsfConfig, RadiometryConfig};
 use sim::scene::TargetConfig;
@@ -36,7 +36,7 @@ pub struct Requirements {
 }
 
 /// The tables of a built-in camera.
-#[derive(Deserialize)]
+#[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Preset {
     camera: Camera,

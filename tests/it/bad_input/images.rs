@@ -126,6 +126,20 @@ fn an_exr_file_cut_short_is_refused() {
     check("exr", |bytes| bytes[..bytes.len() / 2].to_vec(), &["not a readable"]);
 }
 
+#[test]
+fn an_exr_header_of_another_size_is_refused_before_anything_is_decoded() {
+    let claiming = |mut bytes: Vec<u8>| {
+        for window in ["dataWindow\0box2i\0", "displayWindow\0box2i\0"] {
+            let name = bytes.windows(window.len()).position(|part| part == window.as_bytes()).unwrap();
+            // After the name the length of the value, then x and y of the first and the last pixel.
+            let last = name + window.len() + 4 + 8;
+            bytes[last..last + 8].copy_from_slice(&[16383_i32.to_le_bytes(); 2].concat());
+        }
+        bytes
+    };
+    check("exr", claiming, &["16384 × 16384", "752 × 580"]);
+}
+
 fn png(image: impl Into<image::DynamicImage>) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     image.into().write_to(&mut bytes, image::ImageFormat::Png).unwrap();
