@@ -1,7 +1,9 @@
 //! What a person reads of a study.
+use std::collections::HashMap;
+
 use comfy_table::{Attribute, Cell};
 use score::{FigureLabel, Kind, attitude_note, sense};
-use study::{CaseFigure, CaseRow, Estimate, Study, Summary, overall};
+use study::{CaseFigure, CaseRow, Estimate, Study, Summary, Waited, overall};
 
 use crate::table::far_range::{finish, percent, plain_table};
 
@@ -29,16 +31,26 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
             show(&figure.p95),
         ]);
     }
-    let stopped = if summary.is_narrow_enough { ", stopped as its figure was known well enough" } else { "" };
-    let mut text = format!("{}: {} cases of {}{stopped}\n", summary.study, summary.cases, summary.of);
+    let stopped = match summary.waited {
+        Some(Waited::NarrowEnough) => ", stopped as its figure was known well enough",
+        _ => "",
+    };
+    let draws = if summary.sweep.is_empty() { String::new() } else { format!(" ({} draws)", summary.draws) };
+    let mut text = format!("{}: {} cases of {}{draws}{stopped}\n", summary.study, summary.cases, summary.of);
+    if summary.waited == Some(Waited::NearlyConstant) {
+        text.push_str(
+            "The figure of `until` is the same in nearly every draw: how much it scatters is not known, and the study did not stop for it. \
+             A figure that varies can be waited for.\n",
+        );
+    }
     if summary.failed_cases > 0 {
         let cases = summary.failed_cases;
         text.push_str(&format!("In {cases} of them the pipeline itself failed: it crashed, gave no answer in time, or none that can be read.\n"));
     }
     text.push_str(&finish(table));
     text.push_str(
-        "Intervals are of 95 %. All together: rates over all frames (Wilson, by the scatter between cases), other figures the mean of the\n\
-         cases (bootstrap). Quantiles are of the cases, theirs by bootstrap.\n",
+        "Intervals are of 95 %, over independent draws. All together: rates over all frames (Wilson, by the scatter between draws), other\n\
+         figures the mean of the cases (Student's t). Quantiles are of the cases (order statistics; none of too few draws).\n",
     );
     if let Some(note) = attitude_note(summary.attitude.as_deref()) {
         text.push_str(&format!("{note}\n"));
@@ -56,11 +68,14 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         }
         text.push('\n');
         text.push_str(&finish(table));
+        text.push_str(&differences(summary, styled));
     }
     let of_figure = summary.correlations.iter().filter(|c| &c.figure == by).take(SHOWN);
     let rows: Vec<[String; 3]> = of_figure
         .map(|c| {
-            let interval = format!("{:+.2} to {:+.2}", c.low, c.high);
+            let interval = c.low.zip(c.high);
+            let interval =
+                interval.map_or("–".to_owned(), |(low, high)| format!("{low:+.2} to {high:+.2}"));
             [c.parameter.clone(), format!("{:+.2}", c.correlation), interval]
         })
         .collect();
@@ -104,13 +119,57 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     text
 }
 
+/// What each step of the sweep changes of the figure by which cases are good or bad; empty where nothing can be compared.
+fn differences(summary: &Summary, styled: bool) -> String {
+    let by = &summary.worst_by;
+    let mut table = plain_table(styled);
+    let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
+    table.set_header([&format!("change of {}", label(by)), "from", "to", "difference", "draws"].map(bold));
+    let mut is_empty = true;
+    for step in summary.differences.iter().filter(|step| &step.figure == by).take(SHOWN) {
+        let changed = step.from.iter().find(|(path, from)| step.to.get(*path) != Some(from));
+        let Some((path, from)) = changed else { continue };
+        let to = step.to.get(path).map_or("", String::as_str);
+        let others = step.from.iter().filter(|(other, _)| *other != path);
+        let at: String = others.map(|(path, value)| format!(", {path} = {value}")).collect();
+        table.add_row([
+            format!("{path}{at}"),
+            from.clone(),
+            to.to_owned(),
+            shown_difference(by, &step.difference),
+            step.draws.to_string(),
+        ]);
+        is_empty = false;
+    }
+    if is_empty { String::new() } else { format!("\n{}", finish(table)) }
+}
+
+/// A difference of two figures with its interval; of rates in points of a percent.
+fn shown_difference(name: &str, estimate: &Estimate) -> String {
+    let is_rate = sense(name).kind == Kind::Rate;
+    let one = |value: f64| {
+        if is_rate { format!("{:+.2}", 100.0 * value) } else { signed(name, value) }
+    };
+    let unit = if is_rate { " points" } else { "" };
+    let interval = estimate.low.zip(estimate.high);
+    let interval = interval.map_or(String::new(), |(low, high)| format!(" ({} to {})", one(low), one(high)));
+    format!("{}{unit}{interval}", one(estimate.value))
+}
+
+fn signed(name: &str, value: f64) -> String {
+    let sign = if value < 0.0 { "" } else { "+" };
+    format!("{sign}{}", number(name, value))
+}
+
 /// A figure of the cases so far, in a few words: estimated anew after each twentieth more of them, so that it costs little however many
 /// there are.
 pub struct LiveFigure {
     name: String,
     column: Option<usize>,
-    seed: u64,
     cases: Vec<CaseFigure>,
+    /// The number of each case's draw, and of each draw that of its seed.
+    draws: Vec<usize>,
+    seeds: HashMap<u64, usize>,
     next: usize,
 }
 
@@ -118,17 +177,19 @@ impl LiveFigure {
     /// Of a study, before its first case.
     pub fn new(study: &Study, name: String) -> Self {
         let column = study.figures().iter().position(|figure| *figure == name);
-        Self { name, column, seed: study.file.seed, cases: Vec::new(), next: 1 }
+        Self { name, column, cases: Vec::new(), draws: Vec::new(), seeds: HashMap::new(), next: 1 }
     }
 
     /// Adds a case; what is to be shown now, if it is to be shown anew.
     pub fn add(&mut self, row: &CaseRow) -> Option<String> {
         self.cases.push(*row.figures.get(self.column?)?);
+        let draw = self.seeds.len();
+        self.draws.push(*self.seeds.entry(row.seed).or_insert(draw));
         if self.cases.len() < self.next {
             return None;
         }
         self.next = self.cases.len() + (self.cases.len() / 20).max(1);
-        let estimate = overall(&self.name, &self.cases, self.seed, 0);
+        let estimate = overall(&self.name, &self.cases, &self.draws);
         Some(format!("{} {}", label(&self.name), shown(&self.name, estimate.as_ref())))
     }
 }

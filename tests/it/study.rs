@@ -171,6 +171,15 @@ fn a_sweep_has_the_same_draws_at_each_of_its_points() {
     let points = summary["sweep"].as_array().unwrap();
     assert_eq!(points.len(), 2);
     assert!(points.iter().all(|point| point["cases"] == 3));
+    assert_eq!(summary["draws"], 3);
+    // Both points of three draws: each figure once, and no interval of so few.
+    let steps = summary["differences"].as_array().unwrap();
+    let step = steps.iter().find(|step| step["figure"] == "stars_mean").unwrap();
+    assert_eq!((&step["draws"], &step["low"]), (&3.into(), &Value::Null));
+    let [from, to] = ["from", "to"].map(|end| step[end]["sensor.read_noise_e"].as_str().unwrap());
+    assert_eq!((from, to), ("5", "30"));
+    let at = |point: usize| points[point]["figures"]["stars_mean"]["all"]["value"].as_f64().unwrap();
+    assert!((step["value"].as_f64().unwrap() - (at(1) - at(0))).abs() < 1e-9, "{step}");
     let rows = rows(&bench, "out");
     let cell = |row: &str, name: &str| -> String {
         row.split(&format!("{name}: ")).nth(1).unwrap().split([',', '}']).next().unwrap().to_owned()
@@ -188,26 +197,32 @@ fn a_sweep_has_the_same_draws_at_each_of_its_points() {
 #[test]
 fn a_study_stops_when_its_figure_is_known_well_enough() {
     let bench = bench();
-    let until = |half_width: &str| {
-        let until = format!("cases = 12\nuntil = {{ figure = \"hit_rate\", half_width = {half_width} }}");
+    let until = |figure: &str, half_width: &str| {
+        let until = format!("cases = 24\nuntil = {{ figure = \"{figure}\", half_width = {half_width} }}");
         STUDY.replace("cases = 6", &until)
     };
-    bench.write("wide.toml", until("0.5"));
-    bench.write("narrow.toml", until("0.001"));
+    bench.write("wide.toml", until("stars_mean", "100.0"));
+    bench.write("narrow.toml", until("stars_mean", "1e-6"));
+    // Every target is hit: the interval is narrow, and the scatter is not known.
+    bench.write("constant.toml", until("hit_rate", "0.2"));
     let cases = |name: &str, shards: u32| {
         let words = format!("study run {name}.toml --out {name}-{shards} --shards {shards} --json");
         let summary = bench.boresight(&words).done().json();
-        (summary["cases"].as_u64().unwrap(), summary["is_narrow_enough"].as_bool().unwrap())
+        (summary["cases"].as_u64().unwrap(), summary["waited"].as_str().unwrap().to_owned())
     };
+    let ended = |cases: u64, waited: &str| (cases, waited.to_owned());
     // Where it stops does not depend on how it is cut, and what was not needed is not missing.
-    assert_eq!(cases("wide", 4), (8, true));
-    assert_eq!(cases("wide", 5), (8, true));
+    assert_eq!(cases("wide", 4), ended(16, "narrow_enough"));
+    assert_eq!(cases("wide", 5), ended(16, "narrow_enough"));
     bench.check_same("wide-4/cases.parquet", "wide-5/cases.parquet");
     bench.check_same("wide-4/summary.json", "wide-5/summary.json");
     assert!(!bench.path("wide-4/shards/4-of-4.parquet").exists());
     bench.boresight("study merge wide.toml --out wide-4").done();
     bench.check_same("wide-4/cases.parquet", "wide-5/cases.parquet");
-    assert_eq!(cases("narrow", 3), (12, false));
+    assert_eq!(cases("narrow", 3), ended(24, "too_wide"));
+    assert_eq!(cases("constant", 3), ended(24, "nearly_constant"));
+    let told = bench.boresight("study merge constant.toml --out constant-3").done();
+    assert!(told.stdout.contains("the same in nearly every draw"), "{}", told.stdout);
     bench.boresight("study run wide.toml --out x --shard 1/3").refused(&["--shard", "stop.until"]);
     bench.boresight("study plan wide.toml").refused(&["stop.until"]);
 }

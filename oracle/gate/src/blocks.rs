@@ -38,14 +38,18 @@ impl Blocks {
         Self { count: numbers.last().map_or(0, |last| last + 1), of_units: numbers }
     }
 
-    /// Cuts each sequence of neighbouring units into equal pieces of about `length` units.
+    /// Cuts each sequence of neighbouring units into equal pieces of about `length` units. A draw of a study is one block, however many
+    /// points its sweep has.
     pub(super) fn cut(kind: SourceKind, world: &str, table: &UnitTable, length: usize) -> Self {
         let sequences = sequences(kind, world, table);
         let mut of_units = Vec::with_capacity(table.units.len());
         let mut count = 0;
         for ends in sequences.windows(2) {
             let units = ends[1] - ends[0];
-            let pieces = ((units as f64 / length as f64).round() as usize).clamp(1, units);
+            let pieces = match kind {
+                SourceKind::Study => 1,
+                SourceKind::Run => ((units as f64 / length as f64).round() as usize).clamp(1, units),
+            };
             of_units.extend((0..units).map(|unit| count + unit * pieces / units));
             count += pieces;
         }
@@ -76,16 +80,18 @@ impl Blocks {
 }
 
 /// Where sequences of neighbouring units begin, and where the last one ends. Far range: where a group (day) or a gap begins. Docking: an
-/// approach is one sequence, but for gaps; its groups are ranges. A study: every case is by itself.
+/// approach is one sequence, but for gaps; its groups are ranges. A study: the cases of a draw.
 fn sequences(kind: SourceKind, world: &str, table: &UnitTable) -> Vec<usize> {
     let units = &table.units;
     let are_groups_apart = world_called(world).is_ok_and(|world| world.are_groups_apart());
     let mut begins = vec![0];
     for unit in 1..units.len() {
         let (before, this) = (&units[unit - 1], &units[unit]);
-        let is_apart = kind == SourceKind::Study
-            || before.number + 1 != this.number
-            || (are_groups_apart && before.group != this.group);
+        let is_other_group = before.group != this.group;
+        let is_apart = match kind {
+            SourceKind::Study => is_other_group,
+            SourceKind::Run => before.number + 1 != this.number || (are_groups_apart && is_other_group),
+        };
         if is_apart {
             begins.push(unit);
         }
@@ -143,7 +149,7 @@ mod tests {
         assert_eq!((blocks.count(), blocks.of(94), blocks.of(95), blocks.of(126)), (5, 2, 3, 4));
         let approach = Blocks::cut(SourceKind::Run, "docking", &table, 30);
         assert_eq!((approach.count(), approach.of(0), approach.of(129)), (4, 0, 3));
-        assert_eq!(Blocks::cut(SourceKind::Study, "docking", &table, 30).count(), 130);
+        assert_eq!(Blocks::cut(SourceKind::Study, "docking", &table, 30).count(), 3, "of three draws");
         let numbers: Vec<usize> = (0..130).map(|unit| blocks.of(unit)).collect();
         assert_eq!(Blocks::from_numbers(numbers), blocks);
     }
@@ -176,7 +182,7 @@ mod tests {
         table.units[5..].iter_mut().for_each(|unit| unit.number += 1);
         assert_eq!(sequences(SourceKind::Run, "far_range", &table), [0, 3, 5, 7]);
         assert_eq!(sequences(SourceKind::Run, "docking", &table), [0, 5, 7]);
-        assert_eq!(sequences(SourceKind::Study, "docking", &table), [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(sequences(SourceKind::Study, "docking", &table), [0, 3, 5, 7]);
         assert_eq!(sequences(SourceKind::Run, "far_range", &UnitTable::default()), [0]);
     }
 

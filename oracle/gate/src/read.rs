@@ -142,7 +142,8 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
     Ok(Sample::new(identity, units_of_cases(&table, attitude.as_ref())))
 }
 
-/// The cases of a study as units: rates over all frames of all cases, amounts as means over the cases, as the study sums them up.
+/// The cases of a study as units: rates over all frames of all cases, amounts as means over the cases, as the study sums them up. Cases
+/// of one draw, at the points of a sweep, are a group.
 #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
 fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
     let figure = |(index, name): (usize, &String)| {
@@ -158,9 +159,9 @@ fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
     };
     let headlines: Vec<&str> = worlds().into_iter().map(|world| world.headline()).collect();
     let verdict = table.figures.iter().position(|name| headlines.contains(&name.as_str()));
-    let units = table.rows.iter().map(|row| UnitVerdict {
+    let units = table.rows.iter().zip(table.draws()).map(|(row, draw)| UnitVerdict {
         number: row.case,
-        group: "all".to_owned(),
+        group: format!("draw {draw}"),
         verdict: verdict
             .map(|index| row.figures[index])
             .map_or_else(String::new, |figure| format!("{} of {}", figure.count, figure.of)),
@@ -213,6 +214,7 @@ mod tests {
         };
         let units = units_of_cases(&table, Some(&"own".to_owned()));
         assert_eq!(units.units[0].verdict, "30 of 40");
+        assert_eq!([0, 1].map(|unit| &*units.units[unit].group), ["draw 0", "draw 1"]);
         assert_eq!(units.figures[0].terms, [Term { sum: 30.0, of: 40 }, Term { sum: 0.0, of: 40 }]);
         assert_eq!(units.figures[1].terms, [Term { sum: 0.5, of: 1 }, Term::default()]);
         assert_eq!(units.figures[0].attitude, None);

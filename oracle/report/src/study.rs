@@ -1,18 +1,21 @@
 //! The report of a study: figures with intervals, what they hang on, the worst cases.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use files::{Failure, FileError};
+use indexmap::IndexMap;
 use score::{Better, FigureLabel, Kind, attitude_note, sense};
-use study::{CaseTable, Estimate, FigureSummary, Summary};
+use study::{CaseTable, Estimate, FigureSummary, Summary, Waited};
 
 use super::chart::{
-    BESIDE, Chart, MEASURED, axes, cloud, intervals, intervals_across, plain, points, rounded,
+    BESIDE, Chart, MEASURED, REFERENCE, TRUTH, WRONG, axes, cloud, intervals, intervals_across, plain,
+    points, rounded,
 };
 use super::data_table::DataTable;
 use super::figures::significant;
 use super::page::{Page, Section};
-use super::plotly::{Axis, ColourScale, Layout, Trace};
+use super::plotly::{Axis, ColourScale, Layout, Mode, Trace};
 use super::read::read_json;
 use super::thin::{bins, drawn, summary as summed};
 use super::words::capital;
@@ -21,6 +24,10 @@ use super::words::capital;
 const TABLE_BINS: usize = 60;
 /// Drawn values that have a chart of their own, at most.
 const MOST_SCATTERS: usize = 24;
+/// Figures that have a curve over the sweep, at most.
+const MOST_CURVES: usize = 24;
+/// Colours of the curves of a figure, in turn.
+const CURVES: [&str; 5] = [MEASURED, BESIDE, TRUTH, WRONG, REFERENCE];
 
 /// What a study left in its directory.
 pub struct StudyResult {
@@ -89,7 +96,8 @@ pub fn study_page(study: &StudyResult) -> Page {
         facts: vec![
             ("Study", summary.study.clone()),
             ("Cases", format!("{} of {} at most", summary.cases, summary.of)),
-            ("Stopped by a figure", if summary.is_narrow_enough { "yes" } else { "no" }.to_owned()),
+            ("Draws", summary.draws.to_string()),
+            ("Stopped by a figure", stopped(summary).to_owned()),
             ("Drawn values", study.table.drawn.len().to_string()),
             ("Figures", summary.figures.len().to_string()),
             ("Hash", summary.hash.chars().take(12).collect()),
@@ -97,6 +105,18 @@ pub fn study_page(study: &StudyResult) -> Page {
         ],
         sections,
         data: serde_json::json!({ "summary": summary }),
+    }
+}
+
+/// Whether the figure of the stopping rule ended the study.
+fn stopped(summary: &Summary) -> &'static str {
+    match summary.waited {
+        Some(Waited::NarrowEnough) => "yes",
+        Some(Waited::TooWide) => "no: its interval is wider than asked",
+        Some(Waited::NearlyConstant) => {
+            "no: it is the same in nearly every draw, and its scatter is not known"
+        }
+        None => "no",
     }
 }
 
@@ -185,37 +205,95 @@ fn figures(study: &StudyResult) -> Section {
     section.chart(Chart::new(caption, height, data, traces, layout)).table(table)
 }
 
-/// The worst figure at each point of the sweep.
+/// Every figure as a curve over the sweep, that of the worst cases first, and what each step of the sweep changes.
 fn sweep(study: &StudyResult) -> Section {
     let summary = &study.summary;
-    let name = &summary.worst_by;
-    let point_label = |at: &indexmap::IndexMap<String, String>| {
-        at.iter().map(|(path, value)| format!("{path} = {value}")).collect::<Vec<_>>().join(", ")
+    let has_value = |name: &&String| {
+        let mut points = summary.sweep.iter();
+        points.any(|point| point.figures.get(*name).is_some_and(|figure| figure.all.is_some()))
     };
+    let mut names: Vec<&String> = summary.figures.keys().filter(has_value).collect();
+    names.sort_by_key(|name| *name != &summary.worst_by);
+    let left_out = names.len().saturating_sub(MOST_CURVES);
+    names.truncate(MOST_CURVES);
+    let charts = names.iter().map(|name| curve(summary, name)).collect();
+    let mut section = Section::new("sweep", "Sweep");
+    if left_out > 0 {
+        section = section.text(format!(
+            "Of the figures the first {MOST_CURVES} are drawn; summary.json has all at every point."
+        ));
+    }
+    section.charts(charts).table(differences(summary))
+}
+
+/// A figure over the swept value that has the most of them, a curve for every combination of the others.
+fn curve(summary: &Summary, name: &str) -> Chart {
+    let label_of = |path: &str, value: &str| format!("{path} = {value}");
+    let values_of = |path: &String| {
+        let values: BTreeSet<&String> = summary.sweep.iter().filter_map(|point| point.at.get(path)).collect();
+        values.len()
+    };
+    let paths = summary.sweep.first().map(|point| point.at.keys().collect::<Vec<_>>()).unwrap_or_default();
+    let across = paths.iter().max_by_key(|path| values_of(path)).map_or("", |path| path.as_str());
     let mut data = DataTable::new(["point", "cases", &label(name)]);
-    let (mut x, mut y, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut curves: IndexMap<String, Vec<(String, Estimate)>> = IndexMap::new();
     for point in &summary.sweep {
         let estimate = point.figures.get(name).and_then(|figure| figure.all);
+        let all = point.at.iter().map(|(path, value)| label_of(path, value)).collect::<Vec<_>>().join(", ");
         let text = estimate.as_ref().map_or_else(|| "–".to_owned(), |estimate| shown(name, estimate));
-        data.push([point_label(&point.at), point.cases.to_string(), text]);
-        if let Some(estimate) = estimate {
-            x.push(plain(&point_label(&point.at)));
-            y.push(rounded(scale(name) * estimate.value, 9));
-            low.push(scale(name) * estimate.low.unwrap_or(estimate.value));
-            high.push(scale(name) * estimate.high.unwrap_or(estimate.value));
+        data.push([all, point.cases.to_string(), text]);
+        let others = point.at.iter().filter(|(path, _)| *path != across);
+        let others = others.map(|(path, value)| label_of(path, value)).collect::<Vec<_>>().join(", ");
+        if let Some((x, estimate)) = point.at.get(across).zip(estimate) {
+            curves.entry(others).or_default().push((x.clone(), estimate));
         }
     }
-    let traces = vec![intervals(&FigureLabel::of(name).words, x, y, &low, &high, MEASURED)];
-    Section::new("sweep", "Sweep").chart(Chart::new(
-        format!(
-            "{} at every point of the sweep, with 95 % intervals.",
-            capital(&FigureLabel::of(name).words)
-        ),
-        420,
+    let trace = |(place, (others, points)): (usize, (&String, &Vec<(String, Estimate)>))| {
+        let of = |pick: fn(&Estimate) -> f64| -> Vec<f64> {
+            points.iter().map(|(_, estimate)| rounded(scale(name) * pick(estimate), 9)).collect()
+        };
+        let x: Vec<String> = points.iter().map(|(x, _)| plain(x)).collect();
+        let title = if others.is_empty() { FigureLabel::of(name).words } else { others.clone() };
+        let (low, high) = (of(|e| e.low.unwrap_or(e.value)), of(|e| e.high.unwrap_or(e.value)));
+        intervals(&title, x, of(|e| e.value), &low, &high, CURVES[place % CURVES.len()])
+            .mode(Mode::LinesAndMarkers)
+    };
+    let traces: Vec<Trace> = curves.iter().enumerate().map(trace).collect();
+    let has_legend = traces.len() > 1;
+    Chart::new(
+        format!("{} over the sweep, with 95 % intervals.", capital(&FigureLabel::of(name).words)),
+        320,
         data,
         traces,
-        axes("", &plain(&FigureLabel::of(name).to_string())),
-    ))
+        axes(&plain(across), &plain(&FigureLabel::of(name).to_string())).legend(has_legend),
+    )
+}
+
+/// What each step of the sweep changes: all figures.
+fn differences(summary: &Summary) -> DataTable {
+    let mut table = DataTable::new(["figure", "of", "from", "to", "difference", "draws"]).caption(
+        "Points of the sweep that differ in one value, each draw compared with itself; with 95 % intervals. Differences of rates are in \
+         points of a percent.",
+    );
+    for step in &summary.differences {
+        let changed = step.from.iter().find(|(path, from)| step.to.get(*path) != Some(from));
+        let Some((path, from)) = changed else { continue };
+        let others = step.from.iter().filter(|(other, _)| *other != path);
+        let at: String = others.map(|(path, value)| format!(", {path} = {value}")).collect();
+        let number = |value: f64| significant(scale(&step.figure) * value);
+        let interval = step.difference.low.zip(step.difference.high);
+        let interval =
+            interval.map_or(String::new(), |(low, high)| format!(" ({} to {})", number(low), number(high)));
+        table.push([
+            label(&step.figure),
+            format!("{path}{at}"),
+            from.clone(),
+            step.to.get(path).cloned().unwrap_or_default(),
+            format!("{}{interval}", number(step.difference.value)),
+            step.draws.to_string(),
+        ]);
+    }
+    table
 }
 
 /// How figures go with what was drawn.
@@ -254,13 +332,14 @@ fn sensitivities(study: &StudyResult) -> Section {
         .colour_scale(ColourScale::BlueToRed)
         .hover_template("%{y}<br>with %{x}: %{z}<extra></extra>");
     let mut data = DataTable::new(["figure", "drawn value", "correlation", "low", "high", "cases"]);
+    let bound = |bound: Option<f64>| bound.map_or("–".to_owned(), |bound| format!("{bound:.3}"));
     for c in correlations {
         data.push([
             label(&c.figure),
             c.parameter.clone(),
             format!("{:.3}", c.correlation),
-            format!("{:.3}", c.low),
-            format!("{:.3}", c.high),
+            bound(c.low),
+            bound(c.high),
             c.cases.to_string(),
         ]);
     }

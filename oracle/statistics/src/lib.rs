@@ -27,6 +27,11 @@ mod clopper_pearson;
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
+mod clusters;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
 mod exchange;
 mod interval;
 #[allow(
@@ -36,11 +41,23 @@ mod interval;
 mod location;
 mod normal_quantile;
 mod proportion;
+mod quantile;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod rank_correlation;
 
 pub use autocorrelation::effective_size;
 pub use clopper_pearson::{binomial_at_least, clopper_pearson};
+pub use clusters::{
+    ClusterSum, LEAST_CLUSTERS, cluster_mean_interval, cluster_rate_interval, mean_difference_interval,
+    rate_difference_interval,
+};
 pub use exchange::{BlockEffects, Exchanges, JointTest, Tested, interval_by_sets, joint_test};
 pub use interval::{Interval, Z_95};
 pub use location::{below_median, mean_interval, median, median_interval, rms_interval};
 pub use normal_quantile::normal_quantile;
 pub use proportion::wilson;
+pub use quantile::{Clustered, cluster_quantile_interval};
+pub use rank_correlation::cluster_rank_correlation;

@@ -1,5 +1,6 @@
 //! The rows of a study: a case each, with what was drawn and what came of it.
 
+use std::collections::HashMap;
 use std::io::Write;
 use std::path::Path;
 
@@ -250,6 +251,19 @@ impl CaseTable {
     /// A table of the same columns.
     pub fn with_rows(&self, rows: Vec<CaseRow>) -> Self {
         Self { drawn: self.drawn.clone(), figures: self.figures.clone(), rows }
+    }
+
+    /// The number of each row's draw, from 0 in their order: points of a sweep have the draws of all other values in common, and the seed
+    /// by which they are known. Rows of different draws are independent.
+    pub fn draws(&self) -> Vec<usize> {
+        let mut known = HashMap::new();
+        self.rows
+            .iter()
+            .map(|row| {
+                let next = known.len();
+                *known.entry(row.seed).or_insert(next)
+            })
+            .collect()
     }
 
     /// The numbers of a figure, case by case.

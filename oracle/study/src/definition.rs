@@ -187,7 +187,7 @@ impl Study {
     }
 
     /// Number of points of the sweep: the first so many cases are one of each.
-    fn sweep_points(&self) -> u64 {
+    pub(super) fn sweep_points(&self) -> u64 {
         self.sweep.iter().map(|swept| swept.values.len() as u64).product()
     }
 

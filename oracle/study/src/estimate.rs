@@ -4,14 +4,14 @@ use rand::Rng;
 use score::{Kind, sense};
 use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed, Stream};
-use statistics::wilson;
+use statistics::{
+    ClusterSum, Clustered, Interval, cluster_mean_interval, cluster_quantile_interval, cluster_rate_interval,
+};
 
 use super::cases::CaseFigure;
 
-/// Samples of cases drawn with replacement, for the intervals of quantiles and indices.
+/// Samples of blocks drawn with replacement, for the intervals of Sobol indices.
 pub(super) const RESAMPLES: usize = 1000;
-/// Fewer cases than this have no quantile interval.
-pub(super) const LEAST_CASES: usize = 5;
 /// A value with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
@@ -23,94 +23,56 @@ pub struct Estimate {
     pub high: Option<f64>,
 }
 
-/// A figure over all cases together; `place` is that of its draws.
-pub fn overall(name: &str, cases: &[CaseFigure], seed: u64, place: u64) -> Option<Estimate> {
-    if sense(name).kind == Kind::Rate {
-        return rate(cases);
+impl Estimate {
+    /// A value with its interval, which holds it: that of a quantile between two cases may lie beside it.
+    pub(super) fn new(value: f64, interval: Option<Interval>) -> Self {
+        let (low, high) = (interval.map(|i| i.low.min(value)), interval.map(|i| i.high.max(value)));
+        Self { value, low, high }
     }
-    let values: Vec<f64> = cases.iter().filter_map(|case| case.value).collect();
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    if values.is_empty() {
-        return None;
-    }
-    let interval = (values.len() >= LEAST_CASES).then(|| {
-        let mut stream = stream(seed, place);
-        let mut means: Vec<f64> = (0..RESAMPLES)
-            .map(|_| (0..values.len()).map(|_| values[pick(&mut stream, values.len())]).sum::<f64>())
-            .map(|sum| sum / values.len() as f64)
-            .collect();
-        means.sort_by(f64::total_cmp);
-        [sorted_quantile(&means, 0.025), sorted_quantile(&means, 0.975)]
-    });
-    let value = mean(&values);
-    // The mean of few skewed values may lie outside the percentiles of its own resamples.
-    Some(Estimate {
-        value,
-        low: interval.map(|[low, _]| low.min(value)),
-        high: interval.map(|[_, high]| high.max(value)),
-    })
 }
 
-/// A rate over frames that come in cases: Wilson's interval with the number of independent frames that would scatter as the cases
-/// do. Cases that are all alike tell nothing of their scatter: they count as one frame each when all or none of their frames
-/// count, and in full otherwise.
-fn rate(cases: &[CaseFigure]) -> Option<Estimate> {
-    let (count, of) = cases.iter().fold((0, 0), |(count, of), case| (count + case.count, of + case.of));
-    if of == 0 {
-        return None;
-    }
-    let value = count as f64 / of as f64;
-    let counted: Vec<&CaseFigure> = cases.iter().filter(|case| case.of > 0).collect();
-    let n = counted.len() as f64;
-    let is_single = counted.iter().all(|case| case.of == 1);
-    let scatter: f64 = counted
-        .iter()
-        .map(|case| {
-            let off = case.count as f64 - value * case.of as f64;
-            off * off
-        })
-        .sum::<f64>()
-        / (of as f64 * of as f64);
-    let effective = if is_single || scatter == 0.0 {
-        if value == 0.0 || value == 1.0 { n } else { of as f64 }
-    } else if n < 2.0 {
-        1.0
-    } else {
-        (value * (1.0 - value) / (scatter * n / (n - 1.0))).clamp(1.0, of as f64)
-    };
-    let interval = wilson(value, effective);
-    Some(Estimate { value, low: interval.map(|i| i.low), high: interval.map(|i| i.high) })
+/// A figure over all cases together; `draws` are the numbers of their draws ([`CaseTable::draws`]), of which only different ones are
+/// independent.
+///
+/// [`CaseTable::draws`]: super::CaseTable::draws
+pub fn overall(name: &str, cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
+    let is_rate = sense(name).kind == Kind::Rate;
+    let sums = sums(is_rate, cases, draws);
+    let (sum, of) = sums.iter().fold((0.0, 0.0), |(sum, of), draw| (sum + draw.sum, of + draw.of));
+    let value = (of > 0.0).then(|| sum / of)?;
+    let interval = if is_rate { cluster_rate_interval(&sums) } else { cluster_mean_interval(&sums) };
+    Some(Estimate::new(value, interval))
 }
 
-pub(super) fn quantiles<const N: usize>(
-    sorted: &[f64],
-    at: [f64; N],
-    stream: &mut Stream,
-) -> [Option<Estimate>; N] {
-    if sorted.is_empty() {
-        return [None; N];
-    }
-    let mut resampled: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
-    if sorted.len() >= LEAST_CASES {
-        let mut sample = vec![0.0; sorted.len()];
-        for _ in 0..RESAMPLES {
-            sample.iter_mut().for_each(|value| *value = sorted[pick(stream, sorted.len())]);
-            sample.sort_by(f64::total_cmp);
-            for (values, p) in resampled.iter_mut().zip(at) {
-                values.push(sorted_quantile(&sample, p));
-            }
+/// What each draw adds to a figure: of a rate its frames, of another figure the values of its cases.
+pub(super) fn sums(is_rate: bool, cases: &[CaseFigure], draws: &[usize]) -> Vec<ClusterSum> {
+    let mut sums = vec![ClusterSum::default(); draws.iter().map(|draw| draw + 1).max().unwrap_or_default()];
+    for (case, draw) in cases.iter().zip(draws) {
+        let sum = &mut sums[*draw];
+        if is_rate {
+            sum.sum += case.count as f64;
+            sum.of += case.of as f64;
+        } else if let Some(value) = case.value {
+            sum.sum += value;
+            sum.of += 1.0;
         }
     }
-    std::array::from_fn(|i| {
-        let values = &mut resampled[i];
-        values.sort_by(f64::total_cmp);
-        let value = sorted_quantile(sorted, at[i]);
-        let limit = |p: f64| (!values.is_empty()).then(|| sorted_quantile(values, p));
-        Some(Estimate {
-            value,
-            low: limit(0.025).map(|low| low.min(value)),
-            high: limit(0.975).map(|high| high.max(value)),
-        })
+    sums
+}
+
+/// Quantiles of the cases; without an interval where too few are known for one.
+pub(super) fn quantiles<const N: usize>(
+    cases: &[CaseFigure],
+    draws: &[usize],
+    at: [f64; N],
+) -> [Option<Estimate>; N] {
+    let mut sorted: Vec<Clustered> =
+        cases.iter().zip(draws).filter_map(|(case, draw)| Some((*draw, case.value?))).collect();
+    sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let values: Vec<f64> = sorted.iter().map(|(_, value)| *value).collect();
+    at.map(|p| {
+        let value = (!values.is_empty()).then(|| sorted_quantile(&values, p))?;
+        Some(Estimate::new(value, cluster_quantile_interval(&sorted, p)))
     })
 }
 
@@ -135,7 +97,6 @@ pub(super) fn pick(stream: &mut Stream, count: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sim::randomness::uniform;
 
     fn case(count: u64, of: u64) -> CaseFigure {
         CaseFigure { value: (of > 0).then(|| count as f64 / of as f64), count, of }
@@ -144,7 +105,8 @@ mod tests {
     #[test]
     fn a_rate_over_single_frames_has_wilsons_interval() {
         let cases: Vec<CaseFigure> = (0..29).map(|k| case(u64::from(k == 3), 1)).collect();
-        let got = rate(&cases).unwrap();
+        let draws: Vec<usize> = (0..29).collect();
+        let got = overall("hit_rate", &cases, &draws).unwrap();
         // Newcombe (1998), Table I: 1 of 29.
         assert!(
             (got.low.unwrap() - 0.0061).abs() < 5e-5 && (got.high.unwrap() - 0.1718).abs() < 5e-5,
@@ -152,46 +114,42 @@ mod tests {
         );
     }
 
-    /// Frames of a case that go together count as one: the interval holds the truth in 95 % of the studies, where one that takes
-    /// frames for independent holds it in few.
     #[test]
-    fn the_interval_of_a_rate_knows_that_frames_come_in_cases() {
-        let (mut held, studies) = (0, 400);
-        for study in 0..studies {
-            let mut stream = Seed { seed: 11, case: study }.stream(0, Effect::StudyParameter, 0);
-            // Each case has a rate of its own, uniform from 0.6 to 1: the truth is 0.8.
-            let cases: Vec<CaseFigure> = (0..60)
-                .map(|_| {
-                    let p = 0.6 + 0.4 * uniform(&mut stream);
-                    case((0..50).filter(|_| uniform(&mut stream) < p).count() as u64, 50)
-                })
-                .collect();
-            let got = rate(&cases).unwrap();
-            held += u64::from(got.low.unwrap() <= 0.8 && 0.8 <= got.high.unwrap());
+    fn a_figure_over_nothing_is_none() {
+        for name in ["hit_rate", "ra_rms_deg"] {
+            assert_eq!(overall(name, &[], &[]), None);
+            assert_eq!(overall(name, &[case(0, 0)], &[0]), None);
         }
-        // Binomial of 400 at 0.95: standard deviation 4.4; four of them below.
-        assert!((362..=397).contains(&held), "{held} of {studies}");
+        assert_eq!(quantiles(&[case(0, 0)], &[0], [0.5]), [None]);
+    }
+
+    /// Four points of a sweep are not four times as many cases.
+    #[test]
+    fn cases_of_one_draw_count_as_one() {
+        let value = |k: usize| CaseFigure { value: Some((k * 7 % 41) as f64), count: 0, of: 1 };
+        let single: Vec<CaseFigure> = (0..41).map(value).collect();
+        let swept: Vec<CaseFigure> = single.iter().flat_map(|case| [*case; 4]).collect();
+        let (draws, of_swept): (Vec<usize>, Vec<usize>) =
+            ((0..41).collect(), (0..41).flat_map(|draw| [draw; 4]).collect());
+        let once = overall("ra_rms_deg", &single, &draws).unwrap();
+        let four = overall("ra_rms_deg", &swept, &of_swept).unwrap();
+        assert_eq!(once, four);
+        // Seven of 41 and of the swept cases are quite as far apart.
+        let width = |estimate: &Option<Estimate>| estimate.and_then(|e| Some(e.high? - e.low?)).unwrap();
+        let [once] = quantiles(&single, &draws, [0.5]);
+        let [four] = quantiles(&swept, &of_swept, [0.5]);
+        assert!((width(&four) / width(&once) - 1.0).abs() < 0.15, "{once:?} {four:?}");
     }
 
     #[test]
-    fn a_rate_over_nothing_is_none() {
-        assert_eq!(rate(&[]), None);
-        assert_eq!(rate(&[case(0, 0)]), None);
-    }
-
-    /// The percentile bootstrap of the median of 101 normal numbers holds the truth in about 95 % of the samples.
-    #[test]
-    fn the_interval_of_a_quantile_holds_its_truth() {
-        let (mut held, samples) = (0, 200);
-        for sample in 0..samples {
-            let mut draws = Seed { seed: 3, case: sample }.stream(0, Effect::StudyParameter, 0);
-            let mut values: Vec<f64> = (0..101).map(|_| sim::randomness::normal(&mut draws)).collect();
-            values.sort_by(f64::total_cmp);
-            let [median] = quantiles(&values, [0.5], &mut stream(9, sample));
-            let median = median.unwrap();
-            held += u64::from(median.low.unwrap() <= 0.0 && 0.0 <= median.high.unwrap());
-        }
-        // Binomial of 200 at 0.95: standard deviation 3.1; four of them below.
-        assert!((178..=200).contains(&held), "{held} of {samples}");
+    fn few_cases_have_quantiles_without_an_interval() {
+        let cases: Vec<CaseFigure> =
+            (0..40).map(|k| CaseFigure { value: Some(f64::from(k)), count: 0, of: 1 }).collect();
+        let draws: Vec<usize> = (0..40).collect();
+        let [p05, median] = quantiles(&cases, &draws, [0.05, 0.5]).map(Option::unwrap);
+        assert!((p05.value - 1.95).abs() < 1e-12 && p05.low.is_none() && p05.high.is_none(), "{p05:?}");
+        // The 14th and the 27th of 40 are the limits of the exact test at 95 %; the fraction leaves the rest.
+        let (low, high) = (median.low.unwrap(), median.high.unwrap());
+        assert!((12.5..14.0).contains(&low) && (25.0..26.5).contains(&high), "{median:?}");
     }
 }

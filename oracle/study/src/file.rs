@@ -73,8 +73,9 @@ pub struct Stop {
 pub struct Until {
     /// Name of a figure of the score, as in `hit_rate`.
     pub figure: String,
-    /// Half the width of its 95 % interval, in its own unit, > 0. Looked at after 8 cases, 16, 24, from 128 on after a
-    /// sixteenth more each time, and after all, however the study is cut.
+    /// Half the width of its 95 % interval, in its own unit, > 0. Looked at after 16 draws (a draw is one case at every point of the
+    /// sweep), 32, 48, from 256 on after a sixteenth more each time, and after all, however the study is cut. A figure that is the same in
+    /// all but seven draws or fewer is not waited for: its scatter is not known.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub half_width: f64,
 }

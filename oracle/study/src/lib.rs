@@ -65,6 +65,8 @@ pub use law::Law;
 pub use overlay::{value_at, with_overlay};
 pub use record::StudyRecord;
 pub use sensitivity::{RankCorrelation, SobolIndex};
+
 pub use shard::{Plan, ShardManifest, ShardStore};
-pub use summary::{FigureSummary, Summary, SweepPoint, WorstCase};
+pub use stopping::Waited;
+pub use summary::{FigureSummary, Summary, SweepDifference, SweepPoint, WorstCase};
 pub use tried::{StudyPipeline, command_line};

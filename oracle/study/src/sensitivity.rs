@@ -1,6 +1,5 @@
 //! What the figures depend on.
 use serde::{Deserialize, Serialize};
-use statistics::Z_95;
 
 /// How a figure goes with a drawn value: Spearman's rank correlation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -11,10 +10,11 @@ pub struct RankCorrelation {
     pub figure: String,
     /// From −1, the figure falls whenever the value grows, to 1.
     pub correlation: f64,
-    /// Lower limit of the 95 % interval, by Fisher's transformation with the variance of Bonett & Wright (2000).
-    pub low: f64,
+    /// Lower limit of the 95 % interval, by Fisher's transformation with the variance of Bonett & Wright (2000); absent where too few
+    /// draws are known.
+    pub low: Option<f64>,
     /// Upper limit.
-    pub high: f64,
+    pub high: Option<f64>,
     /// Cases that have the figure.
     pub cases: u64,
 }
@@ -34,43 +34,6 @@ pub struct SobolIndex {
     pub total: f64,
     /// 95 % interval of it.
     pub total_interval: [f64; 2],
-}
-
-/// Spearman's rank correlation of pairs; `None` for fewer than four, or where either never varies.
-pub(super) fn rank_correlation(pairs: &[(f64, f64)]) -> Option<(f64, f64, f64)> {
-    let n = pairs.len();
-    if n < 4 {
-        return None;
-    }
-    let x = ranks(&pairs.iter().map(|pair| pair.0).collect::<Vec<_>>());
-    let y = ranks(&pairs.iter().map(|pair| pair.1).collect::<Vec<_>>());
-    let middle = 0.5 * (n as f64 + 1.0);
-    let sum =
-        |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| (a - middle) * (b - middle)).sum() };
-    let spread = sum(&x, &x) * sum(&y, &y);
-    if spread <= 0.0 {
-        return None;
-    }
-    let r = (sum(&x, &y) / spread.sqrt()).clamp(-1.0, 1.0);
-    // Of a perfect order no interval can be told by this transformation: it has no width.
-    let z = libm::atanh(r.clamp(-1.0 + 1e-12, 1.0 - 1e-12));
-    let half = Z_95 * ((1.0 + 0.5 * r * r) / (n as f64 - 3.0)).sqrt();
-    Some((r, libm::tanh(z - half).min(r), libm::tanh(z + half).max(r)))
-}
-
-/// Ranks from 1; equal values share the mean of theirs.
-fn ranks(values: &[f64]) -> Vec<f64> {
-    let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-    let mut ranks = vec![0.0; values.len()];
-    let mut first = 0;
-    while first < order.len() {
-        let alike = order[first..].iter().take_while(|i| values[**i] == values[order[first]]).count();
-        let rank = first as f64 + 0.5 * (alike as f64 + 1.0);
-        order[first..first + alike].iter().for_each(|i| ranks[*i] = rank);
-        first += alike;
-    }
-    ranks
 }
 
 /// First-order and total index of a parameter by Saltelli et al. (2010), Computer Physics Communications 181, 259–270, Table 2 (b) and
@@ -95,21 +58,6 @@ pub(super) fn sobol_index(a: &[f64], b: &[f64], ab: &[f64]) -> Option<(f64, f64)
 mod tests {
     use super::*;
     use crate::design::{Design, DesignKind};
-
-    /// scipy 1.17.1: `scipy.stats.spearmanr([1, 2, 3, 4, 5], [5, 6, 7, 8, 7])` gives 0.8207826816681233.
-    #[test]
-    fn the_rank_correlation_is_that_of_scipy() {
-        let pairs = [(1.0, 5.0), (2.0, 6.0), (3.0, 7.0), (4.0, 8.0), (5.0, 7.0)];
-        let (r, low, high) = rank_correlation(&pairs).unwrap();
-        assert!((r - 0.820_782_681_668_123_3).abs() < 1e-14, "{r}");
-        assert!(low < r && r < high && high < 1.0);
-    }
-
-    #[test]
-    fn what_never_varies_has_no_correlation() {
-        assert_eq!(rank_correlation(&[(1.0, 2.0); 10]), None);
-        assert_eq!(rank_correlation(&[(1.0, 2.0), (2.0, 3.0)]), None);
-    }
 
     /// The function of Ishigami & Homma (1990) with a = 7, b = 0.1, whose indices are known in closed form.
     #[test]

@@ -2,15 +2,18 @@
 use std::path::Path;
 
 use indexmap::IndexMap;
-use score::{Better, sense};
+use score::{Better, Kind, sense};
 use serde::{Deserialize, Serialize};
+use statistics::{
+    ClusterSum, LEAST_CLUSTERS, cluster_rank_correlation, mean_difference_interval, rate_difference_interval,
+};
 
 use super::cases::{CaseFigure, CaseRow, CaseTable, Drawn};
 use super::definition::Study;
 use super::design::DesignKind;
-use super::estimate::{Estimate, LEAST_CASES, RESAMPLES, overall, pick, quantiles, sorted_quantile, stream};
-use super::sensitivity::{RankCorrelation, SobolIndex, rank_correlation, sobol_index};
-use super::stopping::is_narrow_enough;
+use super::estimate::{Estimate, RESAMPLES, overall, pick, quantiles, sorted_quantile, stream, sums};
+use super::sensitivity::{RankCorrelation, SobolIndex, sobol_index};
+use super::stopping::{Waited, waited};
 use super::tried::StudyPipeline;
 
 /// How many of the worst cases are named.
@@ -22,9 +25,9 @@ pub struct FigureSummary {
     /// Cases in which it has a value.
     pub cases: u64,
     /// Of a rate: all frames of all cases together, with the interval of Wilson for as many independent frames as the scatter
-    /// between the cases tells. Of another figure: the mean of the cases, its interval by resampling them.
+    /// between the draws tells. Of another figure: the mean of the cases, its interval by Student's t over the draws.
     pub all: Option<Estimate>,
-    /// The value that 5 % of the cases are below; interval by resampling them (percentile bootstrap, 1000 samples).
+    /// The value that 5 % of the cases are below; its interval by fractional order statistics, absent where too few cases are known.
     pub p05: Option<Estimate>,
     /// The median of the cases.
     pub median: Option<Estimate>,
@@ -41,6 +44,23 @@ pub struct SweepPoint {
     pub cases: u64,
     /// Figures by name.
     pub figures: IndexMap<String, FigureSummary>,
+}
+
+/// What one step of the sweep makes of a figure: the difference of two points that have the same draws.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SweepDifference {
+    /// Name of the figure.
+    pub figure: String,
+    /// The swept values at the first point, by path.
+    pub from: IndexMap<String, String>,
+    /// The swept values at the second point, of which one differs.
+    pub to: IndexMap<String, String>,
+    /// The figure at the second point less that at the first; of a rate over the frames of all draws, of another figure the mean over
+    /// the draws that have it at both points.
+    #[serde(flatten)]
+    pub difference: Estimate,
+    /// Draws that are compared.
+    pub draws: u64,
 }
 
 /// A case that came out badly.
@@ -77,12 +97,21 @@ pub struct Summary {
     pub of: u64,
     /// Cases in which the pipeline itself failed: it crashed, gave no answer in time, or none that can be read.
     pub failed_cases: u64,
+    /// Independent draws among them: with a sweep, every draw is a case at each of its points.
+    #[serde(default)]
+    pub draws: u64,
     /// Whether the figure of the stopping rule is known well enough.
     pub is_narrow_enough: bool,
+    /// What is known of the figure of the stopping rule; absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub waited: Option<Waited>,
     /// Figures by name.
     pub figures: IndexMap<String, FigureSummary>,
     /// The same at each point of the sweep; empty without one.
     pub sweep: Vec<SweepPoint>,
+    /// Differences between points of the sweep that differ in one value, each draw compared with itself.
+    #[serde(default)]
+    pub differences: Vec<SweepDifference>,
     /// How figures go with what was drawn, by figure, the strongest first.
     pub correlations: Vec<RankCorrelation>,
     /// Sobol indices, where the design allows them.
@@ -98,6 +127,9 @@ impl Summary {
     pub fn new(study: &Study, pipeline: &dyn StudyPipeline, path: &Path, table: &CaseTable) -> Self {
         let seed = study.file.seed;
         let worst_by = study.worst_by();
+        let until = study.file.stop.until.as_ref();
+        let waited = until.map(|until| waited(until, table, table.rows.len() as u64));
+        let points = sweep(study, table);
         Self {
             study: study.name.clone(),
             title: study.file.title.clone(),
@@ -107,9 +139,12 @@ impl Summary {
             cases: table.rows.len() as u64,
             of: study.cases(),
             failed_cases: table.rows.iter().filter(|row| row.has_failed).count() as u64,
-            is_narrow_enough: is_narrow_enough(study, table, table.rows.len() as u64),
-            figures: figures(table, seed),
-            sweep: sweep(study, table, seed),
+            draws: table.draws().into_iter().max().map_or(0, |last| last as u64 + 1),
+            is_narrow_enough: waited == Some(Waited::NarrowEnough),
+            waited,
+            figures: figures(table),
+            differences: differences(&points),
+            sweep: points.into_iter().map(|point| point.summary).collect(),
             correlations: correlations(table),
             indices: if study.file.design == DesignKind::Saltelli {
                 indices(table, seed)
@@ -122,22 +157,28 @@ impl Summary {
     }
 }
 
-fn figures(table: &CaseTable, seed: u64) -> IndexMap<String, FigureSummary> {
-    let summary = |(place, name): (usize, &String)| {
+fn figures(table: &CaseTable) -> IndexMap<String, FigureSummary> {
+    let draws = table.draws();
+    let summary = |name: &String| {
         let cases = table.figure(name).unwrap_or_default();
-        (name.clone(), figure(name, &cases, seed, place as u64))
+        (name.clone(), figure(name, &cases, &draws))
     };
-    table.figures.iter().enumerate().map(summary).collect()
+    table.figures.iter().map(summary).collect()
 }
 
-fn figure(name: &str, cases: &[CaseFigure], seed: u64, place: u64) -> FigureSummary {
-    let mut values: Vec<f64> = cases.iter().filter_map(|case| case.value).collect();
-    values.sort_by(f64::total_cmp);
-    let [p05, median, p95] = quantiles(&values, [0.05, 0.5, 0.95], &mut stream(seed, place));
-    FigureSummary { cases: values.len() as u64, all: overall(name, cases, seed, place), p05, median, p95 }
+fn figure(name: &str, cases: &[CaseFigure], draws: &[usize]) -> FigureSummary {
+    let [p05, median, p95] = quantiles(cases, draws, [0.05, 0.5, 0.95]);
+    let count = cases.iter().filter(|case| case.value.is_some()).count() as u64;
+    FigureSummary { cases: count, all: overall(name, cases, draws), p05, median, p95 }
 }
 
-fn sweep(study: &Study, table: &CaseTable, seed: u64) -> Vec<SweepPoint> {
+/// A point of the sweep with its cases.
+struct Point {
+    summary: SweepPoint,
+    table: CaseTable,
+}
+
+fn sweep(study: &Study, table: &CaseTable) -> Vec<Point> {
     let swept = study.file.sweep.len();
     if swept == 0 {
         return Vec::new();
@@ -147,34 +188,87 @@ fn sweep(study: &Study, table: &CaseTable, seed: u64) -> Vec<SweepPoint> {
         points.entry(row.drawn[..swept].iter().map(Drawn::shown).collect()).or_default().push(row.clone());
     }
     let point = |(at, rows): (Vec<String>, Vec<CaseRow>)| {
-        let cases = rows.len() as u64;
         let table = table.with_rows(rows);
-        SweepPoint {
+        let summary = SweepPoint {
             at: table.drawn.keys().cloned().zip(at).collect(),
-            cases,
-            figures: figures(&table, seed),
-        }
+            cases: table.rows.len() as u64,
+            figures: figures(&table),
+        };
+        Point { summary, table }
     };
     points.into_iter().map(point).collect()
 }
 
+/// The differences of every figure between points of which one value differs.
+fn differences(points: &[Point]) -> Vec<SweepDifference> {
+    let differ = |a: &Point, b: &Point| {
+        let values = a.summary.at.values().zip(b.summary.at.values());
+        values.filter(|(a, b)| a != b).count() == 1
+    };
+    let mut all = Vec::new();
+    for (place, first) in points.iter().enumerate() {
+        for second in points.iter().skip(place + 1).filter(|second| differ(first, second)) {
+            for figure in &first.table.figures {
+                let Some((difference, draws)) = difference(figure, &first.table, &second.table) else {
+                    continue;
+                };
+                all.push(SweepDifference {
+                    figure: figure.clone(),
+                    from: first.summary.at.clone(),
+                    to: second.summary.at.clone(),
+                    difference,
+                    draws,
+                });
+            }
+        }
+    }
+    all
+}
+
+/// A figure of the second table less that of the first, over the draws that have it in both, and how many these are.
+fn difference(figure: &str, first: &CaseTable, second: &CaseTable) -> Option<(Estimate, u64)> {
+    let is_rate = sense(figure).kind == Kind::Rate;
+    // A point of the sweep has one case of each draw.
+    let sums = |table: &CaseTable| -> IndexMap<u64, ClusterSum> {
+        let cases = table.figure(figure).unwrap_or_default();
+        let draws: Vec<usize> = (0..cases.len()).collect();
+        table.rows.iter().map(|row| row.seed).zip(sums(is_rate, &cases, &draws)).collect()
+    };
+    let of_second = sums(second);
+    let pairs: Vec<(ClusterSum, ClusterSum)> = sums(first)
+        .into_iter()
+        .filter_map(|(seed, first)| Some((first, *of_second.get(&seed)?)))
+        .filter(|(first, second)| first.of > 0.0 && second.of > 0.0)
+        .collect();
+    let ratio = |pick: fn(&(ClusterSum, ClusterSum)) -> ClusterSum| {
+        let (sum, of) =
+            pairs.iter().map(pick).fold((0.0, 0.0), |(sum, of), draw| (sum + draw.sum, of + draw.of));
+        (of > 0.0).then(|| sum / of)
+    };
+    let value = ratio(|pair| pair.1)? - ratio(|pair| pair.0)?;
+    let interval = if is_rate { rate_difference_interval(&pairs) } else { mean_difference_interval(&pairs) };
+    Some((Estimate::new(value, interval), pairs.len() as u64))
+}
+
 fn correlations(table: &CaseTable) -> Vec<RankCorrelation> {
+    let draws = table.draws();
     let mut all = Vec::new();
     for figure in &table.figures {
         let values = table.figure(figure).unwrap_or_default();
         let mut of_figure: Vec<RankCorrelation> = Vec::new();
         for parameter in table.drawn.keys() {
             let Some(numbers) = table.numbers(parameter) else { continue };
-            let pairs: Vec<(f64, f64)> =
-                numbers.iter().zip(&values).filter_map(|(x, y)| Some((*x, y.value?))).collect();
-            let Some((correlation, low, high)) = rank_correlation(&pairs) else { continue };
+            let cases = draws.iter().zip(numbers.iter().zip(&values));
+            let triples: Vec<(usize, f64, f64)> =
+                cases.filter_map(|(draw, (x, y))| Some((*draw, *x, y.value?))).collect();
+            let Some((correlation, interval)) = cluster_rank_correlation(&triples) else { continue };
             of_figure.push(RankCorrelation {
                 parameter: parameter.clone(),
                 figure: figure.clone(),
                 correlation,
-                low,
-                high,
-                cases: pairs.len() as u64,
+                low: interval.map(|interval| interval.low),
+                high: interval.map(|interval| interval.high),
+                cases: triples.len() as u64,
             });
         }
         of_figure.sort_by(|a, b| b.correlation.abs().total_cmp(&a.correlation.abs()));
@@ -194,7 +288,7 @@ fn indices(table: &CaseTable, seed: u64) -> Vec<SobolIndex> {
             .chunks_exact(block)
             .filter_map(|cases| cases.iter().map(|case| case.value).collect())
             .collect();
-        if blocks.len() < LEAST_CASES {
+        if blocks.len() < LEAST_CLUSTERS {
             continue;
         }
         for (i, parameter) in parameters.iter().enumerate() {
