@@ -1,9 +1,9 @@
 //! The table of a scored run of any world.
 
 use comfy_table::Cell;
-use run::AnyScored;
 use run::docking::ScoredFields;
-use score::{FigureLabel, Kind, Scored, sense};
+use run::{AnyScored, figure_called};
+use score::{Kind, Scored};
 
 use crate::table::far_range::{finish, percent, plain_table};
 use crate::table::{TableStyle, docking, far_range};
@@ -24,12 +24,12 @@ fn figures(scored: &dyn AnyScored, styled: bool) -> String {
     let mut table = plain_table(styled);
     table.set_header(["figure", "value", "count", "of"]);
     for (name, figure) in scored.figures() {
-        let value = match sense(name).kind {
+        let value = match figure_called(name).sense.kind {
             Kind::Rate => figure.value.map(|value| format!("{} %", percent(value))),
             _ => figure.value.map(|value| format!("{value:.4}")),
         };
         table.add_row([
-            Cell::new(FigureLabel::of(name).beside_percent()),
+            Cell::new(figure_called(name).beside_percent()),
             Cell::new(value.unwrap_or_else(|| "–".to_owned())),
             Cell::new(figure.count),
             Cell::new(figure.of),

@@ -1,6 +1,7 @@
 //! What a person reads of a study.
 use comfy_table::{Attribute, Cell};
-use score::{FigureLabel, Kind, attitude_note, sense};
+use run::figure_called;
+use score::attitude_note;
 use study::{CaseFigure, CaseRow, Estimate, Study, Summary, overall};
 
 use crate::table::far_range::{finish, percent, plain_table};
@@ -135,7 +136,7 @@ impl LiveFigure {
 
 /// What a figure is called beside its values.
 fn label(key: &str) -> String {
-    FigureLabel::of(key).beside_percent()
+    figure_called(key).beside_percent()
 }
 
 fn shown(name: &str, estimate: Option<&Estimate>) -> String {
@@ -149,7 +150,7 @@ fn shown(name: &str, estimate: Option<&Estimate>) -> String {
 }
 
 fn number(name: &str, value: f64) -> String {
-    if sense(name).kind == Kind::Rate {
+    if figure_called(name).is_rate() {
         return format!("{} %", percent(value));
     }
     let size = value.abs();

@@ -1,11 +1,10 @@
 //! The report of a gate: what changed, and the frames that flipped.
 
-use run::{Prepared, PreparedDocking, World as _};
+use run::{Prepared, PreparedDocking, World as _, figure_called};
 use std::path::Path;
 
 use files::Failure;
 use gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
-use score::{FigureLabel, Kind, sense};
 
 use super::chart::{Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
 use super::data_table::DataTable;
@@ -107,7 +106,7 @@ fn change(flip: &Flip) -> String {
 
 /// The page of a gate.
 pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
-    let worse: Vec<String> = report.worse().map(|name| FigureLabel::of(name).words).collect();
+    let worse: Vec<String> = report.worse().map(|name| figure_called(name).words).collect();
     let lead = if worse.is_empty() {
         format!("No figure is worse than in the baseline, of {} compared.", report.figures.len())
     } else {
@@ -169,13 +168,13 @@ fn effects(report: &GateReport) -> Section {
     )
     .narrow();
     for (name, figure) in &report.figures {
-        let is_rate = sense(name).kind == Kind::Rate;
+        let is_rate = figure_called(name).is_rate();
         let number = |value: Option<f64>| match value {
             Some(value) if is_rate => format!("{:.2}", 100.0 * value),
             value => cell(value),
         };
         table.push([
-            FigureLabel::of(name).to_string(),
+            figure_called(name).to_string(),
             figure.verdict.words().to_owned(),
             number(figure.baseline),
             number(figure.result),
@@ -192,7 +191,7 @@ fn effects(report: &GateReport) -> Section {
         .figures
         .iter()
         .filter(|(_, figure)| figure.difference.is_some())
-        .partition(|(name, _)| sense(name).kind == Kind::Rate);
+        .partition(|(name, _)| figure_called(name).is_rate());
     let mut section = Section::new("effects", "What changed");
     if !rates.is_empty() {
         let (traces, layout) = differences(&rates, |_| 0.01, "difference, points");
@@ -212,7 +211,7 @@ fn effects(report: &GateReport) -> Section {
 
 /// A figure's name without its unit, which the axis of differences has not.
 fn plain_label(name: &str) -> String {
-    FigureLabel::of(name).words
+    figure_called(name).words
 }
 
 /// A figure of the gate by its name.

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use files::{Failure, FileError};
-use score::{Better, FigureLabel, Kind, attitude_note, sense};
+use run::figure_called;
+use score::{Better, attitude_note};
 use study::{CaseTable, Estimate, FigureSummary, Summary};
 
 use super::chart::{
@@ -57,7 +58,7 @@ impl StudyResult {
 pub fn study_page(study: &StudyResult) -> Page {
     let summary = &study.summary;
     let worst_by = &summary.worst_by;
-    let by = FigureLabel::of(worst_by).words;
+    let by = figure_called(worst_by).words;
     let lead = match summary.figures.get(worst_by).and_then(|figure| figure.all) {
         Some(all) => format!(
             "{} cases; {by}, by which the worst are the worst, is {}.",
@@ -102,12 +103,12 @@ pub fn study_page(study: &StudyResult) -> Page {
 
 /// What a figure is drawn and written in: rates in percent, others as they are.
 fn scale(name: &str) -> f64 {
-    if sense(name).kind == Kind::Rate { 100.0 } else { 1.0 }
+    if figure_called(name).is_rate() { 100.0 } else { 1.0 }
 }
 
 /// A number of a figure.
 fn number(name: &str, value: f64) -> String {
-    if sense(name).kind == Kind::Rate { format!("{:.2}\u{a0}%", 100.0 * value) } else { significant(value) }
+    if figure_called(name).is_rate() { format!("{:.2}\u{a0}%", 100.0 * value) } else { significant(value) }
 }
 
 /// A value with its interval, which a narrow column may have on a line of its own.
@@ -120,7 +121,7 @@ fn shown(name: &str, estimate: &Estimate) -> String {
 
 /// What a figure is called beside its values.
 fn label(key: &str) -> String {
-    FigureLabel::of(key).beside_percent()
+    figure_called(key).beside_percent()
 }
 
 /// Every figure: over all cases, and its quantiles over them.
@@ -142,7 +143,7 @@ fn figures(study: &StudyResult) -> Section {
             estimate(&figure.p95),
         ]);
     }
-    let is_rate = |(name, _): &(&String, &FigureSummary)| sense(name).kind == Kind::Rate;
+    let is_rate = |(name, _): &(&String, &FigureSummary)| figure_called(name).is_rate();
     let rates = summary.figures.iter().filter(is_rate);
     let rates: Vec<(&String, Estimate, &FigureSummary)> =
         rates.filter_map(|(name, figure)| Some((name, figure.all?, figure))).collect();
@@ -154,7 +155,7 @@ fn figures(study: &StudyResult) -> Section {
     let column = |pick: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
         rates.iter().rev().map(|(_, all, figure)| rounded(100.0 * pick(all, figure), 4)).collect()
     };
-    let names: Vec<String> = rates.iter().rev().map(|(name, _, _)| FigureLabel::of(name).words).collect();
+    let names: Vec<String> = rates.iter().rev().map(|(name, _, _)| figure_called(name).words).collect();
     let quantile = |estimate: Option<Estimate>| estimate.map_or(f64::NAN, |estimate| estimate.value);
     let traces = vec![
         intervals_across(
@@ -178,7 +179,7 @@ fn figures(study: &StudyResult) -> Section {
     let mut data = DataTable::new(["rate", "all", "low", "high"]);
     for (name, all, _) in &rates {
         let bound = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
-        data.push([FigureLabel::of(name).words, number(name, all.value), bound(all.low), bound(all.high)]);
+        data.push([figure_called(name).words, number(name, all.value), bound(all.low), bound(all.high)]);
     }
     let height = 110 + 30 * rates.len() as u32;
     let caption = "Rates over all frames, and how far the cases spread about them.";
@@ -205,16 +206,13 @@ fn sweep(study: &StudyResult) -> Section {
             high.push(scale(name) * estimate.high.unwrap_or(estimate.value));
         }
     }
-    let traces = vec![intervals(&FigureLabel::of(name).words, x, y, &low, &high, MEASURED)];
+    let traces = vec![intervals(&figure_called(name).words, x, y, &low, &high, MEASURED)];
     Section::new("sweep", "Sweep").chart(Chart::new(
-        format!(
-            "{} at every point of the sweep, with 95 % intervals.",
-            capital(&FigureLabel::of(name).words)
-        ),
+        format!("{} at every point of the sweep, with 95 % intervals.", capital(&figure_called(name).words)),
         420,
         data,
         traces,
-        axes("", &plain(&FigureLabel::of(name).to_string())),
+        axes("", &plain(&figure_called(name).to_string())),
     ))
 }
 
@@ -248,7 +246,7 @@ fn sensitivities(study: &StudyResult) -> Section {
         .collect();
     let names: Vec<String> = parameters.iter().map(|name| plain(name)).collect();
     let labels: Vec<String> =
-        figures.iter().rev().map(|name| plain(&FigureLabel::of(name).to_string())).collect();
+        figures.iter().rev().map(|name| plain(&figure_called(name).to_string())).collect();
     let map = Trace::heat_map(names, labels, &z)
         .colour_range([-1.0, 1.0])
         .colour_scale(ColourScale::BlueToRed)
@@ -313,7 +311,7 @@ fn indices(study: &StudyResult) -> Section {
     Section::new("indices", "Sobol indices").chart(Chart::new(
         format!(
             "Of {}: the part of its variance that is a value's alone, and with all in which it takes part.",
-            FigureLabel::of(&summary.worst_by).words
+            figure_called(&summary.worst_by).words
         ),
         400,
         data,
@@ -327,14 +325,14 @@ fn scatter(study: &StudyResult) -> Section {
     let (summary, table) = (&study.summary, &study.table);
     let name = &summary.worst_by;
     let section =
-        Section::new("scatter", format!("{} against what was drawn", capital(&FigureLabel::of(name).words)));
+        Section::new("scatter", format!("{} against what was drawn", capital(&figure_called(name).words)));
     let Some(values) = table.figure(name) else { return section.text("No case has the figure.") };
     let mut charts = Vec::new();
     for parameter in table.drawn.keys() {
         let Some(numbers) = table.numbers(parameter) else { continue };
         let rows: Vec<usize> = (0..numbers.len()).filter(|&row| values[row].value.is_some()).collect();
         let value = |row: usize| scale(name) * values[row].value.unwrap_or(f64::NAN);
-        let traces = cloud(&FigureLabel::of(name).words, &rows, Some(&value), MEASURED, |rows| {
+        let traces = cloud(&figure_called(name).words, &rows, Some(&value), MEASURED, |rows| {
             let x: Vec<f64> = rows.iter().map(|&row| numbers[row]).collect();
             let y = rows.iter().map(|&row| rounded(value(row), 9)).collect();
             let cases: Vec<u64> = rows.iter().map(|&row| table.rows[row].case).collect();
@@ -355,13 +353,13 @@ fn scatter(study: &StudyResult) -> Section {
         charts.push(Chart::new(
             format!(
                 "{} against {parameter}, a point a case. {}",
-                FigureLabel::of(name),
+                figure_called(name),
                 drawn(&[(rows.len(), "cases")], true)
             ),
             260,
             data,
             traces,
-            axes(&plain(parameter), &plain(&FigureLabel::of(name).to_string())).legend(!is_drawn_whole),
+            axes(&plain(parameter), &plain(&figure_called(name).to_string())).legend(!is_drawn_whole),
         ));
     }
     let left_out = charts.len().saturating_sub(MOST_SCATTERS);
@@ -383,7 +381,7 @@ fn scatter(study: &StudyResult) -> Section {
 /// The worst cases, with the commands that run them again.
 fn worst(study: &StudyResult) -> Section {
     let summary = &study.summary;
-    let way = match sense(&summary.worst_by).better {
+    let way = match figure_called(&summary.worst_by).sense.better {
         Better::More => "the smallest",
         Better::Less => "the largest",
         Better::Near(_) => "the farthest from what is best",
@@ -406,5 +404,5 @@ fn worst(study: &StudyResult) -> Section {
         cells.push(case.replay.clone());
         table.push(cells);
     }
-    section.text(format!("Those whose {} is {way}.", FigureLabel::of(&summary.worst_by).words)).table(table)
+    section.text(format!("Those whose {} is {way}.", figure_called(&summary.worst_by).words)).table(table)
 }

@@ -13,7 +13,7 @@ use indexmap::IndexMap;
 use scenario::run_file::{RunFile, ScenarioFile};
 use scenario::{AttitudeChoice, Stage};
 use schemars::{Schema, SchemaGenerator};
-use score::{Figure, UnitTable};
+use score::{Figure, FigureSpec, UnitTable};
 use serde_json::Value;
 use sim::SimError;
 
@@ -62,8 +62,8 @@ pub trait AnyWorld: Sync {
     /// [`World::PICTURES`](crate::World::PICTURES).
     fn pictures(&self) -> &'static str;
 
-    /// [`World::figure_names`](crate::World::figure_names).
-    fn figure_names(&self) -> Vec<String>;
+    /// [`World::figures`](crate::World::figures).
+    fn figures(&self) -> Vec<FigureSpec>;
 
     /// Whether its scenarios are of the type `type_id`.
     fn has_scenarios_of(&self, type_id: TypeId) -> bool;
@@ -147,6 +147,11 @@ impl dyn AnyWorld {
     /// As [`PipelineChoice::factory`].
     pub fn check_choice(&self, scenario: &dyn AnyScenario, choice: &PipelineChoice) -> Result<(), Failure> {
         self.factory(scenario, choice, Path::new("")).map(drop)
+    }
+
+    /// Keys of the figures of its scores, in their order.
+    pub fn figure_names(&self) -> Vec<String> {
+        self.figures().into_iter().map(|figure| figure.name).collect()
     }
 
     /// Whether its scenarios have the type `S`.

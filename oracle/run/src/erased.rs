@@ -15,7 +15,7 @@ use pipeline::external::ExternalFactory;
 use scenario::AttitudeChoice;
 use scenario::run_file::{RunFile, ScenarioFile};
 use schemars::{Schema, SchemaGenerator};
-use score::{Figure, UnitTable};
+use score::{Figure, FigureSpec, UnitTable};
 use serde_json::Value;
 
 use crate::any_world::{
@@ -106,8 +106,8 @@ impl<W: World> AnyWorld for Of<W> {
         W::PICTURES
     }
 
-    fn figure_names(&self) -> Vec<String> {
-        W::figure_names()
+    fn figures(&self) -> Vec<FigureSpec> {
+        W::figures()
     }
 
     fn has_scenarios_of(&self, type_id: TypeId) -> bool {

@@ -36,4 +36,4 @@ pub use source::world_of_run;
 pub use world::{
     OpenDataset, Processed, ProcessedFrame, Scored, World, process, process_into, refuse_attitude,
 };
-pub use worlds::{json_schema, register, world_called, worlds};
+pub use worlds::{figure_called, json_schema, register, world_called, worlds};

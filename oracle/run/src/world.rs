@@ -12,7 +12,7 @@ use indexmap::IndexMap;
 use pipeline::external::Protocol;
 use scenario::AttitudeChoice;
 use scenario::run_file::{RunFile, ScenarioFile};
-use score::{Figure, UnitTable};
+use score::{Figure, FigureSpec, UnitTable};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -181,8 +181,8 @@ pub trait World: Sized + Send + Sync + 'static {
     /// A [`Failure`] for a file that cannot be read.
     fn telemetry_rows(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure>;
 
-    /// Names of the figures of a score.
-    fn figure_names() -> Vec<String>;
+    /// The figures of a score. A key that another world has too is the same figure.
+    fn figures() -> Vec<FigureSpec>;
 
     /// Number of frames of the whole scenario.
     fn frame_count(&self) -> u64;

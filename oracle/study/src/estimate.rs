@@ -1,7 +1,7 @@
 //! Values of many cases together, with their intervals.
 
 use rand::Rng;
-use score::{Kind, sense};
+use run::figure_called;
 use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed, Stream};
 use statistics::wilson;
@@ -25,7 +25,7 @@ pub struct Estimate {
 
 /// A figure over all cases together; `place` is that of its draws.
 pub fn overall(name: &str, cases: &[CaseFigure], seed: u64, place: u64) -> Option<Estimate> {
-    if sense(name).kind == Kind::Rate {
+    if figure_called(name).is_rate() {
         return rate(cases);
     }
     let values: Vec<f64> = cases.iter().filter_map(|case| case.value).collect();

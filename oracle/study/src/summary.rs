@@ -2,7 +2,8 @@
 use std::path::Path;
 
 use indexmap::IndexMap;
-use score::{Better, sense};
+use run::figure_called;
+use score::Better;
 use serde::{Deserialize, Serialize};
 
 use super::cases::{CaseFigure, CaseRow, CaseTable, Drawn};
@@ -236,7 +237,7 @@ fn indices(table: &CaseTable, seed: u64) -> Vec<SobolIndex> {
 }
 
 fn worst(table: &CaseTable, by: &str, replay: impl Fn(u64) -> String) -> Vec<WorstCase> {
-    let badness = |value: f64| match sense(by).better {
+    let badness = |value: f64| match figure_called(by).sense.better {
         Better::More => -value,
         Better::Less => value,
         Better::Near(best) => (value - best).abs(),

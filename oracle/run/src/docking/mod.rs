@@ -25,7 +25,7 @@ use pipeline::docking::{DockingConfig, DockingFactory};
 use scenario::run_file::RunFile;
 use scenario::{AttitudeChoice, DOCKING, DockingScenario};
 use score::docking::{DockingContext, DockingScore, DockingScorer, TrueField, names};
-use score::{Figure, UnitTable};
+use score::{Figure, FigureSpec, UnitTable};
 use serde_json::{Value, json};
 use sim::docking::{CameraConfig, DockingWorkspace, FieldExposure, FieldTruth};
 use sim::optics::Projection;
@@ -192,8 +192,8 @@ impl World for PreparedDocking {
         Ok(())
     }
 
-    fn figure_names() -> Vec<String> {
-        score::docking::figure_names()
+    fn figures() -> Vec<FigureSpec> {
+        score::docking::figures()
     }
 
     fn frame_count(&self) -> u64 {

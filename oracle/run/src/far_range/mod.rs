@@ -23,8 +23,8 @@ use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
 use scenario::run_file::RunFile;
 use scenario::{AttitudeChoice, FarRangeScenario, STARTING_POINT, is_argon};
 use score::{
-    ARGON_TABLE_2, Figure, GrantedAttitude, Score, ScoreContext, ScoreError, Scored, UnitTable, WithinLimits,
-    names,
+    ARGON_TABLE_2, Figure, FigureSpec, GrantedAttitude, Score, ScoreContext, ScoreError, Scored, UnitTable,
+    WithinLimits, names,
 };
 use serde_json::{Value, json};
 use sim::catalog::Catalog;
@@ -198,8 +198,8 @@ impl World for Prepared {
         Ok(())
     }
 
-    fn figure_names() -> Vec<String> {
-        score::figure_names()
+    fn figures() -> Vec<FigureSpec> {
+        score::figures()
     }
 
     fn frame_count(&self) -> u64 {
