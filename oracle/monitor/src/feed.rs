@@ -36,7 +36,11 @@ pub(super) trait Monitored: Send + Sync {
     fn time(&self, frame: u64) -> Option<Epoch>;
 
     /// What the page is told once: of the session, and of the scene.
-    fn overview(&self, measurements: &Measurements, surroundings: &Surroundings) -> Result<[Value; 2], Failure>;
+    fn overview(
+        &self,
+        measurements: &Measurements,
+        surroundings: &Surroundings,
+    ) -> Result<[Value; 2], Failure>;
 
     /// Processes or reads frame after frame, as far as they are wanted.
     fn feed(
@@ -111,10 +115,7 @@ pub(super) struct Surroundings {
 }
 
 /// The frames of a live run, or those of a run directory, which must be without gaps: a run's are.
-pub(super) fn frames<R: Row>(
-    measurements: &Measurements,
-    table: &str,
-) -> Result<Range<u64>, Failure> {
+pub(super) fn frames<R: Row>(measurements: &Measurements, table: &str) -> Result<Range<u64>, Failure> {
     let frames = match measurements {
         Measurements::Live { frames, .. } => frames.clone(),
         Measurements::Replay(directory) => {

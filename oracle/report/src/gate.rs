@@ -1,6 +1,6 @@
 //! The report of a gate: what changed, and the frames that flipped.
 
-use run::{Prepared, PreparedDocking, World as _, figure_called};
+use run::figure_called;
 use std::path::Path;
 
 use files::Failure;
@@ -8,13 +8,12 @@ use gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
 
 use super::chart::{Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
 use super::data_table::DataTable;
-use super::docking::{DockingRun, FieldSheet};
-use super::far_range::{FarRangeRun, FrameSheet};
 use super::figures::{cell, significant};
 use super::page::{Page, Section};
 use super::picture::Picture;
 use super::plotly::{Layout, Trace};
 use super::words::{capital, spoken};
+use super::worlds::report_of_world;
 
 /// Flipped frames that are shown as pictures, at most.
 const MOST_PICTURES: usize = 12;
@@ -41,31 +40,15 @@ impl FlippedFrames {
         if report.units == "cases" || flips.units.is_empty() {
             return Ok(none);
         }
+        let Some(world) = report_of_world(&report.world) else { return Ok(none) };
         let chosen = chosen(&flips.units);
-        let (mut pictures, reason) = if report.world == Prepared::CODE {
-            let run = FarRangeRun::read(result)?;
-            let rows =
-                rows_of(&chosen, |number| run.truths.binary_search_by_key(&number, |truth| truth.frame).ok());
-            let sheet = FrameSheet::open(result)?;
-            (sheet.pictures(&run, &rows)?, sheet.reason().map(str::to_owned))
-        } else if report.world == PreparedDocking::CODE {
-            let run = DockingRun::read(result)?;
-            let rows =
-                rows_of(&chosen, |number| run.truths.binary_search_by_key(&number, |truth| truth.field).ok());
-            let sheet = FieldSheet::open(result)?;
-            (sheet.pictures(&run, &rows)?, sheet.reason().map(str::to_owned))
-        } else {
-            return Ok(none);
-        };
+        let numbers: Vec<u64> = chosen.iter().map(|flip| flip.number).collect();
+        let (mut pictures, reason) = (world.pictures)(result, &numbers)?;
         for (picture, flip) in pictures.iter_mut().zip(&chosen) {
             picture.title = format!("{}: {}.", kind_words(flip.kind), change(flip));
         }
         Ok(Self { pictures, reason })
     }
-}
-
-fn rows_of(flips: &[&Flip], row: impl Fn(u64) -> Option<usize>) -> Vec<usize> {
-    flips.iter().filter_map(|flip| row(flip.number)).collect()
 }
 
 /// Of every change the first unit, lost ones first, then more of the lost.

@@ -17,9 +17,9 @@ use score::{Figure, FigureSpec, UnitTable};
 use serde_json::Value;
 use sim::SimError;
 
-use crate::docking::renderer::DockingRenderer;
 use crate::flight::Flight;
 use crate::pipeline_choice::PipelineChoice;
+use crate::renderer_choice::RendererChoice;
 use crate::run_result::{FirstFailure, RunResult};
 
 /// What a run is asked for beside its scenario. A world refuses what it does not have.
@@ -30,7 +30,7 @@ pub struct Options {
     /// The attitude granted to answers with a centroid alone, in place of what the scenario says.
     pub attitude: Option<AttitudeChoice>,
     /// Who draws the scene.
-    pub renderer: DockingRenderer,
+    pub renderer: RendererChoice,
 }
 
 /// A world, without its types. [`Of`](crate::Of) makes one of a [`World`](crate::World).

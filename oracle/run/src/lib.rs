@@ -20,6 +20,7 @@ pub mod far_range;
 pub mod flight;
 pub mod pipeline_choice;
 mod provenance;
+mod renderer_choice;
 mod run_result;
 mod slips;
 mod source;
@@ -31,6 +32,7 @@ pub use docking::PreparedDocking;
 pub use erased::Of;
 pub use far_range::{Prepared, SceneTruth};
 pub use flight::{Expectation, Flight};
+pub use renderer_choice::RendererChoice;
 pub use run_result::{FirstFailure, NotFlown, RunResult};
 pub use source::world_of_run;
 pub use world::{

@@ -43,14 +43,17 @@ impl Monitored for PreparedDocking {
         Some(self.simulator().moment(field).ok()?.time)
     }
 
-    fn overview(&self, measurements: &Measurements, surroundings: &Surroundings) -> Result<[Value; 2], Failure> {
+    fn overview(
+        &self,
+        measurements: &Measurements,
+        surroundings: &Surroundings,
+    ) -> Result<[Value; 2], Failure> {
         let (scenario, simulator) = (self.scenario(), self.simulator());
         let plan = Plan::new("m", &surroundings.frames, MARGIN_M_S, |field| {
             let state = simulator.moment(field).ok()?.state;
             Some([state.range_m(), state.range_rate_m_s()])
         });
-        let cameras: Vec<Value> =
-            scenario.cameras.iter().map(|c| camera(&c.name, &c.camera)).collect();
+        let cameras: Vec<Value> = scenario.cameras.iter().map(|c| camera(&c.name, &c.camera)).collect();
         let mut notes = Vec::new();
         if let Measurements::Replay(directory) = measurements
             && RunFile::<DockingScenario>::read(&directory.join("run.toml"))?.mitsuba.is_some()
@@ -121,11 +124,7 @@ impl Monitored for PreparedDocking {
     }
 }
 
-fn replay(
-    directory: &Path,
-    reporter: &mut DockingReporter<'_>,
-    session: &Session,
-) -> Result<(), Failure> {
+fn replay(directory: &Path, reporter: &mut DockingReporter<'_>, session: &Session) -> Result<(), Failure> {
     let mut features = optional(&directory.join("features.parquet"))
         .map(|path| TableReader::<FeatureRow>::open(&path))
         .transpose()?;

@@ -40,7 +40,11 @@ impl Monitored for Prepared {
         self.simulator().schedule().frame(frame).map(|(_, time)| time)
     }
 
-    fn overview(&self, measurements: &Measurements, surroundings: &Surroundings) -> Result<[Value; 2], Failure> {
+    fn overview(
+        &self,
+        measurements: &Measurements,
+        surroundings: &Surroundings,
+    ) -> Result<[Value; 2], Failure> {
         let scenario = self.scenario();
         let schedule = self.simulator().schedule();
         let trajectory = Trajectory::new(&scenario.orbit)?;
@@ -49,15 +53,12 @@ impl Monitored for Prepared {
         let plan = Plan::new("km", frames, MARGIN_M_S, |frame| {
             at(frame).map(|time| range_and_rate(&trajectory, time))
         });
-        let radius_km =
-            at(frames.start).map(|time| trajectory.at(time).target.position_km.norm());
+        let radius_km = at(frames.start).map(|time| trajectory.at(time).target.position_km.norm());
         let step = ((frames.end - frames.start) / ORBIT_POINTS).max(1);
         let orbit: Vec<(u64, [f64; 3])> = frames
             .clone()
             .step_by(usize::try_from(step).unwrap_or(usize::MAX))
-            .filter_map(|frame| {
-                at(frame).map(|time| (frame, trajectory.at(time).chaser_rtn_km().into()))
-            })
+            .filter_map(|frame| at(frame).map(|time| (frame, trajectory.at(time).chaser_rtn_km().into())))
             .collect();
         // Nobody looked between one day and the next: no line crosses that time.
         let begins: Vec<u64> = schedule.sequences().map(|day| day.frames.start).collect();
@@ -107,11 +108,7 @@ impl Monitored for Prepared {
     }
 }
 
-fn replay(
-    directory: &Path,
-    reporter: &FarRangeReporter<'_>,
-    session: &Session,
-) -> Result<(), Failure> {
+fn replay(directory: &Path, reporter: &FarRangeReporter<'_>, session: &Session) -> Result<(), Failure> {
     let mut objects = TableReader::<ObjectTruth>::open(&directory.join("truth/objects.parquet"))?;
     let mut clusters = optional(&directory.join("clusters.parquet"))
         .map(|path| TableReader::<FrameCluster>::open(&path))

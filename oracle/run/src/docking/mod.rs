@@ -32,6 +32,7 @@ use sim::optics::Projection;
 
 use self::answers::{FieldAnswers, answer_as_filed};
 use self::dataset::{FieldDataset, FieldImages};
+use self::renderer::DockingRenderer;
 use crate::any_world::{Options, ScenarioSource};
 use crate::by_number::ByNumber;
 use crate::derived::{View, size};
@@ -69,7 +70,7 @@ impl World for PreparedDocking {
             Some(stage) => {
                 Err(Failure::Usage(format!("--inject is {stage}, expected with a far-range scenario alone")))
             }
-            None => Self::new(source, options.renderer),
+            None => Self::new(source, DockingRenderer::new(options.renderer)?),
         }
     }
 

@@ -75,9 +75,9 @@ impl World for Prepared {
     type Scored = Scored;
 
     fn prepare(source: &ScenarioSource, _: &FarRangeScenario, options: Options) -> Result<Self, Failure> {
-        if options.renderer.record().is_some() {
-            let message = "--renderer is mitsuba, expected with a docking scenario alone";
-            return Err(Failure::Usage(message.to_owned()));
+        if let Some(renderer) = options.renderer.word() {
+            let message = format!("--renderer is {renderer}, expected with a docking scenario alone");
+            return Err(Failure::Usage(message));
         }
         Self::with_options(source, options.inject, options.attitude)
     }
