@@ -29,8 +29,7 @@ pub(crate) struct SimulatedFrame {
 impl SimulatedFrame {
     pub(crate) fn new(py: Python<'_>, made: Made, ready: &Arc<Ready>) -> PyResult<Py<Self>> {
         let Parts { frame, telemetry, truth, objects } = made(py)?;
-        let own =
-            Self { telemetry, truth, objects, ready: Arc::clone(ready), expected: PyOnceLock::new() };
+        let own = Self { telemetry, truth, objects, ready: Arc::clone(ready), expected: PyOnceLock::new() };
         Py::new(py, PyClassInitializer::from(frame).add_subclass(own))
     }
 }

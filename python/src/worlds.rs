@@ -8,7 +8,7 @@ use boresight::failure::Failure;
 use boresight::files::Row;
 use boresight::flight::in_order;
 use boresight::run::world::{ImageOf, TelemetryOf};
-use boresight::run::{AnyFactory, AnyPrepared, AnyWorld, Prepared, PreparedDocking, SceneTruth, World};
+use boresight::run::{AnyFactory, AnyMission, AnyWorld, DockingMission, FarRangeMission, SceneTruth, World};
 use contract::docking::{Docking, Field, FieldTelemetry as DockingTelemetry};
 use contract::{FarRange, PipelineFactory};
 use pipeline::external::Protocol;
@@ -21,7 +21,7 @@ use crate::frame::{FieldTelemetry, Frame, Telemetry};
 
 /// One line each.
 fn all<P: PythonFactory>() -> [Entry<P>; 2] {
-    [Entry::of::<Prepared>(), Entry::of::<PreparedDocking>()]
+    [Entry::of::<FarRangeMission>(), Entry::of::<DockingMission>()]
 }
 
 /// A world: its word, what makes its frames, and the factory of a pipeline that is a callable.
@@ -50,7 +50,7 @@ impl<P: PythonFactory> Entry<P> {
 /// [`Failure::Usage`] when they are of a world that has no class in Python.
 pub(crate) fn in_python(
     world: &dyn AnyWorld,
-    prepared: Box<dyn AnyPrepared>,
+    prepared: Box<dyn AnyMission>,
 ) -> Result<Box<dyn AnyPythonWorld>, Failure> {
     let mut prepared = prepared.into_any();
     for entry in all::<Never>() {
@@ -128,7 +128,7 @@ pub(crate) trait PythonWorld: World<Interface: PythonInterface, Truth: Send> {
     }
 }
 
-impl PythonWorld for Prepared {
+impl PythonWorld for FarRangeMission {
     fn tables(truth: SceneTruth) -> PyResult<(RecordBatch, Option<RecordBatch>)> {
         let objects = batch(ObjectTruth::columns(&truth.objects))?;
         Ok((batch(FrameTruth::columns(&[truth.frame]))?, Some(objects)))
@@ -146,7 +146,7 @@ impl PythonWorld for Prepared {
     }
 }
 
-impl PythonWorld for PreparedDocking {
+impl PythonWorld for DockingMission {
     fn tables(truth: FieldTruth) -> PyResult<(RecordBatch, Option<RecordBatch>)> {
         Ok((batch(FieldTruth::columns(&[truth]))?, None))
     }
@@ -164,7 +164,7 @@ pub(crate) struct Parts {
 }
 
 /// A [`PythonWorld`], without its types.
-pub(crate) trait AnyPythonWorld: AnyPrepared {
+pub(crate) trait AnyPythonWorld: AnyMission {
     /// What a program is told before the first frame, a line of JSON.
     fn greeting(&self) -> Result<Vec<u8>, String>;
 
@@ -197,14 +197,21 @@ where
     ) -> Result<(), Failure> {
         let expose = |workspace: &mut W::Workspace<'_>, frame| World::expose(self, workspace, frame);
         let bytes = self.exposure_bytes() as u64;
-        in_order(frames, jobs, bytes, || self.workspace(), expose, |exposure| {
-            let (image, telemetry, truth) = W::receive(exposure, &W::Feedback::default());
-            take(Box::new(move |py| {
-                let (truth, objects) = W::tables(truth)?;
-                let telemetry = W::Interface::telemetry(py, &telemetry)?;
-                Ok(Parts { frame: W::Interface::frame(py, image)?, telemetry, truth, objects })
-            }))
-        })
+        in_order(
+            frames,
+            jobs,
+            bytes,
+            || self.workspace(),
+            expose,
+            |exposure| {
+                let (image, telemetry, truth) = W::receive(exposure, &W::Feedback::default());
+                take(Box::new(move |py| {
+                    let (truth, objects) = W::tables(truth)?;
+                    let telemetry = W::Interface::telemetry(py, &telemetry)?;
+                    Ok(Parts { frame: W::Interface::frame(py, image)?, telemetry, truth, objects })
+                }))
+            },
+        )
     }
 
     fn expected(&self, frame: u64) -> Option<Result<([usize; 2], Vec<f64>), Failure>> {

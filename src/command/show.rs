@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use files::Failure;
-use run::{Prepared, PreparedDocking, World as _};
+use run::{DockingMission, FarRangeMission, World as _};
 use serde_json::{Value, json};
 use show::{MOST_PANELS, Panel, ShowError, Stretch, encode, picture};
 
@@ -66,8 +66,8 @@ enum CloseUp {
 
 /// The worlds whose frames can be drawn: one line each.
 const PANELS: [(&str, Panels, CloseUp); 2] = [
-    (Prepared::CODE, far_range::panels, CloseUp::Inset),
-    (PreparedDocking::CODE, docking::panels, CloseUp::None),
+    (FarRangeMission::CODE, far_range::panels, CloseUp::Inset),
+    (DockingMission::CODE, docking::panels, CloseUp::None),
 ];
 
 pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer, Failure> {

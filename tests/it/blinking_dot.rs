@@ -8,7 +8,7 @@ use std::sync::Once;
 
 use boresight::failure::Failure;
 use boresight::files::{FileError, RunDirectory, WholeFile, toml_file};
-use boresight::run::world::{Answers, Dataset, Scored, Scorer};
+use boresight::run::world::{Answers, Dataset, Judgement, Scorer};
 use boresight::run::{Flight, Of, OpenDataset, Options, ScenarioSource, World, refuse_attitude, register};
 use boresight::run_file::RunFile;
 use boresight::scenario::{AttitudeChoice, scenario_file};
@@ -167,7 +167,7 @@ impl World for BlinkingDot {
     type Dataset<'a> = Files<'a>;
     type Answers = AnswerFile;
     type Scorer<'a> = Judge;
-    type Scored = Judge;
+    type Judgement = Judge;
 
     fn prepare(source: &ScenarioSource, scene: &Scene, _: Options) -> Result<Self, Failure> {
         Ok(Self(RunFile::new(&source.name, scene, source.files()?, None, None)?))
@@ -347,7 +347,7 @@ impl Scorer<BlinkingDot> for Judge {
     }
 }
 
-impl Scored for Judge {
+impl Judgement for Judge {
     type Score = IndexMap<String, Figure>;
 
     fn score(&self) -> &Self::Score {

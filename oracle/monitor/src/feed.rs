@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use axum::body::Bytes;
 use files::{Checksums, Failure, Row, TableReader};
 use hifitime::Epoch;
-use run::{AnyFactory, AnyPrepared, Prepared, PreparedDocking, World};
+use run::{AnyFactory, AnyMission, DockingMission, FarRangeMission, World};
 use serde_json::Value;
 
 use super::ground::GroundTrack;
@@ -21,7 +21,7 @@ type Take = fn(Box<dyn Any>) -> Result<Box<dyn Monitored>, Box<dyn Any>>;
 
 /// The worlds that the page shows: one line each.
 const WORLDS: [(&str, Take); 2] =
-    [(Prepared::CODE, take::<Prepared>), (PreparedDocking::CODE, take::<PreparedDocking>)];
+    [(FarRangeMission::CODE, take::<FarRangeMission>), (DockingMission::CODE, take::<DockingMission>)];
 
 fn take<W: Monitored + 'static>(prepared: Box<dyn Any>) -> Result<Box<dyn Monitored>, Box<dyn Any>> {
     prepared.downcast::<W>().map(|prepared| prepared as Box<dyn Monitored>)
@@ -69,7 +69,7 @@ impl Feed {
     ///
     /// # Errors
     /// [`Failure::Usage`] for a world that the page does not show.
-    pub fn new(prepared: Box<dyn AnyPrepared>, measurements: Measurements) -> Result<Self, Failure> {
+    pub fn new(prepared: Box<dyn AnyMission>, measurements: Measurements) -> Result<Self, Failure> {
         let mut prepared = prepared.into_any();
         for (_, take) in WORLDS {
             match take(prepared) {

@@ -64,7 +64,7 @@ use self::read::{is_far_range_run, read_json};
 use self::run_page::run_page;
 use self::worlds::report_of_world;
 use files::{Checksums, Earlier, Failure, WholeFile};
-use run::{AnyScored, NotFlown, world_of_run};
+use run::{AnyJudgement, NotFlown, world_of_run};
 use serde::Deserialize;
 
 /// The report of a directory of results, with the error budget that is kept there.
@@ -82,7 +82,7 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
 }
 
 /// The page of a run by its world, which says what of it was not flown.
-fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyScored>) -> Result<Page, Failure> {
+fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
     let world = world_of_run(&directory.join("run.toml"))?;
     let mut page = match report_of_world(world.code()) {
         Some(of_world) => (of_world.page)(directory, scored)?,
@@ -133,7 +133,7 @@ pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, 
 ///
 /// # Errors
 /// As [`report_of`].
-pub fn report_of_run(directory: &Path, scored: &mut dyn AnyScored) -> Result<Page, Failure> {
+pub fn report_of_run(directory: &Path, scored: &mut dyn AnyJudgement) -> Result<Page, Failure> {
     page_of_run(directory, Some(scored))
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use files::Failure;
-use run::{AnyScored, Prepared, PreparedDocking, World};
+use run::{AnyJudgement, DockingMission, FarRangeMission, World};
 
 use super::page::Page;
 use super::picture::Picture;
@@ -13,7 +13,7 @@ use super::{docking, far_range};
 pub(crate) struct WorldReport {
     code: &'static str,
     /// Makes the page of a run directory and checks that what it read is what was written; of a run of this process from its verdicts, which it may take.
-    pub(crate) page: fn(&Path, Option<&mut dyn AnyScored>) -> Result<Page, Failure>,
+    pub(crate) page: fn(&Path, Option<&mut dyn AnyJudgement>) -> Result<Page, Failure>,
     /// Renders frames of a run directory anew.
     pub(crate) pictures: fn(&Path, &[u64]) -> Result<Rendered, Failure>,
 }
@@ -23,8 +23,8 @@ pub(crate) type Rendered = (Vec<Picture>, Option<String>);
 
 /// One line each.
 const WORLDS: [WorldReport; 2] = [
-    WorldReport { code: Prepared::CODE, page: far_range::page, pictures: far_range::pictures },
-    WorldReport { code: PreparedDocking::CODE, page: docking::page, pictures: docking::pictures },
+    WorldReport { code: FarRangeMission::CODE, page: far_range::page, pictures: far_range::pictures },
+    WorldReport { code: DockingMission::CODE, page: docking::page, pictures: docking::pictures },
 ];
 
 /// What the report of a world has of its own, by the world's word; `None` for a world that has nothing.

@@ -9,13 +9,13 @@ use score::FigureSpec;
 
 use crate::any_world::AnyWorld;
 use crate::erased::Of;
-use crate::{Prepared, PreparedDocking};
+use crate::{DockingMission, FarRangeMission};
 
 /// The world of a scenario that names none.
-pub const FIRST: &dyn AnyWorld = &Of::<Prepared>::NEW;
+pub const FIRST: &dyn AnyWorld = &Of::<FarRangeMission>::NEW;
 
 /// The worlds that there are: one line each.
-const BUILT_IN: [&dyn AnyWorld; 2] = [FIRST, &Of::<PreparedDocking>::NEW];
+const BUILT_IN: [&dyn AnyWorld; 2] = [FIRST, &Of::<DockingMission>::NEW];
 
 /// Worlds of somebody's own.
 static REGISTERED: RwLock<Vec<&'static dyn AnyWorld>> = RwLock::new(Vec::new());

@@ -39,7 +39,7 @@ pub struct ScoreContext<'a> {
 
 /// A score and the verdicts that it counts.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scored {
+pub struct FarRangeJudgement {
     /// The figures.
     pub score: Score,
     /// One verdict a frame, in order.
@@ -176,7 +176,7 @@ impl<'a> Scorer<'a> {
 
     /// The figures over all frames. Each group is one sequence for the statistics, even where another one
     /// interrupts it.
-    pub fn finish(self) -> Scored {
+    pub fn finish(self) -> FarRangeJudgement {
         let mut groups: IndexMap<&str, Vec<&FrameVerdict>> = IndexMap::new();
         for verdict in &self.verdicts {
             groups.entry(&verdict.group).or_default().push(verdict);
@@ -200,7 +200,7 @@ impl<'a> Scorer<'a> {
             wrong: all.wrong,
             wrong_taken: all.wrong_taken,
         };
-        Scored { score, verdicts: self.verdicts, limits, published: None }
+        FarRangeJudgement { score, verdicts: self.verdicts, limits, published: None }
     }
 }
 

@@ -38,7 +38,7 @@ mod hand_made;
 mod report;
 mod verdict;
 
-pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, figures};
+pub use accumulate::{FarRangeJudgement, ScoreContext, ScoreError, Scorer, figures};
 pub use angles::{
     AnswerError, AttitudeUsed, GrantedAttitude, LineOfSightError, WithinLimits, attitude_note, attitude_word,
 };

@@ -12,7 +12,7 @@ use contract::docking::Digitiser;
 use files::docking::{FeatureRow, read_field_measurements, read_motion};
 use files::{Failure, TableReader, read_field_telemetry};
 use hifitime::Epoch;
-use run::{PreparedDocking, World};
+use run::{DockingMission, World};
 use scenario::DockingScenario;
 use scenario::run_file::RunFile;
 use serde::Serialize;
@@ -30,7 +30,7 @@ use super::session::Session;
 /// Least half width of the corridor, m/s.
 const MARGIN_M_S: f64 = 0.05;
 
-impl Monitored for PreparedDocking {
+impl Monitored for DockingMission {
     fn surroundings(&self, measurements: &Measurements) -> Result<Surroundings, Failure> {
         Ok(Surroundings {
             ground: GroundTrack::station(self.simulator()),

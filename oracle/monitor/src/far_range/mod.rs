@@ -7,7 +7,7 @@ use std::path::Path;
 use contract::docking::Digitiser;
 use files::{Failure, FrameCluster, TableReader, read_measurements};
 use hifitime::Epoch;
-use run::{Prepared, SceneTruth, World};
+use run::{FarRangeMission, SceneTruth, World};
 use serde_json::{Value, json};
 use sim::truth::{FrameTruth, ObjectTruth, Trajectory};
 
@@ -26,7 +26,7 @@ const MARGIN_M_S: f64 = 0.1;
 /// Points of the relative orbit that are drawn.
 const ORBIT_POINTS: u64 = 3000;
 
-impl Monitored for Prepared {
+impl Monitored for FarRangeMission {
     fn surroundings(&self, measurements: &Measurements) -> Result<Surroundings, Failure> {
         let scenario = self.scenario();
         Ok(Surroundings {

@@ -21,13 +21,13 @@ use super::page::{Page, Section};
 use super::plotly::Trace;
 use super::words::spoken;
 use super::worlds::Rendered;
-use ::run::AnyScored;
+use ::run::AnyJudgement;
 use files::{Checksums, Failure};
 use score::docking::DockingGroup;
 use score::{Figure, UnitVerdict};
 
 /// The page of a run directory.
-pub(crate) fn page(directory: &Path, _: Option<&mut dyn AnyScored>) -> Result<Page, Failure> {
+pub(crate) fn page(directory: &Path, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
     let page = docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?)?;
     Checksums::check(directory, |_| true)?;
     Ok(page)

@@ -26,14 +26,14 @@ use super::page::{Page, Section};
 use super::plotly::Trace;
 use super::words::spoken;
 use super::worlds::Rendered;
-use ::run::AnyScored;
+use ::run::AnyJudgement;
 use files::{Checksums, Failure};
 use scenario::is_argon;
-use score::{ARGON_TABLE_2, AttitudeUsed, GroupScore, Scored, angle, attitude_note};
+use score::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore, angle, attitude_note};
 
 /// The page of a run directory with the error budget that is kept there; without one, of a run whose verdicts are known.
-pub(crate) fn page(directory: &Path, scored: Option<&mut dyn AnyScored>) -> Result<Page, Failure> {
-    let run = match scored.and_then(|scored| scored.as_any_mut().downcast_mut::<Scored>()) {
+pub(crate) fn page(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
+    let run = match scored.and_then(|scored| scored.as_any_mut().downcast_mut::<FarRangeJudgement>()) {
         Some(scored) => FarRangeRun::with_verdicts(directory, std::mem::take(&mut scored.verdicts))?,
         None => {
             let mut run = FarRangeRun::read(directory)?;

@@ -5,10 +5,10 @@
 
 pub mod answers;
 pub mod dataset;
-mod prepared;
+mod mission;
 pub mod renderer;
 
-pub use prepared::{PreparedDocking, simulator};
+pub use mission::{DockingMission, simulator};
 
 use std::fmt::Debug;
 use std::path::Path;
@@ -39,7 +39,7 @@ use crate::derived::{View, size};
 use crate::flight::{Expectation, Flight, in_order};
 use crate::world::{self, OpenDataset, World, refuse_attitude, unscorable};
 
-impl World for PreparedDocking {
+impl World for DockingMission {
     const STARTING_POINT: &'static str = DOCKING;
     const SETUP_FILE: &'static str = "setup.toml";
     /// An approach is one sequence; its groups are ranges.
@@ -62,7 +62,7 @@ impl World for PreparedDocking {
     type Dataset<'a> = FieldDataset<'a>;
     type Answers = FieldAnswers;
     type Scorer<'a> = Scorer;
-    type Scored = ScoredFields;
+    type Judgement = DockingJudgement;
 
     fn prepare(source: &ScenarioSource, _: &DockingScenario, options: Options) -> Result<Self, Failure> {
         refuse_attitude(options.attitude)?;
@@ -245,7 +245,7 @@ impl World for PreparedDocking {
         measurements: &Path,
         motion: Option<&Path>,
         attitude: Option<AttitudeChoice>,
-    ) -> Result<ScoredFields, Failure> {
+    ) -> Result<DockingJudgement, Failure> {
         refuse_attitude(attitude)?;
         let run_file = RunFile::<DockingScenario>::read(&directory.join("run.toml"))?;
         let setup = SetupFile::read(&directory.join("setup.toml"))?.setup();
@@ -293,7 +293,7 @@ impl Scorer {
     }
 }
 
-impl world::Scorer<PreparedDocking> for Scorer {
+impl world::Scorer<DockingMission> for Scorer {
     /// Truth and answer are judged as their files would give them back, so that a run and its files have the same score to the bit.
     fn add(
         &mut self,
@@ -305,19 +305,19 @@ impl world::Scorer<PreparedDocking> for Scorer {
         self.scorer.add(&truth, Some(&answer_as_filed(outcome))).map_err(unscorable)
     }
 
-    fn finish(self) -> ScoredFields {
-        ScoredFields { score: self.scorer.score(), scorer: self.scorer }
+    fn finish(self) -> DockingJudgement {
+        DockingJudgement { score: self.scorer.score(), scorer: self.scorer }
     }
 }
 
 /// The score of a docking run, with the fields that it was counted from.
-pub struct ScoredFields {
+pub struct DockingJudgement {
     /// The score.
     pub score: DockingScore,
     scorer: DockingScorer,
 }
 
-impl world::Scored for ScoredFields {
+impl world::Judgement for DockingJudgement {
     type Score = DockingScore;
 
     fn score(&self) -> &DockingScore {
