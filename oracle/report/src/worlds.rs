@@ -6,7 +6,7 @@ use files::Failure;
 use run::{AnyJudgement, DockingMission, FarRangeMission, World};
 
 use super::page::Page;
-use super::picture::Picture;
+use super::picture::Rendered;
 use super::{docking, far_range};
 
 /// What the report of a world has of its own.
@@ -17,9 +17,6 @@ pub(crate) struct WorldReport {
     /// Renders frames of a run directory anew.
     pub(crate) pictures: fn(&Path, &[u64]) -> Result<Rendered, Failure>,
 }
-
-/// Pictures of frames; without them the reason why there are none.
-pub(crate) type Rendered = (Vec<Picture>, Option<String>);
 
 /// One line each.
 const WORLDS: [WorldReport; 2] = [
