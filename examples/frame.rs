@@ -1,9 +1,9 @@
 //! Renders one frame of ARGON and lists what is in it: `cargo run --release --example frame`.
 
-use boresight::run::{Prepared, ScenarioSource};
+use boresight::run::{FarRangeMission, ScenarioSource};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let prepared = Prepared::new(&ScenarioSource::read("argon")?)?;
+    let prepared = FarRangeMission::new(&ScenarioSource::read("argon")?)?;
     let exposure = prepared.simulator().camera()?.expose(8000)?;
     let frame = &exposure.frame;
     println!("{} × {} pixels, {} objects:", frame.columns(), frame.rows(), exposure.objects.len());

@@ -1,6 +1,6 @@
 //! The smallest pipeline there is, scored: it calls the brightest pixel the target.
 
-use boresight::run::{Prepared, ScenarioSource, World as _};
+use boresight::run::{FarRangeMission, ScenarioSource, World as _};
 use boresight::table::{TableStyle, far_range};
 use contract::{
     ContractError, FarRange, Frame, Measurement, NoSolution, Outcome, Pipeline, PipelineFactory, PixelPoint,
@@ -37,7 +37,7 @@ impl PipelineFactory<FarRange> for BrightestFactory {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let prepared = Prepared::new(&ScenarioSource::read("argon")?)?;
+    let prepared = FarRangeMission::new(&ScenarioSource::read("argon")?)?;
     let ran = prepared.score(8000..8200, &BrightestFactory)?;
     println!("{}", far_range(&ran.scored.score, TableStyle::default()));
     Ok(())

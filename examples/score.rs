@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use boresight::run::{Prepared, World as _};
+use boresight::run::{FarRangeMission, World as _};
 use boresight::table::{TableStyle, far_range};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -11,7 +11,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [directory, measurements] = arguments.as_slice() else {
         return Err("expected two arguments: DIRECTORY MEASUREMENTS.csv".into());
     };
-    let scored = Prepared::score_files(Path::new(directory), Path::new(measurements), None, None)?;
+    let scored = FarRangeMission::score_files(Path::new(directory), Path::new(measurements), None, None)?;
     println!("{}", far_range(&scored.score, TableStyle::default()));
     let correct = &scored.score.figures["correct_rate"];
     println!("correct: {} of {} frames", correct.count, correct.of);

@@ -1,29 +1,16 @@
 //! Frames and telemetry for Python: pixels as numpy arrays over the buffer that the simulator filled.
 
-use std::sync::Arc;
-
-use arrow_array::RecordBatch;
-use boresight::files::{Row, format_utc};
+use boresight::files::format_utc;
 use contract::docking::{Field, FieldTelemetry as DockingTelemetry};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
-use pyo3::types::PyDict;
-use sim::Exposure;
-use sim::docking::FieldTruth;
-use sim::truth::{FrameTruth, ObjectTruth};
-
-use crate::arrow::batch;
-use crate::errors::{raised, refused};
-use crate::ready::{Ready, World};
-use crate::table::{Table, row};
 
 /// An image as it arrives on the ground: what a pipeline sees.
 #[pyclass(frozen, subclass, module = "boresight")]
 pub(crate) struct Frame {
     /// Number of the frame (docking: of the field) in its scenario.
     #[pyo3(get)]
-    number: u64,
+    pub(crate) number: u64,
     /// Bits of the converter: full scale is 2**bit_depth - 1.
     #[pyo3(get)]
     bit_depth: u8,
@@ -121,89 +108,5 @@ impl FieldTelemetry {
 impl FieldTelemetry {
     fn __repr__(&self) -> String {
         format!("<boresight.FieldTelemetry {} s, camera {}>", self.time_s, self.camera)
-    }
-}
-
-/// A frame with its telemetry and its truth. As a `Frame` it can be given to a pipeline, which looks at no more than a `Frame` has.
-#[pyclass(frozen, extends = Frame, module = "boresight")]
-pub(crate) struct SimulatedFrame {
-    /// What a pipeline is told beside the frame: `Telemetry`, or `FieldTelemetry` of a docking field.
-    #[pyo3(get)]
-    telemetry: Py<PyAny>,
-    truth: RecordBatch,
-    objects: Option<RecordBatch>,
-    ready: Arc<Ready>,
-    expected: PyOnceLock<Py<PyArray2<f64>>>,
-}
-
-impl SimulatedFrame {
-    /// A frame of the far range.
-    pub(crate) fn of(py: Python<'_>, exposure: Exposure, ready: &Arc<Ready>) -> PyResult<Py<Self>> {
-        let own = Self {
-            telemetry: Py::new(py, Telemetry::of(&exposure.telemetry))?.into_any(),
-            truth: batch(FrameTruth::columns(&[exposure.truth]))?,
-            objects: Some(batch(ObjectTruth::columns(&exposure.objects))?),
-            ready: Arc::clone(ready),
-            expected: PyOnceLock::new(),
-        };
-        Py::new(py, PyClassInitializer::from(Frame::of(py, exposure.frame)?).add_subclass(own))
-    }
-
-    /// A docking field.
-    pub(crate) fn of_field(
-        py: Python<'_>,
-        field: Field,
-        telemetry: &DockingTelemetry,
-        truth: FieldTruth,
-        ready: &Arc<Ready>,
-    ) -> PyResult<Py<Self>> {
-        let own = Self {
-            telemetry: Py::new(py, FieldTelemetry::of(telemetry))?.into_any(),
-            truth: batch(FieldTruth::columns(&[truth]))?,
-            objects: None,
-            ready: Arc::clone(ready),
-            expected: PyOnceLock::new(),
-        };
-        Py::new(py, PyClassInitializer::from(Frame::of_field(py, field)?).add_subclass(own))
-    }
-}
-
-#[pymethods]
-impl SimulatedFrame {
-    /// The truth about the frame, by the names of truth/frames.parquet (docking: truth/fields.parquet), units in the names.
-    #[getter]
-    fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        row(py, self.truth.clone())
-    }
-
-    /// The truth about every object in the frame: a table with the columns of truth/objects.parquet. Far range alone.
-    #[getter]
-    fn objects(&self) -> PyResult<Table> {
-        let objects = self.objects.clone();
-        let objects = objects
-            .ok_or_else(|| refused("objects", "asked of a docking field", "a frame of the far range"))?;
-        Ok(Table::of_batch(objects))
-    }
-
-    /// The frame without noise: expected photoelectrons, dark current and hot pixels included, before saturation; float64 of shape
-    /// (rows, columns). Made when it is first asked for. Far range alone.
-    #[getter]
-    fn expected<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let (py, own, number) = (slf.py(), slf.get(), slf.as_super().get().number);
-        let make = || {
-            let World::FarRange(prepared) = &own.ready.world else {
-                return Err(refused("expected", "asked of a docking field", "a frame of the far range"));
-            };
-            let electrons = py.detach(|| {
-                let mut camera = prepared.simulator().camera()?;
-                camera.expose(number)?;
-                let image = camera.expected();
-                Ok((image.size(), image.iter().collect::<Vec<f64>>()))
-            });
-            let ((columns, rows), electrons) =
-                electrons.map_err(|error: sim::SimError| raised(error.into()))?;
-            Ok(PyArray1::from_vec(py, electrons).reshape([rows, columns])?.unbind())
-        };
-        Ok(own.expected.get_or_try_init(py, make)?.bind(py).clone())
     }
 }

@@ -29,12 +29,14 @@ mod ready;
 mod run;
 mod scenario;
 mod score;
+mod simulated_frame;
 mod stream;
 mod study;
 mod study_pipeline;
 mod table;
 mod visibility;
 mod wait;
+mod worlds;
 
 /// Scenarios, frames, runs, scores, studies and visibility, over the engine of the command `boresight`.
 #[pyo3::pymodule]
@@ -42,13 +44,15 @@ mod _boresight {
     #[pymodule_export]
     use crate::command::command;
     #[pymodule_export]
-    use crate::frame::{FieldTelemetry, Frame, SimulatedFrame, Telemetry};
+    use crate::frame::{FieldTelemetry, Frame, Telemetry};
     #[pymodule_export]
     use crate::run::{Run, run};
     #[pymodule_export]
     use crate::scenario::Scenario;
     #[pymodule_export]
     use crate::score::score;
+    #[pymodule_export]
+    use crate::simulated_frame::SimulatedFrame;
     #[pymodule_export]
     use crate::stream::FrameStream;
     #[pymodule_export]

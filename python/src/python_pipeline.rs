@@ -4,18 +4,16 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use contract::docking::Docking;
-use contract::{ContractError, FarRange, Pipeline, PipelineFactory};
-use pipeline::external::Protocol;
+use contract::{ContractError, Pipeline, PipelineFactory};
 use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
 use crate::errors::refused;
-use crate::frame::{FieldTelemetry, Frame, Telemetry};
 use crate::ready::Ready;
 use crate::scenario::setup;
 use crate::wait::Ended;
+use crate::worlds::{PythonFactory, PythonInterface};
 
 /// Longest reason of an exception, in characters: it stands in a table.
 const REASON: usize = 400;
@@ -148,35 +146,9 @@ pub(crate) fn name(given: &Bound<'_, PyAny>) -> String {
     given.getattr("__name__").and_then(|name| name.extract()).unwrap_or_else(|_| "python".to_owned())
 }
 
-/// An interface whose images and telemetry are values in Python.
-pub(crate) trait PythonInterface: Protocol {
-    /// An image and its telemetry, as a callable takes them.
-    fn question(
-        py: Python<'_>,
-        image: &Self::Image,
-        telemetry: &Self::Telemetry,
-    ) -> PyResult<(Py<PyAny>, Py<PyAny>)>;
-}
-
-impl PythonInterface for FarRange {
-    fn question(
-        py: Python<'_>,
-        frame: &contract::Frame,
-        telemetry: &contract::Telemetry,
-    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-        let frame = Py::new(py, Frame::of(py, frame.clone())?)?.into_any();
-        Ok((frame, Py::new(py, Telemetry::of(telemetry))?.into_any()))
-    }
-}
-
-impl PythonInterface for Docking {
-    fn question(
-        py: Python<'_>,
-        field: &contract::docking::Field,
-        telemetry: &contract::docking::FieldTelemetry,
-    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-        let frame = Py::new(py, Frame::of_field(py, field.clone())?)?.into_any();
-        Ok((frame, Py::new(py, FieldTelemetry::of(telemetry))?.into_any()))
+impl PythonFactory for PythonPipeline {
+    fn of<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send> {
+        Box::new(self)
     }
 }
 
@@ -199,7 +171,11 @@ pub(crate) struct Running<I: PythonInterface> {
 impl<I: PythonInterface> Pipeline<I> for Running<I> {
     fn process(&mut self, image: &I::Image, telemetry: &I::Telemetry) -> I::Outcome {
         let number = I::number(image);
-        let answer = self.callable.ask((I::IMAGE, number), |py| I::question(py, image, telemetry));
+        let question = |py: Python<'_>| {
+            let frame = Py::new(py, I::frame(py, image.clone())?)?.into_any();
+            Ok((frame, I::telemetry(py, telemetry)?))
+        };
+        let answer = self.callable.ask((I::IMAGE, number), question);
         let outcome = answer.and_then(|line| I::outcome(line.as_bytes(), number, &self.setup));
         outcome.unwrap_or_else(I::failed)
     }

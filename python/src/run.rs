@@ -6,10 +6,8 @@ use std::sync::Arc;
 use boresight::failure::Failure;
 use boresight::files::{Checksums, RunDirectory, read_csv_table, read_parquet_table};
 use boresight::pipeline_choice::PipelineChoice;
-use boresight::run::{AnyFactory, Expectation, FirstFailure, Flight, ScenarioSource};
+use boresight::run::{Expectation, FirstFailure, Flight, ScenarioSource};
 use boresight::scenario::DockingScenario;
-use contract::FarRange;
-use contract::docking::Docking;
 use pipeline::external::DEFAULT_MEMORY_MB;
 use pyo3::prelude::*;
 use tempfile::TempDir;
@@ -19,10 +17,10 @@ use crate::arrow::batch;
 use crate::errors::{BoresightError, FileError, file_error, raised, refused};
 use crate::json;
 use crate::python_pipeline::PythonPipeline;
-use crate::ready::World;
 use crate::scenario::Scenario;
 use crate::table::Table;
 use crate::wait::Ended;
+use crate::worlds::factory;
 
 /// Largest score.json that is read.
 const MOST_SCORE_BYTES: u64 = 1 << 26;
@@ -190,13 +188,10 @@ pub(crate) fn run(
     };
     let run = || {
         // The pipeline first: while nothing has been written.
-        let prepared = ready.prepared();
+        let prepared = &ready.world;
         let factory = match asked {
             Asked::Word(choice) => prepared.factory(&choice, scratch.path())?,
-            Asked::Python(pipeline) => match &ready.world {
-                World::FarRange(_) => AnyFactory::new::<FarRange>(Box::new(pipeline)),
-                World::Docking(_) => AnyFactory::new::<Docking>(Box::new(pipeline)),
-            },
+            Asked::Python(pipeline) => factory(ready.source.world(), pipeline)?,
         };
         let (directory, temporary) = place(out.as_deref())?;
         let flight = Flight { frames, jobs, images: None, expectation: Expectation::Dropped };
@@ -211,7 +206,7 @@ pub(crate) fn run(
         return Err(interrupt);
     }
     let (directory, temporary, first_failure) = ran.map_err(raised)?;
-    let is_docking = matches!(ready.world, World::Docking(_));
+    let is_docking = ready.source.world().is_of::<DockingScenario>();
     Ok(Run { path: directory.path().to_owned(), is_docking, first_failure, _temporary: temporary })
 }
 

@@ -3,21 +3,20 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use boresight::run::{ScenarioSource, World as _};
+use boresight::run::ScenarioSource;
 use boresight::scenario::BUILT_IN;
 use boresight::study::{Study, value_at, with_overlay};
-use contract::docking::Digitiser;
-use pipeline::external::Protocol;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::Value;
 
 use crate::arguments;
 use crate::errors::{BoresightError, raised, refused};
-use crate::frame::SimulatedFrame;
 use crate::json;
-use crate::ready::{Ready, World};
+use crate::ready::Ready;
+use crate::simulated_frame::SimulatedFrame;
 use crate::stream::FrameStream;
+use crate::worlds::Made;
 
 /// What to simulate: a built-in scenario or a TOML file, with all its values checked.
 ///
@@ -146,20 +145,13 @@ impl Scenario {
             refused("number", number, &format!("a frame of the scenario, 0 to {}", count.saturating_sub(1)))
         };
         let number = u64::try_from(number).ok().filter(|number| *number < count).ok_or_else(expected)?;
-        match &self.ready.world {
-            World::FarRange(prepared) => {
-                let made = py.detach(|| prepared.simulator().camera()?.expose(number));
-                SimulatedFrame::of(py, made.map_err(|error| raised(error.into()))?, &self.ready)
-            }
-            World::Docking(prepared) => {
-                let simulator = prepared.simulator();
-                let made = py.detach(|| simulator.expose(&mut simulator.workspace()?, number));
-                let made = made.map_err(|error| raised(error.into()))?;
-                let digitiser = Digitiser::default();
-                let (field, telemetry) = (made.video.digitise(&digitiser), made.telemetry(digitiser));
-                SimulatedFrame::of_field(py, field, &telemetry, made.truth, &self.ready)
-            }
-        }
+        let mut made = None;
+        let mut take = |frame: Made| {
+            made = Some(frame);
+            Ok(())
+        };
+        py.detach(|| self.ready.world.make(number..number + 1, 1, &mut take)).map_err(raised)?;
+        SimulatedFrame::new(py, made.ok_or_else(expected)?, &self.ready)
     }
 
     /// Makes frames, in order, on `jobs` threads (default: all cores) while the caller works on those before: an iterator over
@@ -178,10 +170,6 @@ impl Scenario {
 
 /// What a pipeline is told before the first frame, as a dictionary.
 pub(crate) fn setup<'py>(py: Python<'py>, ready: &Ready) -> PyResult<Bound<'py, PyAny>> {
-    let line = match &ready.world {
-        World::FarRange(prepared) => contract::FarRange::greeting(prepared.setup()),
-        World::Docking(prepared) => contract::docking::Docking::greeting(prepared.setup()),
-    };
-    let line = line.map_err(BoresightError::new_err)?;
+    let line = ready.world.greeting().map_err(BoresightError::new_err)?;
     json::text_to_python(py, &String::from_utf8_lossy(&line))
 }

@@ -6,27 +6,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use boresight::failure::Failure;
-use boresight::flight::in_order;
-use boresight::run::{PreparedDocking, World as Simulated};
-use contract::docking::{Digitiser, Field, FieldTelemetry};
 use pyo3::prelude::*;
-use sim::Exposure;
-use sim::docking::FieldTruth;
 
 use crate::errors::{BoresightError, raised};
-use crate::frame::SimulatedFrame;
-use crate::ready::{Ready, World};
+use crate::ready::Ready;
+use crate::simulated_frame::SimulatedFrame;
+use crate::worlds::Made;
 
 /// How often a waiting caller looks whether somebody pressed Ctrl-C.
 const LOOK: Duration = Duration::from_millis(50);
 /// Frames that wait for the caller beside those of the batch being made.
 const WAITING: usize = 2;
-
-/// A frame that was made.
-enum Made {
-    FarRange(Box<Exposure>),
-    Docking(Box<(Field, FieldTelemetry, FieldTruth)>),
-}
 
 /// Frames in order, an iterator. They are made on other threads, some ahead of the one that is taken.
 #[pyclass(frozen, module = "boresight")]
@@ -49,30 +39,11 @@ impl FrameStream {
 }
 
 fn make(ready: &Ready, frames: Range<u64>, jobs: usize, send: &SyncSender<Result<Made, Failure>>) {
-    let hand_over = |made: Made| send.send(Ok(made)).map_err(|_| Failure::Interrupted);
-    let done = match &ready.world {
-        World::FarRange(prepared) => {
-            expose(prepared.as_ref(), frames, jobs, |exposure| hand_over(Made::FarRange(Box::new(exposure))))
-        }
-        World::Docking(prepared) => expose(prepared.as_ref(), frames, jobs, |exposure| {
-            hand_over(Made::Docking(Box::new(PreparedDocking::receive(exposure, &Digitiser::default()))))
-        }),
-    };
-    if let Err(failure) = done {
+    let mut hand_over = |made: Made| send.send(Ok(made)).map_err(|_| Failure::Interrupted);
+    if let Err(failure) = ready.world.make(frames, jobs, &mut hand_over) {
         // Nobody may be there to hear it.
         let _ = send.send(Err(failure));
     }
-}
-
-/// Exposes frames on threads and hands them on, in order.
-fn expose<W: Simulated>(
-    world: &W,
-    frames: Range<u64>,
-    jobs: usize,
-    take: impl FnMut(W::Exposure) -> Result<(), Failure>,
-) -> Result<(), Failure> {
-    let make = |workspace: &mut W::Workspace<'_>, frame| world.expose(workspace, frame);
-    in_order(frames, jobs, world.exposure_bytes() as u64, || world.workspace(), make, take)
 }
 
 #[pymethods]
@@ -85,13 +56,7 @@ impl FrameStream {
         let next = || self.made.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(LOOK);
         loop {
             match py.detach(next) {
-                Ok(Ok(Made::FarRange(exposure))) => {
-                    return SimulatedFrame::of(py, *exposure, &self.ready).map(Some);
-                }
-                Ok(Ok(Made::Docking(made))) => {
-                    let (field, telemetry, truth) = *made;
-                    return SimulatedFrame::of_field(py, field, &telemetry, truth, &self.ready).map(Some);
-                }
+                Ok(Ok(made)) => return SimulatedFrame::new(py, made, &self.ready).map(Some),
                 Ok(Err(failure)) => return Err(raised(failure)),
                 Err(RecvTimeoutError::Timeout) => py.check_signals()?,
                 Err(RecvTimeoutError::Disconnected) => return Ok(None),

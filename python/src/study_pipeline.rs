@@ -5,16 +5,15 @@ use std::sync::Arc;
 
 use boresight::failure::Failure;
 use boresight::run::{AnyFactory, AnyScenario, AnyWorld};
-use boresight::scenario::{DockingScenario, FarRangeScenario};
 use boresight::study::{Study, StudyPipeline};
-use contract::docking::Docking;
-use contract::{ContractError, FarRange, Pipeline, PipelineFactory};
+use contract::{ContractError, Pipeline, PipelineFactory};
 use pyo3::prelude::*;
 
 use crate::errors::BoresightError;
 use crate::json::text_to_python;
-use crate::python_pipeline::{PythonInterface, PythonPipeline, Running, check, name};
+use crate::python_pipeline::{PythonPipeline, Running, check, name};
 use crate::wait::Ended;
+use crate::worlds::{PythonFactory, PythonInterface, factory};
 
 /// A callable of (frame, telemetry), or a class of them, of which every case has an instance of its own.
 pub(crate) struct PythonStudyPipeline {
@@ -79,14 +78,13 @@ impl StudyPipeline for PythonStudyPipeline {
     }
 
     fn factory(&self, scenario: &dyn AnyScenario, _: &Path) -> Result<AnyFactory, Failure> {
-        let world = scenario.world();
-        if world.is_of::<DockingScenario>() {
-            Ok(AnyFactory::new::<Docking>(Box::new(self.again())))
-        } else if world.is_of::<FarRangeScenario>() {
-            Ok(AnyFactory::new::<FarRange>(Box::new(self.again())))
-        } else {
-            Err(Failure::Usage(format!("a callable of the world {} cannot be called", world.code())))
-        }
+        factory(scenario.world(), self.again())
+    }
+}
+
+impl PythonFactory for PythonStudyPipeline {
+    fn of<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send> {
+        Box::new(self)
     }
 }
 

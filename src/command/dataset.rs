@@ -13,7 +13,7 @@ use indicatif::ProgressBar;
 use run::any_world::ProcessingOrder;
 use run::docking::answers::FieldAnswers;
 use run::docking::renderer::DockingRenderer;
-use run::{AnyWorld, Expectation, Flight, Options, PreparedDocking, ScenarioSource, World as _, worlds};
+use run::{AnyWorld, DockingMission, Expectation, Flight, Options, ScenarioSource, World as _, worlds};
 use scenario::DockingScenario;
 use serde_json::{Map, Value, json};
 
@@ -250,7 +250,7 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
     let setup_file = setup_file(path, sequence);
     let (setup, config) = match (&sequence.scenario, &setup_file) {
         (Some(word), _) => {
-            let prepared = PreparedDocking::new(&ScenarioSource::read(word)?, DockingRenderer::Fast)?;
+            let prepared = DockingMission::new(&ScenarioSource::read(word)?, DockingRenderer::Fast)?;
             (prepared.setup().clone(), prepared.scenario().docking.clone())
         }
         (None, Some(file)) => {
@@ -265,7 +265,7 @@ fn process_sequence(arguments: &ProcessArguments, output: &Output) -> Result<Ans
         }
     };
     let scratch = super::scratch_directory()?;
-    let factory = arguments.pipeline.choice(&[path]).factory::<PreparedDocking>(&config, scratch.path())?;
+    let factory = arguments.pipeline.choice(&[path]).factory::<DockingMission>(&config, scratch.path())?;
     let fields = FieldSource::open(path, &setup, &sequence.options())?;
     let of_setup = setup_file.as_deref().filter(|_| sequence.scenario.is_none()).and_then(Path::parent);
     for folder in [of_setup, Some(path.as_path()).filter(|path| path.is_dir())].into_iter().flatten() {

@@ -1,7 +1,7 @@
 //! What `run` and `study replay` do alike: run, report, show.
 
 use files::{Failure, FileError, RunDirectory, toml_file};
-use run::{AnyFactory, AnyPrepared, Flight};
+use run::{AnyFactory, AnyMission, Flight};
 
 use super::Answer;
 use super::interrupt::tell_when_interrupted;
@@ -31,7 +31,7 @@ pub(super) fn tell_of_unfinished(directory: &RunDirectory) {
 
 /// Runs a scenario into a directory, writes the report if it is wanted, and shows the score.
 pub(super) fn fly(
-    prepared: &dyn AnyPrepared,
+    prepared: &dyn AnyMission,
     flight: &Flight<String>,
     factory: &AnyFactory,
     directory: &RunDirectory,

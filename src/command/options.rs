@@ -7,8 +7,8 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use files::Failure;
 use pipeline::external::{DEFAULT_MEMORY_MB, Sandbox};
+use run::RendererChoice;
 use run::ScenarioSource;
-use run::docking::renderer::DockingRenderer;
 use run::pipeline_choice::PipelineChoice;
 use scenario::AttitudeChoice;
 
@@ -163,27 +163,27 @@ impl RendererOptions {
     }
 
     /// The renderer asked for.
-    pub(super) fn renderer(&self) -> Result<DockingRenderer, Failure> {
+    pub(super) fn renderer(&self) -> Result<RendererChoice, Failure> {
         if self.renderer == RendererWord::Fast {
             self.check_fast()?;
-            return Ok(DockingRenderer::Fast);
+            return Ok(RendererChoice::BuiltIn);
         }
         self.mitsuba_renderer()
     }
 
     #[cfg(feature = "mitsuba")]
-    fn mitsuba_renderer(&self) -> Result<DockingRenderer, Failure> {
+    fn mitsuba_renderer(&self) -> Result<RendererChoice, Failure> {
         let mut options = mitsuba::MitsubaOptions {
             command: self.mitsuba.clone(),
             cache: self.mitsuba_cache.clone(),
             ..mitsuba::MitsubaOptions::default()
         };
         options.settings.samples = self.mitsuba_rays.unwrap_or(options.settings.samples);
-        DockingRenderer::mitsuba(options)
+        Ok(RendererChoice::Mitsuba(Box::new(options)))
     }
 
     #[cfg(not(feature = "mitsuba"))]
-    fn mitsuba_renderer(&self) -> Result<DockingRenderer, Failure> {
+    fn mitsuba_renderer(&self) -> Result<RendererChoice, Failure> {
         Err(super::missing_feature("mitsuba"))
     }
 

@@ -9,8 +9,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use files::Failure;
-use run::{Prepared, PreparedDocking, World as _};
-use scenario::DockingScenario;
+use run::{DockingMission, FarRangeMission, World as _};
 use serde_json::{Value, json};
 use show::{MOST_PANELS, Panel, ShowError, Stretch, encode, picture};
 
@@ -57,9 +56,19 @@ enum View {
 /// Reads frames of a directory and makes their panels.
 type Panels = fn(&Source, &[u64]) -> Result<Vec<Shown>, Failure>;
 
-/// The worlds whose frames can be drawn.
-const PANELS: [(&str, Panels); 2] =
-    [(Prepared::CODE, far_range::panels), (PreparedDocking::CODE, docking::panels)];
+/// Whether a panel of a whole frame has a close-up of the target in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum CloseUp {
+    Inset,
+    /// The target fills the frame soon enough.
+    None,
+}
+
+/// The worlds whose frames can be drawn: one line each.
+const PANELS: [(&str, Panels, CloseUp); 2] = [
+    (FarRangeMission::CODE, far_range::panels, CloseUp::Inset),
+    (DockingMission::CODE, docking::panels, CloseUp::None),
+];
 
 pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer, Failure> {
     if arguments.frames.len() > MOST_PANELS {
@@ -68,9 +77,14 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
     let source = Source::open(&arguments.directory, arguments.measurements.as_deref())?;
     // Refused before the work.
     let file = PictureFile::new(arguments.out.as_deref(), &source.directory, &arguments.frames)?;
-    let (_, panels) = PANELS.iter().find(|(code, _)| *code == source.world.code()).ok_or_else(|| {
-        Failure::Usage(format!("{}: there is no picture of the world {}", source.name, source.world.code()))
-    })?;
+    let (_, panels, close_up) =
+        PANELS.iter().find(|(code, ..)| *code == source.world.code()).ok_or_else(|| {
+            Failure::Usage(format!(
+                "{}: there is no picture of the world {}",
+                source.name,
+                source.world.code()
+            ))
+        })?;
     let mut shown = panels(&source, &arguments.frames)?;
     for Shown { panel, frame, .. } in &mut shown {
         panel.stretch = arguments.stretch.unwrap_or(panel.stretch);
@@ -80,8 +94,7 @@ pub(super) fn show(arguments: &ShowArguments, output: &Output) -> Result<Answer,
                     "--view is target, and frame {frame} has neither a target nor an answer in it, expected --view frame"
                 ))
             })?;
-        } else if source.world.is_of::<DockingScenario>() {
-            // The target fills the field soon enough.
+        } else if *close_up == CloseUp::None {
             panel.close_up = None;
         }
     }

@@ -1,35 +1,42 @@
 //! The table of a scored run of any world.
 
 use comfy_table::Cell;
-use run::AnyScored;
-use run::docking::ScoredFields;
-use score::{FigureLabel, Kind, Scored, sense};
+use run::docking::DockingJudgement;
+use run::{AnyJudgement, figure_called};
+use score::FarRangeJudgement;
 
 use crate::table::far_range::{finish, percent, plain_table};
 use crate::table::{TableStyle, docking, far_range};
 
+/// Makes the table of a scored run if it is one of a certain world.
+type Table = fn(&dyn AnyJudgement, bool) -> Option<String>;
+
+/// The worlds with tables of their own: one line each.
+const TABLES: [Table; 2] = [
+    |scored, styled| {
+        let scored = scored.as_any().downcast_ref::<FarRangeJudgement>()?;
+        let style = TableStyle { styled, reference: scored.published, ..TableStyle::default() };
+        Some(far_range(&scored.score, style))
+    },
+    |scored, styled| Some(docking(&scored.as_any().downcast_ref::<DockingJudgement>()?.score, styled)),
+];
+
 /// The score of a run as text: the table of its world, or its figures where it has none. Ends with a line feed.
-pub fn score_table(scored: &dyn AnyScored, styled: bool) -> String {
-    let any = scored.as_any();
-    if let Some(scored) = any.downcast_ref::<Scored>() {
-        far_range(&scored.score, TableStyle { styled, reference: scored.published, ..TableStyle::default() })
-    } else if let Some(scored) = any.downcast_ref::<ScoredFields>() {
-        docking(&scored.score, styled)
-    } else {
-        figures(scored, styled)
-    }
+pub fn score_table(scored: &dyn AnyJudgement, styled: bool) -> String {
+    TABLES.iter().find_map(|table| table(scored, styled)).unwrap_or_else(|| figures(scored, styled))
 }
 
-fn figures(scored: &dyn AnyScored, styled: bool) -> String {
+fn figures(scored: &dyn AnyJudgement, styled: bool) -> String {
     let mut table = plain_table(styled);
     table.set_header(["figure", "value", "count", "of"]);
     for (name, figure) in scored.figures() {
-        let value = match sense(name).kind {
-            Kind::Rate => figure.value.map(|value| format!("{} %", percent(value))),
-            _ => figure.value.map(|value| format!("{value:.4}")),
-        };
+        let spec = figure_called(name);
+        let value = figure.value.map(|value| match spec.is_rate() {
+            true => format!("{} %", percent(value)),
+            false => format!("{value:.4}"),
+        });
         table.add_row([
-            Cell::new(FigureLabel::of(name).beside_percent()),
+            Cell::new(spec.beside_percent()),
             Cell::new(value.unwrap_or_else(|| "–".to_owned())),
             Cell::new(figure.count),
             Cell::new(figure.of),

@@ -1,7 +1,7 @@
 //! What a person reads of a gate.
 use comfy_table::{Attribute, Cell};
 use gate::{Baseline, FigureReport, FigureVerdict, Flip, GateReport, Pairing};
-use score::{FigureLabel, Kind, sense};
+use run::figure_called;
 
 use crate::table::far_range::{finish, percent, plain_table};
 
@@ -24,7 +24,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
         let verdict = Cell::new(figure.verdict.words());
         let is_plain = matches!(figure.verdict, FigureVerdict::NoWorse | FigureVerdict::TooLittleData);
         table.add_row([
-            Cell::new(FigureLabel::of(name).beside_percent()),
+            Cell::new(figure_called(name).beside_percent()),
             Cell::new(value(figure.baseline)),
             Cell::new(value(figure.result)),
             Cell::new(difference(name, figure)),
@@ -33,7 +33,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
             Cell::new(value(figure.smallest_visible)),
         ]);
     }
-    let worse: Vec<String> = report.worse().map(|name| FigureLabel::of(name).words).collect();
+    let worse: Vec<String> = report.worse().map(|name| figure_called(name).words).collect();
     let verdict =
         if worse.is_empty() { "no worse".to_owned() } else { format!("WORSE: {}", worse.join(", ")) };
     let paired = match report.pairing {
@@ -129,7 +129,7 @@ pub fn baseline_text(baseline: &Baseline) -> String {
     let remembers = if rule.memory_of.is_empty() {
         "no figure remembers anything".to_owned()
     } else {
-        format!("{} remembers {} {units}", FigureLabel::of(&rule.memory_of).words, rule.memory)
+        format!("{} remembers {} {units}", figure_called(&rule.memory_of).words, rule.memory)
     };
     format!(
         "{} with seed {}: {} {units} in {} blocks of about {}; {remembers}\n",
@@ -143,7 +143,7 @@ fn signed(name: &str, value: f64) -> String {
 }
 
 fn number(name: &str, value: f64) -> String {
-    if sense(name).kind == Kind::Rate {
+    if figure_called(name).is_rate() {
         return percent(value);
     }
     let size = value.abs();

@@ -2,7 +2,8 @@
 use std::collections::HashMap;
 
 use comfy_table::{Attribute, Cell};
-use score::{FigureLabel, Kind, attitude_note, sense};
+use run::figure_called;
+use score::attitude_note;
 use study::{CaseFigure, CaseRow, Estimate, Study, Summary, Waited, overall};
 
 use crate::table::far_range::{finish, percent, plain_table};
@@ -146,7 +147,7 @@ fn differences(summary: &Summary, styled: bool) -> String {
 
 /// A difference of two figures with its interval; of rates in points of a percent.
 fn shown_difference(name: &str, estimate: &Estimate) -> String {
-    let is_rate = sense(name).kind == Kind::Rate;
+    let is_rate = figure_called(name).is_rate();
     let one = |value: f64| {
         if is_rate { format!("{:+.2}", 100.0 * value) } else { signed(name, value) }
     };
@@ -196,7 +197,7 @@ impl LiveFigure {
 
 /// What a figure is called beside its values.
 fn label(key: &str) -> String {
-    FigureLabel::of(key).beside_percent()
+    figure_called(key).beside_percent()
 }
 
 fn shown(name: &str, estimate: Option<&Estimate>) -> String {
@@ -210,7 +211,7 @@ fn shown(name: &str, estimate: Option<&Estimate>) -> String {
 }
 
 fn number(name: &str, value: f64) -> String {
-    if sense(name).kind == Kind::Rate {
+    if figure_called(name).is_rate() {
         return format!("{} %", percent(value));
     }
     let size = value.abs();

@@ -164,6 +164,45 @@ fn an_exemption_is_found_however_it_is_written() {
     assert!(std::panic::catch_unwind(|| exempt_modules(&file)).is_err(), "a file cannot exempt itself");
 }
 
+/// Files that may name more than one world: a table of worlds a crate, and tables of contents.
+const TABLES_OF_WORLDS: [&str; 9] = [
+    "oracle/monitor/src/feed.rs",
+    "oracle/report/src/worlds.rs",
+    "oracle/run/src/lib.rs",
+    "oracle/run/src/worlds.rs",
+    "oracle/scenario/src/builtin.rs",
+    "oracle/scenario/src/lib.rs",
+    "python/src/worlds.rs",
+    "src/command/show.rs",
+    "src/table/figures.rs",
+];
+
+/// Whether a file names types or words of both built-in worlds.
+fn names_both_worlds(text: &str) -> bool {
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let lines: Vec<&str> = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+    [("FarRange", "\"far_range\""), ("Docking", "\"docking\"")].iter().all(|(prefix, word)| {
+        let types = ["Mission", "Scenario", "Judgement"].map(|kind| format!("{prefix}{kind}"));
+        lines.iter().any(|line| line.contains(word) || types.iter().any(|name| line.contains(name)))
+    })
+}
+
+#[test]
+fn worlds_are_listed_in_their_tables_alone() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut listed: Vec<String> = ["src", "oracle", "python/src"]
+        .iter()
+        .flat_map(|folder| sources(&root.join(folder)))
+        .filter(|path| names_both_worlds(&read(path)))
+        .map(|path| path.strip_prefix(root).expect("a file of ours").display().to_string())
+        .filter(|name| !is_test(name) && !name.ends_with("hand_made.rs"))
+        .collect();
+    listed.sort();
+    assert_eq!(listed, TABLES_OF_WORLDS, "a world belongs in the table of its crate");
+    assert!(names_both_worlds("match world {\n    \"far_range\" => 1,\n    \"docking\" => 2,\n}"));
+    assert!(!names_both_worlds("// \"far_range\"\nlet of: DockingMission;"));
+}
+
 fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }

@@ -8,11 +8,11 @@ use std::sync::Once;
 
 use boresight::failure::Failure;
 use boresight::files::{FileError, RunDirectory, WholeFile, toml_file};
-use boresight::run::world::{Answers, Dataset, Scored, Scorer};
+use boresight::run::world::{Answers, Dataset, Judgement, Scorer};
 use boresight::run::{Flight, Of, OpenDataset, Options, ScenarioSource, World, refuse_attitude, register};
 use boresight::run_file::RunFile;
 use boresight::scenario::{AttitudeChoice, scenario_file};
-use boresight::score::{Definition, Figure, FigureTerms, Reduction, UnitTable, UnitVerdict};
+use boresight::score::{Definition, Figure, FigureSpec, FigureTerms, Reduction, UnitTable, UnitVerdict};
 use contract::{ContractError, Interface, Pipeline, PipelineFactory};
 use indexmap::IndexMap;
 use pipeline::external::{Protocol, WriteTime};
@@ -167,7 +167,7 @@ impl World for BlinkingDot {
     type Dataset<'a> = Files<'a>;
     type Answers = AnswerFile;
     type Scorer<'a> = Judge;
-    type Scored = Judge;
+    type Judgement = Judge;
 
     fn prepare(source: &ScenarioSource, scene: &Scene, _: Options) -> Result<Self, Failure> {
         Ok(Self(RunFile::new(&source.name, scene, source.files()?, None, None)?))
@@ -203,8 +203,8 @@ impl World for BlinkingDot {
         Ok(())
     }
 
-    fn figure_names() -> Vec<String> {
-        figures().into_iter().map(|figure| figure.name).collect()
+    fn figures() -> Vec<FigureSpec> {
+        figures().into_iter().map(|definition| definition.figure).collect()
     }
 
     fn frame_count(&self) -> u64 {
@@ -327,8 +327,8 @@ type Unit = (u64, Option<usize>, Option<usize>);
 
 fn figures() -> [Definition<'static, Unit>; 2] {
     [
-        Definition::rate("correct_rate", |(_, truth, answer): &Unit| Some(truth == answer)),
-        Definition::of("column_rms_px", Reduction::Rms, |(_, truth, answer): &Unit| {
+        Definition::rate("correct_rate", "correct rate", |(_, truth, answer): &Unit| Some(truth == answer)),
+        Definition::of("column_rms_px", "column RMS", "px", Reduction::Rms, |(_, truth, answer): &Unit| {
             Some((*truth)? as f64 - (*answer)? as f64)
         }),
     ]
@@ -338,8 +338,7 @@ impl Scorer<BlinkingDot> for Judge {
     fn add(&mut self, truth: &Truth, (): &(), answer: &Answer) -> Result<(), Failure> {
         self.units.push((truth.number, truth.column, answer.clone().unwrap_or_default()));
         let sequence: Vec<&Unit> = self.units.iter().collect();
-        self.score =
-            figures().iter().map(|figure| (figure.name.clone(), figure.figure(&[&sequence]))).collect();
+        self.score = figures().iter().map(|d| (d.figure.name.clone(), d.figure(&[&sequence]))).collect();
         Ok(())
     }
 
@@ -348,7 +347,7 @@ impl Scorer<BlinkingDot> for Judge {
     }
 }
 
-impl Scored for Judge {
+impl Judgement for Judge {
     type Score = IndexMap<String, Figure>;
 
     fn score(&self) -> &Self::Score {

@@ -1,7 +1,8 @@
 //! A result against a baseline.
 use files::{Failure, toml_file};
 use indexmap::IndexMap;
-use score::{Better, FigureTerms, Kind, Sense, UnitVerdict, attitude_note, sense};
+use run::figure_called;
+use score::{Better, FigureTerms, Kind, Sense, UnitVerdict, attitude_note};
 use statistics::{BlockEffects, Exchanges, JointTest, joint_test, normal_quantile};
 
 use super::baseline::Baseline;
@@ -62,7 +63,7 @@ pub fn compare(
         .iter()
         .map(|(before, after)| {
             let tolerance = options.tolerances.get(&before.name).copied();
-            FigureEffect::of_runs(sense(&before.name), before, after, blocks, tolerance)
+            FigureEffect::of_runs(figure_called(&before.name).sense, before, after, blocks, tolerance)
         })
         .collect();
     let worse: Vec<BlockEffects> = effects.iter().map(|effect| effect.worse.clone()).collect();
@@ -539,7 +540,10 @@ mod tests {
         let of = |limit_deg, attitude: Option<&str>| {
             let figure = FigureTerms { limit_deg, ..rate("ra_within_1px", &BEFORE) };
             let attitude = attitude.map(str::to_owned);
-            sample(vec![figure.resting_on(attitude.as_ref()), rate("hit_rate", &BEFORE)])
+            sample(vec![
+                figure.resting_on(&figure_called("ra_within_1px"), attitude.as_ref()),
+                rate("hit_rate", &BEFORE),
+            ])
         };
         let refused = |before: Sample, after: Sample, part: &str| {
             let message = refusal(before.clone(), &after, &CompareOptions::default());
@@ -615,7 +619,7 @@ mod tests {
     /// A figure best when less, of ten blocks, from 2 in the baseline to `result`.
     fn effect(result: f64) -> FigureEffect {
         FigureEffect {
-            sense: sense("ra_rms_deg"),
+            sense: figure_called("ra_rms_deg").sense,
             baseline: Some(2.0),
             result: Some(result),
             baseline_of: 100,
@@ -711,7 +715,7 @@ mod tests {
         assert_eq!((found.p, found.adjusted_p, found.better_adjusted_p), (0.25, 0.5, 0.75));
         assert_eq!((found.baseline_of, found.result_of, found.blocks), (100, 50, 10));
         assert_eq!(found.better, "less");
-        let near = FigureEffect { sense: sense("nees_mean"), ..effect(2.5) };
+        let near = FigureEffect { sense: figure_called("nees_mean").sense, ..effect(2.5) };
         assert_eq!(judged(&near, [1.0, 1.0], 2.0, 1).better, "near 1");
     }
 
@@ -735,7 +739,7 @@ mod tests {
     fn the_smallest_visible_loss_of_a_rate_brings_its_own_scatter() {
         for (standard_error, result_of) in [(0.25, 50), (0.01, 7), (0.0, 400)] {
             let effect = FigureEffect {
-                sense: sense("hit_rate"),
+                sense: figure_called("hit_rate").sense,
                 tolerance: 0.0,
                 standard_error,
                 result_of,
@@ -747,7 +751,12 @@ mod tests {
             assert!(seen > 0.0 && (seen - expected).abs() < 1e-12, "{seen}, not {expected}");
         }
         // Of nothing it is that of one.
-        let none = FigureEffect { sense: sense("hit_rate"), tolerance: 0.0, result_of: 0, ..effect(2.0) };
+        let none = FigureEffect {
+            sense: figure_called("hit_rate").sense,
+            tolerance: 0.0,
+            result_of: 0,
+            ..effect(2.0)
+        };
         let one = FigureEffect { result_of: 1, ..none.clone() };
         let [none, one] = [none, one].map(|effect| judged(&effect, [1.0, 1.0], 3.0, 2).smallest_visible);
         assert_eq!(none, one);

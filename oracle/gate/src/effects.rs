@@ -231,13 +231,13 @@ pub(super) fn neighbour_correlation(effects: &[f64]) -> f64 {
 mod tests {
     use super::super::hand_made::figure as terms;
     use super::*;
-    use score::sense;
+    use run::figure_called;
     use statistics::Exchanges;
 
     fn effect(name: &str, reduction: Reduction, a: &[Option<f64>], b: &[Option<f64>]) -> FigureEffect {
         let blocks = Blocks::every(a.len(), 2);
         FigureEffect::of_runs(
-            sense(name),
+            figure_called(name).sense,
             &terms(name, reduction, a),
             &terms(name, reduction, b),
             &blocks,
@@ -334,7 +334,8 @@ mod tests {
     fn a_block_counts_when_either_run_has_a_value_in_it() {
         let [a, b] = [[Some(1.0), Some(2.0), None, None], [Some(1.0), None, Some(3.0), None]]
             .map(|values| terms("ra_rms_deg", Reduction::Rms, &values));
-        let effect = FigureEffect::of_runs(sense("ra_rms_deg"), &a, &b, &Blocks::every(4, 1), None);
+        let effect =
+            FigureEffect::of_runs(figure_called("ra_rms_deg").sense, &a, &b, &Blocks::every(4, 1), None);
         assert_eq!((effect.blocks, effect.baseline_of, effect.result_of), (3, 2, 2));
     }
 
@@ -460,7 +461,7 @@ mod tests {
     fn a_figure_may_be_worse_by_a_hundredth_of_its_size_unless_told_otherwise() {
         let tolerance = |name: &str, reduction, a: f64, b: f64, told| {
             let [a, b] = [a, b].map(|value| terms(name, reduction, &[Some(value), None]));
-            FigureEffect::of_runs(sense(name), &a, &b, &Blocks::every(2, 1), told).tolerance
+            FigureEffect::of_runs(figure_called(name).sense, &a, &b, &Blocks::every(2, 1), told).tolerance
         };
         let is = |got: f64, expected: f64| assert!((got - expected).abs() < 1e-12, "{got}, not {expected}");
         // Of 3 and 4 the root mean square is √12.5.

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use files::sha256::{hex, sha256_hex};
 use files::{Checksums, Failure, FileError, file_sha256, table_sha256, toml_file};
-use run::{world_of_run, worlds};
+use run::{figure_called, world_of_run, worlds};
 use scenario::AttitudeChoice;
 use scenario::identity::split;
 use scenario::run_file::RunFile;
-use score::{FigureTerms, Kind, Reduction, Term, UnitTable, UnitVerdict, sense};
+use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 use sha2::{Digest, Sha256};
 use study::{CaseFigure, CaseTable, StudyRecord};
 use toml::Table;
@@ -147,7 +147,8 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
 #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
 fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
     let figure = |(index, name): (usize, &String)| {
-        let is_rate = sense(name).kind == Kind::Rate;
+        let figure = figure_called(name);
+        let is_rate = figure.is_rate();
         let term = |figure: CaseFigure| match figure.value {
             _ if is_rate => Term { sum: figure.count as f64, of: figure.of as u32 },
             Some(sum) => Term { sum, of: 1 },
@@ -155,7 +156,7 @@ fn units_of_cases(table: &CaseTable, attitude: Option<&String>) -> UnitTable {
         };
         let reduction = if is_rate { Reduction::Rate } else { Reduction::Mean };
         let terms = table.rows.iter().map(|row| term(row.figures[index])).collect();
-        FigureTerms::counted(name, reduction, terms).resting_on(attitude)
+        FigureTerms::counted(name, reduction, terms).resting_on(&figure, attitude)
     };
     let headlines: Vec<&str> = worlds().into_iter().map(|world| world.headline()).collect();
     let verdict = table.figures.iter().position(|name| headlines.contains(&name.as_str()));

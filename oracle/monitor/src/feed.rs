@@ -1,29 +1,67 @@
 //! Where frames come from: a live run, or a run directory.
+use std::any::Any;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use contract::docking::Digitiser;
-use files::docking::{FeatureRow, read_field_measurements, read_motion};
-use files::{Checksums, Failure, FrameCluster, Row, TableReader, read_field_telemetry, read_measurements};
-use run::{AnyFactory, AnyPrepared, Prepared, PreparedDocking, SceneTruth, World};
-use sim::docking::FieldTruth;
-use sim::truth::{FrameTruth, ObjectTruth, Trajectory};
+use axum::body::Bytes;
+use files::{Checksums, Failure, Row, TableReader};
+use hifitime::Epoch;
+use run::{AnyFactory, AnyMission, DockingMission, FarRangeMission, World};
+use serde_json::Value;
 
-use super::docking_report::DockingReporter;
-use super::far_range_report::FarRangeReporter;
 use super::ground::GroundTrack;
 use super::picture::Stretch;
-use super::session::Session;
+use super::session::{Order, Session};
 
 /// Most frames of a monitored run: what is known of each is kept, some kilobytes.
 pub const MOST_FRAMES: u64 = 50_000;
 
+/// Takes a scenario if it is of a certain world.
+type Take = fn(Box<dyn Any>) -> Result<Box<dyn Monitored>, Box<dyn Any>>;
+
+/// The worlds that the page shows: one line each.
+const WORLDS: [(&str, Take); 2] =
+    [(FarRangeMission::CODE, take::<FarRangeMission>), (DockingMission::CODE, take::<DockingMission>)];
+
+fn take<W: Monitored + 'static>(prepared: Box<dyn Any>) -> Result<Box<dyn Monitored>, Box<dyn Any>> {
+    prepared.downcast::<W>().map(|prepared| prepared as Box<dyn Monitored>)
+}
+
+/// A scenario of a world that the page shows.
+pub(super) trait Monitored: Send + Sync {
+    /// What lives as long as the monitor.
+    fn surroundings(&self, measurements: &Measurements) -> Result<Surroundings, Failure>;
+
+    /// The moment of a frame; `None` where there is no such frame.
+    fn time(&self, frame: u64) -> Option<Epoch>;
+
+    /// What the page is told once: of the session, and of the scene.
+    fn overview(
+        &self,
+        measurements: &Measurements,
+        surroundings: &Surroundings,
+    ) -> Result<[Value; 2], Failure>;
+
+    /// Processes or reads frame after frame, as far as they are wanted.
+    fn feed(
+        &self,
+        measurements: &Measurements,
+        surroundings: &Surroundings,
+        session: &Session,
+    ) -> Result<(), Failure>;
+
+    /// Has `serve` draw frames again, as PNG.
+    fn paint(&self, surroundings: &Surroundings, serve: Serve<'_>) -> Result<(), Failure>;
+}
+
+/// Draws one picture after the other by a function, as they are ordered.
+pub(super) type Serve<'a> =
+    &'a dyn Fn(&mut dyn FnMut(&Order) -> Result<Bytes, Failure>) -> Result<(), Failure>;
+
 /// What is monitored.
-pub enum Feed {
-    /// Star fields with a distant spacecraft.
-    FarRange(Box<Prepared>, Measurements),
-    /// The approach to a docking target.
-    Docking(Box<PreparedDocking>, Measurements),
+pub struct Feed {
+    pub(super) world: Box<dyn Monitored>,
+    pub(super) measurements: Measurements,
 }
 
 impl Feed {
@@ -31,16 +69,16 @@ impl Feed {
     ///
     /// # Errors
     /// [`Failure::Usage`] for a world that the page does not show.
-    pub fn new(prepared: Box<dyn AnyPrepared>, measurements: Measurements) -> Result<Self, Failure> {
-        match prepared.into_any().downcast::<Prepared>() {
-            Ok(prepared) => Ok(Self::FarRange(prepared, measurements)),
-            Err(other) => match other.downcast() {
-                Ok(prepared) => Ok(Self::Docking(prepared, measurements)),
-                Err(_) => {
-                    Err(Failure::Usage("the monitor shows the worlds far_range and docking alone".to_owned()))
-                }
-            },
+    pub fn new(prepared: Box<dyn AnyMission>, measurements: Measurements) -> Result<Self, Failure> {
+        let mut prepared = prepared.into_any();
+        for (_, take) in WORLDS {
+            match take(prepared) {
+                Ok(world) => return Ok(Self { world, measurements }),
+                Err(other) => prepared = other,
+            }
         }
+        let worlds = WORLDS.map(|(code, _)| code).join(" and ");
+        Err(Failure::Usage(format!("the monitor shows the worlds {worlds} alone")))
     }
 }
 
@@ -72,44 +110,16 @@ impl Measurements {
 /// What a feed needs that lives as long as the monitor.
 pub(super) struct Surroundings {
     pub(super) ground: Option<GroundTrack>,
-    pub(super) trajectory: Option<Trajectory>,
     pub(super) stretch: Stretch,
     pub(super) frames: Range<u64>,
 }
 
-impl Surroundings {
-    pub(super) fn of(feed: &Feed) -> Result<Self, Failure> {
-        match feed {
-            Feed::FarRange(prepared, measurements) => {
-                let scenario = prepared.scenario();
-                let trajectory = Trajectory::new(&scenario.orbit)?;
-                Ok(Self {
-                    ground: Some(GroundTrack::Chaser(Box::new(trajectory.clone()))),
-                    trajectory: Some(trajectory),
-                    stretch: Stretch::of_sensor(&scenario.sensor),
-                    frames: frames(measurements, Prepared::TRUTH_FILE, numbers::<FrameTruth>)?,
-                })
-            }
-            Feed::Docking(prepared, measurements) => Ok(Self {
-                ground: GroundTrack::station(prepared.simulator()),
-                trajectory: None,
-                stretch: Stretch::plain(),
-                frames: frames(measurements, PreparedDocking::TRUTH_FILE, numbers::<FieldTruth>)?,
-            }),
-        }
-    }
-}
-
 /// The frames of a live run, or those of a run directory, which must be without gaps: a run's are.
-fn frames(
-    measurements: &Measurements,
-    table: &str,
-    numbers: fn(&Path) -> Result<Range<u64>, Failure>,
-) -> Result<Range<u64>, Failure> {
+pub(super) fn frames<R: Row>(measurements: &Measurements, table: &str) -> Result<Range<u64>, Failure> {
     let frames = match measurements {
         Measurements::Live { frames, .. } => frames.clone(),
         Measurements::Replay(directory) => {
-            let frames = numbers(&directory.join(table))?;
+            let frames = numbers::<R>(&directory.join(table))?;
             Checksums::check(directory, |_| true)?;
             frames
         }
@@ -146,114 +156,7 @@ fn numbers<R: Row>(path: &Path) -> Result<Range<u64>, Failure> {
     frames.ok_or_else(|| Failure::Usage(format!("{}: no frame, expected one or more", path.display())))
 }
 
-/// Processes or reads frame after frame, as far as they are wanted.
-///
-/// # Errors
-/// The first [`Failure`] in the order of the frames, also that the monitor was closed.
-pub(super) fn feed(feed: &Feed, surroundings: &Surroundings, session: &Session) -> Result<(), Failure> {
-    match feed {
-        Feed::FarRange(prepared, measurements) => {
-            let Some((trajectory, ground)) =
-                surroundings.trajectory.as_ref().zip(surroundings.ground.as_ref())
-            else {
-                return Ok(());
-            };
-            let schedule = prepared.simulator().schedule();
-            let Some((_, start)) = schedule.frame(0) else { return Ok(()) };
-            let camera = &prepared.scenario().camera;
-            let reporter = FarRangeReporter { camera, trajectory, ground, start };
-            match measurements {
-                Measurements::Live { factory, frames, jobs } => {
-                    prepared.follow(frames.clone(), *jobs, factory.of()?, |processed| {
-                        let SceneTruth { frame: truth, objects } = &processed.truth;
-                        session.wait_for_goal(truth.frame)?;
-                        let report = reporter.report(truth, objects, Some(&processed.outcome));
-                        let picture = surroundings.stretch.picture(&processed.image);
-                        session.publish(&report, Digitiser::default(), Some(picture))
-                    })
-                }
-                Measurements::Replay(directory) => replay_far_range(directory, &reporter, session),
-            }
-        }
-        Feed::Docking(prepared, measurements) => {
-            let names = prepared.scenario().cameras.iter().map(|camera| camera.name.clone()).collect();
-            let mut reporter = DockingReporter::new(prepared.setup(), names, surroundings.ground.as_ref());
-            match measurements {
-                Measurements::Live { factory, frames, jobs } => {
-                    prepared.follow(frames.clone(), *jobs, factory.of()?, |processed| {
-                        let number = processed.image.number();
-                        session.wait_for_goal(number)?;
-                        let features = FeatureRow::of(number, &processed.outcome.features);
-                        let report = reporter.report(&processed.truth, Some(&processed.outcome), &features);
-                        let picture = surroundings.stretch.picture(processed.image.image());
-                        session.publish(&report, processed.telemetry.digitiser, Some(picture))
-                    })
-                }
-                Measurements::Replay(directory) => replay_docking(directory, &mut reporter, session),
-            }
-        }
-    }
-}
-
-fn replay_far_range(
-    directory: &Path,
-    reporter: &FarRangeReporter<'_>,
-    session: &Session,
-) -> Result<(), Failure> {
-    let mut objects = TableReader::<ObjectTruth>::open(&directory.join("truth/objects.parquet"))?;
-    let mut clusters = optional(&directory.join("clusters.parquet"))
-        .map(|path| TableReader::<FrameCluster>::open(&path))
-        .transpose()?;
-    let mut answers =
-        read_measurements(&directory.join("measurements.csv"), reporter.camera)?.into_iter().peekable();
-    for row in TableReader::<FrameTruth>::open(&directory.join("truth/frames.parquet"))? {
-        let (number, truths) = row?;
-        session.wait_for_goal(number)?;
-        let objects = objects.rows_of(number)?;
-        let found = clusters.as_mut().map(|table| table.rows_of(number)).transpose()?.unwrap_or_default();
-        let answer = answers.next_if(|(answered, _)| *answered == number).map(|(_, mut outcome)| {
-            outcome.clusters = found.into_iter().map(|row| row.cluster).collect();
-            outcome
-        });
-        for truth in truths.iter().take(1) {
-            let report = reporter.report(truth, &objects, answer.as_ref());
-            session.publish(&report, Digitiser::default(), None)?;
-        }
-    }
-    Ok(())
-}
-
-fn replay_docking(
-    directory: &Path,
-    reporter: &mut DockingReporter<'_>,
-    session: &Session,
-) -> Result<(), Failure> {
-    let mut features = optional(&directory.join("features.parquet"))
-        .map(|path| TableReader::<FeatureRow>::open(&path))
-        .transpose()?;
-    let motion = optional(&directory.join("motion.csv")).map(|path| read_motion(&path)).transpose()?;
-    let mut motion = motion.unwrap_or_default().into_iter().peekable();
-    let mut answers = read_field_measurements(&directory.join("measurements.csv"))?.into_iter().peekable();
-    let mut telemetry = read_field_telemetry(&directory.join("telemetry.csv"))?.into_iter().peekable();
-    for row in TableReader::<FieldTruth>::open(&directory.join("truth/fields.parquet"))? {
-        let (number, truths) = row?;
-        session.wait_for_goal(number)?;
-        let features = features.as_mut().map(|table| table.rows_of(number)).transpose()?.unwrap_or_default();
-        let said = motion.next_if(|(reported, _)| *reported == number).map(|(_, report)| report);
-        let answer = answers.next_if(|(answered, _)| *answered == number).map(|(_, mut outcome)| {
-            outcome.motion = said;
-            outcome
-        });
-        let digitiser = telemetry
-            .next_if(|row| row.field == number)
-            .map_or_else(Digitiser::default, |row| row.telemetry.digitiser);
-        for truth in truths.iter().take(1) {
-            session.publish(&reporter.report(truth, answer.as_ref(), &features), digitiser, None)?;
-        }
-    }
-    Ok(())
-}
-
-fn optional(path: &Path) -> Option<PathBuf> {
+/// A file, if it is there.
+pub(super) fn optional(path: &Path) -> Option<PathBuf> {
     path.is_file().then(|| path.to_owned())
 }

@@ -116,12 +116,12 @@ fn point(time: Epoch, position_km: &Vector3<f64>) -> [f64; 2] {
 mod tests {
     use super::*;
     use run::docking::renderer::DockingRenderer;
-    use run::{PreparedDocking, ScenarioSource};
+    use run::{DockingMission, ScenarioSource};
 
     #[test]
     fn the_sun_stands_over_the_station_where_the_scene_has_it() {
         let source = ScenarioSource::read("docking").unwrap();
-        let prepared = PreparedDocking::new(&source, DockingRenderer::Fast).unwrap();
+        let prepared = DockingMission::new(&source, DockingRenderer::Fast).unwrap();
         let simulator = prepared.simulator();
         let track = GroundTrack::station(simulator).unwrap();
         let elevation = |time| track.position_km(time).normalize().dot(&sun_direction(time).unwrap());

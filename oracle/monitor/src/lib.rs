@@ -17,12 +17,8 @@
 )]
 
 mod assets;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod docking_report;
-mod far_range_report;
+mod docking;
+mod far_range;
 mod feed;
 mod ground;
 mod guard;

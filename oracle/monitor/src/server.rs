@@ -19,7 +19,7 @@ use tokio::net::TcpListener;
 use tokio::time::timeout;
 
 use super::assets::asset;
-use super::feed::{Feed, Surroundings, feed};
+use super::feed::Feed;
 use super::ground::GroundTrack;
 use super::guard::{Admission, Guard};
 use super::listener::{BoundedListener, Bounds};
@@ -58,13 +58,14 @@ pub fn serve(
     ready: impl FnOnce(SocketAddr),
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> Result<(), Failure> {
-    let surroundings = Surroundings::of(monitored)?;
+    let Feed { world, measurements } = monitored;
+    let surroundings = world.surroundings(measurements)?;
     let overview = Overview::of(monitored, &surroundings)?;
     let session = Arc::new(Session::new(surroundings.frames.clone()));
     let shared = Arc::new(Shared {
         overview,
         ground: surroundings.ground.clone(),
-        times: times(monitored, &surroundings),
+        times: surroundings.frames.clone().filter_map(|frame| world.time(frame)).collect(),
         first: surroundings.frames.start,
         session: Arc::clone(&session),
     });
@@ -77,7 +78,7 @@ pub fn serve(
         }
     };
     std::thread::scope(|scope| {
-        scope.spawn(|| tell(feed(monitored, &surroundings, &session)));
+        scope.spawn(|| tell(world.feed(measurements, &surroundings, &session)));
         for _ in 0..PAINTERS {
             scope.spawn(|| tell(paint(monitored, &surroundings, &session)));
         }
@@ -85,20 +86,6 @@ pub fn serve(
         session.close();
         served
     })
-}
-
-/// The moment of each frame.
-fn times(monitored: &Feed, surroundings: &Surroundings) -> Vec<Epoch> {
-    let frames = surroundings.frames.clone();
-    match monitored {
-        Feed::FarRange(prepared, _) => {
-            let schedule = prepared.simulator().schedule();
-            frames.filter_map(|frame| schedule.frame(frame).map(|(_, time)| time)).collect()
-        }
-        Feed::Docking(prepared, _) => {
-            frames.filter_map(|field| Some(prepared.simulator().moment(field).ok()?.time)).collect()
-        }
-    }
 }
 
 /// What requests look at.

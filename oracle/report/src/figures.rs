@@ -1,6 +1,7 @@
 //! Figures of a score as words and as a table.
 use indexmap::IndexMap;
-use score::{Figure, FigureLabel, Kind, sense};
+use run::figure_called;
+use score::Figure;
 
 use super::data_table::DataTable;
 
@@ -66,13 +67,13 @@ pub(super) fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
         "All figures of score.json; rates are fractions from 0 to 1. Independent: what the frames are worth, neighbours being alike.",
     );
     for (name, figure) in figures {
-        let is_rate = sense(name).kind == Kind::Rate;
+        let is_rate = figure_called(name).is_rate();
         let number = |value: Option<f64>| match value {
             Some(value) if is_rate => format!("{value:.4}"),
             value => cell(value),
         };
         table.push([
-            FigureLabel::of(name).words,
+            figure_called(name).words,
             number(figure.value),
             number(figure.low),
             number(figure.high),

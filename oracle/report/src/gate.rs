@@ -1,21 +1,19 @@
 //! The report of a gate: what changed, and the frames that flipped.
 
-use run::{Prepared, PreparedDocking, World as _};
+use run::figure_called;
 use std::path::Path;
 
 use files::Failure;
 use gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
-use score::{FigureLabel, Kind, sense};
 
 use super::chart::{Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
 use super::data_table::DataTable;
-use super::docking::{DockingRun, FieldSheet};
-use super::far_range::{FarRangeRun, FrameSheet};
 use super::figures::{cell, significant};
 use super::page::{Page, Section};
 use super::picture::Picture;
 use super::plotly::{Layout, Trace};
 use super::words::{capital, spoken};
+use super::worlds::report_of_world;
 
 /// Flipped frames that are shown as pictures, at most.
 const MOST_PICTURES: usize = 12;
@@ -42,31 +40,15 @@ impl FlippedFrames {
         if report.units == "cases" || flips.units.is_empty() {
             return Ok(none);
         }
+        let Some(world) = report_of_world(&report.world) else { return Ok(none) };
         let chosen = chosen(&flips.units);
-        let (mut pictures, reason) = if report.world == Prepared::CODE {
-            let run = FarRangeRun::read(result)?;
-            let rows =
-                rows_of(&chosen, |number| run.truths.binary_search_by_key(&number, |truth| truth.frame).ok());
-            let sheet = FrameSheet::open(result)?;
-            (sheet.pictures(&run, &rows)?, sheet.reason().map(str::to_owned))
-        } else if report.world == PreparedDocking::CODE {
-            let run = DockingRun::read(result)?;
-            let rows =
-                rows_of(&chosen, |number| run.truths.binary_search_by_key(&number, |truth| truth.field).ok());
-            let sheet = FieldSheet::open(result)?;
-            (sheet.pictures(&run, &rows)?, sheet.reason().map(str::to_owned))
-        } else {
-            return Ok(none);
-        };
+        let numbers: Vec<u64> = chosen.iter().map(|flip| flip.number).collect();
+        let (mut pictures, reason) = (world.pictures)(result, &numbers)?;
         for (picture, flip) in pictures.iter_mut().zip(&chosen) {
             picture.title = format!("{}: {}.", kind_words(flip.kind), change(flip));
         }
         Ok(Self { pictures, reason })
     }
-}
-
-fn rows_of(flips: &[&Flip], row: impl Fn(u64) -> Option<usize>) -> Vec<usize> {
-    flips.iter().filter_map(|flip| row(flip.number)).collect()
 }
 
 /// Of every change the first unit, lost ones first, then more of the lost.
@@ -107,7 +89,7 @@ fn change(flip: &Flip) -> String {
 
 /// The page of a gate.
 pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
-    let worse: Vec<String> = report.worse().map(|name| FigureLabel::of(name).words).collect();
+    let worse: Vec<String> = report.worse().map(|name| figure_called(name).words).collect();
     let lead = if worse.is_empty() {
         format!("No figure is worse than in the baseline, of {} compared.", report.figures.len())
     } else {
@@ -169,13 +151,13 @@ fn effects(report: &GateReport) -> Section {
     )
     .narrow();
     for (name, figure) in &report.figures {
-        let is_rate = sense(name).kind == Kind::Rate;
+        let is_rate = figure_called(name).is_rate();
         let number = |value: Option<f64>| match value {
             Some(value) if is_rate => format!("{:.2}", 100.0 * value),
             value => cell(value),
         };
         table.push([
-            FigureLabel::of(name).to_string(),
+            figure_called(name).to_string(),
             figure.verdict.words().to_owned(),
             number(figure.baseline),
             number(figure.result),
@@ -192,7 +174,7 @@ fn effects(report: &GateReport) -> Section {
         .figures
         .iter()
         .filter(|(_, figure)| figure.difference.is_some())
-        .partition(|(name, _)| sense(name).kind == Kind::Rate);
+        .partition(|(name, _)| figure_called(name).is_rate());
     let mut section = Section::new("effects", "What changed");
     if !rates.is_empty() {
         let (traces, layout) = differences(&rates, |_| 0.01, "difference, points");
@@ -212,7 +194,7 @@ fn effects(report: &GateReport) -> Section {
 
 /// A figure's name without its unit, which the axis of differences has not.
 fn plain_label(name: &str) -> String {
-    FigureLabel::of(name).words
+    figure_called(name).words
 }
 
 /// A figure of the gate by its name.

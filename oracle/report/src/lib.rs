@@ -45,6 +45,7 @@ mod study;
 mod thin;
 mod visibility;
 mod words;
+mod worlds;
 
 use std::path::{Path, PathBuf};
 
@@ -61,25 +62,10 @@ pub use visibility::{read_visibility, visibility_page};
 
 use self::read::{is_far_range_run, read_json};
 use self::run_page::run_page;
+use self::worlds::report_of_world;
 use files::{Checksums, Earlier, Failure, WholeFile};
-use run::{AnyScored, NotFlown, Prepared, PreparedDocking, World as _, world_of_run};
-use score::Scored;
+use run::{AnyJudgement, NotFlown, world_of_run};
 use serde::Deserialize;
-
-/// Reads a run directory and makes its page.
-type RunPage = fn(&Path) -> Result<Page, Failure>;
-
-/// Worlds with pages of their own. A run of another world has its figures and verdicts.
-const PAGES: [(&str, RunPage); 2] = [
-    (Prepared::CODE, |directory| {
-        let mut run = FarRangeRun::read(directory)?;
-        run.budget = InjectedRun::read_all(&kept_budget(directory), &run.run_file, &run.score)?;
-        far_range_page(&run, &FrameSheet::open(directory)?)
-    }),
-    (PreparedDocking::CODE, |directory| {
-        docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?)
-    }),
-];
 
 /// The report of a directory of results, with the error budget that is kept there.
 ///
@@ -87,11 +73,7 @@ const PAGES: [(&str, RunPage); 2] = [
 /// A [`Failure`] that names the file which is missing or cannot be read.
 pub fn report_of(directory: &Path) -> Result<Page, Failure> {
     let page = match ResultKind::of(directory)? {
-        ResultKind::Run => {
-            let world = world_of_run(&directory.join("run.toml"))?;
-            let of_world = PAGES.iter().find(|(code, _)| *code == world.code());
-            with_rest(of_world.map_or(run_page as RunPage, |(_, page)| *page)(directory)?, directory)?
-        }
+        ResultKind::Run => return page_of_run(directory, None),
         ResultKind::Study => study_page(&StudyResult::read(directory)?),
         ResultKind::Visibility => visibility_page(&read_visibility(directory)?),
     };
@@ -99,8 +81,13 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
     Ok(page)
 }
 
-/// The page of a run, which says what of it was not flown.
-fn with_rest(mut page: Page, directory: &Path) -> Result<Page, Failure> {
+/// The page of a run by its world, which says what of it was not flown.
+fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
+    let world = world_of_run(&directory.join("run.toml"))?;
+    let mut page = match report_of_world(world.code()) {
+        Some(of_world) => (of_world.page)(directory, scored)?,
+        None => run_page(directory)?,
+    };
     /// The part of `score.json` that tells it.
     #[derive(Deserialize)]
     struct Rest {
@@ -146,14 +133,8 @@ pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, 
 ///
 /// # Errors
 /// As [`report_of`].
-pub fn report_of_run(directory: &Path, scored: &mut dyn AnyScored) -> Result<Page, Failure> {
-    match scored.as_any_mut().downcast_mut::<Scored>() {
-        Some(scored) => {
-            let run = FarRangeRun::with_verdicts(directory, std::mem::take(&mut scored.verdicts))?;
-            with_rest(far_range_page(&run, &FrameSheet::open(directory)?)?, directory)
-        }
-        None => report_of(directory),
-    }
+pub fn report_of_run(directory: &Path, scored: &mut dyn AnyJudgement) -> Result<Page, Failure> {
+    page_of_run(directory, Some(scored))
 }
 
 /// Reports, which a later one replaces.

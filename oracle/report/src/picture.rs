@@ -10,6 +10,9 @@ use image::{GrayImage, ImageFormat};
 /// Samples of a picture at most: of more pixels, squares of them are drawn as their brightest.
 const MOST_SAMPLES: usize = 60_000;
 
+/// Pictures of frames; without them the reason why there are none.
+pub(crate) type Rendered = (Vec<Picture>, Option<String>);
+
 /// A window of a frame, with what is drawn over it.
 #[derive(Debug, Clone)]
 pub struct Picture {

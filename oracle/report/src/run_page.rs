@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use files::Failure;
+use files::{Checksums, Failure};
 use indexmap::IndexMap;
 use run::world_of_run;
 use serde_json::json;
@@ -27,6 +27,7 @@ pub(super) fn run_page(directory: &Path) -> Result<Page, Failure> {
     }
     let evidence = world.evidence_file().map(|name| directory.join(name)).filter(|path| path.is_file());
     let scored = world.score(directory, &measurements, evidence.as_deref(), None)?;
+    Checksums::check(directory, |_| true)?;
     let units = scored.units().units;
     let mut counts: IndexMap<(&str, &str), u64> = IndexMap::new();
     for unit in &units {

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use files::{Failure, FileError};
 use indexmap::IndexMap;
-use score::{Better, FigureLabel, Kind, attitude_note, sense};
+use run::figure_called;
+use score::{Better, attitude_note};
 use study::{CaseTable, Estimate, FigureSummary, Summary, Waited};
 
 use super::chart::{
@@ -64,7 +65,7 @@ impl StudyResult {
 pub fn study_page(study: &StudyResult) -> Page {
     let summary = &study.summary;
     let worst_by = &summary.worst_by;
-    let by = FigureLabel::of(worst_by).words;
+    let by = figure_called(worst_by).words;
     let lead = match summary.figures.get(worst_by).and_then(|figure| figure.all) {
         Some(all) => format!(
             "{} cases; {by}, by which the worst are the worst, is {}.",
@@ -122,12 +123,12 @@ fn stopped(summary: &Summary) -> &'static str {
 
 /// What a figure is drawn and written in: rates in percent, others as they are.
 fn scale(name: &str) -> f64 {
-    if sense(name).kind == Kind::Rate { 100.0 } else { 1.0 }
+    if figure_called(name).is_rate() { 100.0 } else { 1.0 }
 }
 
 /// A number of a figure.
 fn number(name: &str, value: f64) -> String {
-    if sense(name).kind == Kind::Rate { format!("{:.2}\u{a0}%", 100.0 * value) } else { significant(value) }
+    if figure_called(name).is_rate() { format!("{:.2}\u{a0}%", 100.0 * value) } else { significant(value) }
 }
 
 /// A value with its interval, which a narrow column may have on a line of its own.
@@ -140,7 +141,7 @@ fn shown(name: &str, estimate: &Estimate) -> String {
 
 /// What a figure is called beside its values.
 fn label(key: &str) -> String {
-    FigureLabel::of(key).beside_percent()
+    figure_called(key).beside_percent()
 }
 
 /// Every figure: over all cases, and its quantiles over them.
@@ -162,7 +163,7 @@ fn figures(study: &StudyResult) -> Section {
             estimate(&figure.p95),
         ]);
     }
-    let is_rate = |(name, _): &(&String, &FigureSummary)| sense(name).kind == Kind::Rate;
+    let is_rate = |(name, _): &(&String, &FigureSummary)| figure_called(name).is_rate();
     let rates = summary.figures.iter().filter(is_rate);
     let rates: Vec<(&String, Estimate, &FigureSummary)> =
         rates.filter_map(|(name, figure)| Some((name, figure.all?, figure))).collect();
@@ -174,7 +175,7 @@ fn figures(study: &StudyResult) -> Section {
     let column = |pick: &dyn Fn(&Estimate, &FigureSummary) -> f64| -> Vec<f64> {
         rates.iter().rev().map(|(_, all, figure)| rounded(100.0 * pick(all, figure), 4)).collect()
     };
-    let names: Vec<String> = rates.iter().rev().map(|(name, _, _)| FigureLabel::of(name).words).collect();
+    let names: Vec<String> = rates.iter().rev().map(|(name, _, _)| figure_called(name).words).collect();
     let quantile = |estimate: Option<Estimate>| estimate.map_or(f64::NAN, |estimate| estimate.value);
     let traces = vec![
         intervals_across(
@@ -198,7 +199,7 @@ fn figures(study: &StudyResult) -> Section {
     let mut data = DataTable::new(["rate", "all", "low", "high"]);
     for (name, all, _) in &rates {
         let bound = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
-        data.push([FigureLabel::of(name).words, number(name, all.value), bound(all.low), bound(all.high)]);
+        data.push([figure_called(name).words, number(name, all.value), bound(all.low), bound(all.high)]);
     }
     let height = 110 + 30 * rates.len() as u32;
     let caption = "Rates over all frames, and how far the cases spread about them.";
@@ -226,6 +227,9 @@ fn sweep(study: &StudyResult) -> Section {
     section.charts(charts).table(differences(summary))
 }
 
+/// Swept values with a figure there.
+type Curve = Vec<(String, Estimate)>;
+
 /// A figure over the swept value that has the most of them, a curve for every combination of the others.
 fn curve(summary: &Summary, name: &str) -> Chart {
     let label_of = |path: &str, value: &str| format!("{path} = {value}");
@@ -236,7 +240,7 @@ fn curve(summary: &Summary, name: &str) -> Chart {
     let paths = summary.sweep.first().map(|point| point.at.keys().collect::<Vec<_>>()).unwrap_or_default();
     let across = paths.iter().max_by_key(|path| values_of(path)).map_or("", |path| path.as_str());
     let mut data = DataTable::new(["point", "cases", &label(name)]);
-    let mut curves: IndexMap<String, Vec<(String, Estimate)>> = IndexMap::new();
+    let mut curves: IndexMap<String, Curve> = IndexMap::new();
     for point in &summary.sweep {
         let estimate = point.figures.get(name).and_then(|figure| figure.all);
         let all = point.at.iter().map(|(path, value)| label_of(path, value)).collect::<Vec<_>>().join(", ");
@@ -248,12 +252,12 @@ fn curve(summary: &Summary, name: &str) -> Chart {
             curves.entry(others).or_default().push((x.clone(), estimate));
         }
     }
-    let trace = |(place, (others, points)): (usize, (&String, &Vec<(String, Estimate)>))| {
+    let trace = |(place, (others, points)): (usize, (&String, &Curve))| {
         let of = |pick: fn(&Estimate) -> f64| -> Vec<f64> {
             points.iter().map(|(_, estimate)| rounded(scale(name) * pick(estimate), 9)).collect()
         };
         let x: Vec<String> = points.iter().map(|(x, _)| plain(x)).collect();
-        let title = if others.is_empty() { FigureLabel::of(name).words } else { others.clone() };
+        let title = if others.is_empty() { figure_called(name).words } else { others.clone() };
         let (low, high) = (of(|e| e.low.unwrap_or(e.value)), of(|e| e.high.unwrap_or(e.value)));
         intervals(&title, x, of(|e| e.value), &low, &high, CURVES[place % CURVES.len()])
             .mode(Mode::LinesAndMarkers)
@@ -261,11 +265,11 @@ fn curve(summary: &Summary, name: &str) -> Chart {
     let traces: Vec<Trace> = curves.iter().enumerate().map(trace).collect();
     let has_legend = traces.len() > 1;
     Chart::new(
-        format!("{} over the sweep, with 95 % intervals.", capital(&FigureLabel::of(name).words)),
+        format!("{} over the sweep, with 95 % intervals.", capital(&figure_called(name).words)),
         320,
         data,
         traces,
-        axes(&plain(across), &plain(&FigureLabel::of(name).to_string())).legend(has_legend),
+        axes(&plain(across), &plain(&figure_called(name).to_string())).legend(has_legend),
     )
 }
 
@@ -326,7 +330,7 @@ fn sensitivities(study: &StudyResult) -> Section {
         .collect();
     let names: Vec<String> = parameters.iter().map(|name| plain(name)).collect();
     let labels: Vec<String> =
-        figures.iter().rev().map(|name| plain(&FigureLabel::of(name).to_string())).collect();
+        figures.iter().rev().map(|name| plain(&figure_called(name).to_string())).collect();
     let map = Trace::heat_map(names, labels, &z)
         .colour_range([-1.0, 1.0])
         .colour_scale(ColourScale::BlueToRed)
@@ -392,7 +396,7 @@ fn indices(study: &StudyResult) -> Section {
     Section::new("indices", "Sobol indices").chart(Chart::new(
         format!(
             "Of {}: the part of its variance that is a value's alone, and with all in which it takes part.",
-            FigureLabel::of(&summary.worst_by).words
+            figure_called(&summary.worst_by).words
         ),
         400,
         data,
@@ -406,14 +410,14 @@ fn scatter(study: &StudyResult) -> Section {
     let (summary, table) = (&study.summary, &study.table);
     let name = &summary.worst_by;
     let section =
-        Section::new("scatter", format!("{} against what was drawn", capital(&FigureLabel::of(name).words)));
+        Section::new("scatter", format!("{} against what was drawn", capital(&figure_called(name).words)));
     let Some(values) = table.figure(name) else { return section.text("No case has the figure.") };
     let mut charts = Vec::new();
     for parameter in table.drawn.keys() {
         let Some(numbers) = table.numbers(parameter) else { continue };
         let rows: Vec<usize> = (0..numbers.len()).filter(|&row| values[row].value.is_some()).collect();
         let value = |row: usize| scale(name) * values[row].value.unwrap_or(f64::NAN);
-        let traces = cloud(&FigureLabel::of(name).words, &rows, Some(&value), MEASURED, |rows| {
+        let traces = cloud(&figure_called(name).words, &rows, Some(&value), MEASURED, |rows| {
             let x: Vec<f64> = rows.iter().map(|&row| numbers[row]).collect();
             let y = rows.iter().map(|&row| rounded(value(row), 9)).collect();
             let cases: Vec<u64> = rows.iter().map(|&row| table.rows[row].case).collect();
@@ -434,13 +438,13 @@ fn scatter(study: &StudyResult) -> Section {
         charts.push(Chart::new(
             format!(
                 "{} against {parameter}, a point a case. {}",
-                FigureLabel::of(name),
+                figure_called(name),
                 drawn(&[(rows.len(), "cases")], true)
             ),
             260,
             data,
             traces,
-            axes(&plain(parameter), &plain(&FigureLabel::of(name).to_string())).legend(!is_drawn_whole),
+            axes(&plain(parameter), &plain(&figure_called(name).to_string())).legend(!is_drawn_whole),
         ));
     }
     let left_out = charts.len().saturating_sub(MOST_SCATTERS);
@@ -462,7 +466,7 @@ fn scatter(study: &StudyResult) -> Section {
 /// The worst cases, with the commands that run them again.
 fn worst(study: &StudyResult) -> Section {
     let summary = &study.summary;
-    let way = match sense(&summary.worst_by).better {
+    let way = match figure_called(&summary.worst_by).sense.better {
         Better::More => "the smallest",
         Better::Less => "the largest",
         Better::Near(_) => "the farthest from what is best",
@@ -485,5 +489,5 @@ fn worst(study: &StudyResult) -> Section {
         cells.push(case.replay.clone());
         table.push(cells);
     }
-    section.text(format!("Those whose {} is {way}.", FigureLabel::of(&summary.worst_by).words)).table(table)
+    section.text(format!("Those whose {} is {way}.", figure_called(&summary.worst_by).words)).table(table)
 }

@@ -13,13 +13,13 @@ use indexmap::IndexMap;
 use scenario::run_file::{RunFile, ScenarioFile};
 use scenario::{AttitudeChoice, Stage};
 use schemars::{Schema, SchemaGenerator};
-use score::{Figure, UnitTable};
+use score::{Figure, FigureSpec, UnitTable};
 use serde_json::Value;
 use sim::SimError;
 
-use crate::docking::renderer::DockingRenderer;
 use crate::flight::Flight;
 use crate::pipeline_choice::PipelineChoice;
+use crate::renderer_choice::RendererChoice;
 use crate::run_result::{FirstFailure, RunResult};
 
 /// What a run is asked for beside its scenario. A world refuses what it does not have.
@@ -30,7 +30,7 @@ pub struct Options {
     /// The attitude granted to answers with a centroid alone, in place of what the scenario says.
     pub attitude: Option<AttitudeChoice>,
     /// Who draws the scene.
-    pub renderer: DockingRenderer,
+    pub renderer: RendererChoice,
 }
 
 /// A world, without its types. [`Of`](crate::Of) makes one of a [`World`](crate::World).
@@ -62,8 +62,8 @@ pub trait AnyWorld: Sync {
     /// [`World::PICTURES`](crate::World::PICTURES).
     fn pictures(&self) -> &'static str;
 
-    /// [`World::figure_names`](crate::World::figure_names).
-    fn figure_names(&self) -> Vec<String>;
+    /// [`World::figures`](crate::World::figures).
+    fn figures(&self) -> Vec<FigureSpec>;
 
     /// Whether its scenarios are of the type `type_id`.
     fn has_scenarios_of(&self, type_id: TypeId) -> bool;
@@ -90,7 +90,7 @@ pub trait AnyWorld: Sync {
     ///
     /// # Errors
     /// A [`Failure`] with the place of the first value that is not allowed, or for an option that the world does not have.
-    fn prepare(&self, source: &ScenarioSource, options: Options) -> Result<Box<dyn AnyPrepared>, Failure>;
+    fn prepare(&self, source: &ScenarioSource, options: Options) -> Result<Box<dyn AnyMission>, Failure>;
 
     /// Checks that the built-in pipeline can be run on the cameras of a scenario.
     ///
@@ -119,7 +119,7 @@ pub trait AnyWorld: Sync {
     ///
     /// # Errors
     /// A [`Failure`] for a dataset that cannot be read, or files that cannot be written.
-    fn process(&self, order: &ProcessingOrder<'_>) -> Result<ProcessedDataset, Failure>;
+    fn process(&self, order: &ProcessingOrder<'_>) -> Result<DatasetAnswers, Failure>;
 
     /// [`World::score_files`](crate::World::score_files).
     ///
@@ -131,7 +131,7 @@ pub trait AnyWorld: Sync {
         measurements: &Path,
         evidence: Option<&Path>,
         attitude: Option<AttitudeChoice>,
-    ) -> Result<Box<dyn AnyScored>, Failure>;
+    ) -> Result<Box<dyn AnyJudgement>, Failure>;
 
     /// [`World::telemetry_rows`](crate::World::telemetry_rows).
     ///
@@ -147,6 +147,11 @@ impl dyn AnyWorld {
     /// As [`PipelineChoice::factory`].
     pub fn check_choice(&self, scenario: &dyn AnyScenario, choice: &PipelineChoice) -> Result<(), Failure> {
         self.factory(scenario, choice, Path::new("")).map(drop)
+    }
+
+    /// Keys of the figures of its scores, in their order.
+    pub fn figure_names(&self) -> Vec<String> {
+        self.figures().into_iter().map(|figure| figure.name).collect()
     }
 
     /// Whether its scenarios have the type `S`.
@@ -185,7 +190,7 @@ pub struct ProcessingOrder<'a> {
 
 /// What came of a dataset that was processed.
 #[derive(Debug)]
-pub struct ProcessedDataset {
+pub struct DatasetAnswers {
     /// Number of frames.
     pub frames: u64,
     /// The files of answers, the measurements first.
@@ -265,7 +270,7 @@ impl AnyFactory {
 }
 
 /// A scenario with its simulator, of any world. Its methods are those of [`World`](crate::World).
-pub trait AnyPrepared: Send + Sync {
+pub trait AnyMission: Send + Sync {
     /// [`World::frame_count`](crate::World::frame_count).
     fn frame_count(&self) -> u64;
 
@@ -320,7 +325,7 @@ pub trait AnyPrepared: Send + Sync {
         flight: &Flight<String>,
         factory: &AnyFactory,
         go_on: &dyn Fn() -> Result<(), Failure>,
-    ) -> Result<RunResult<Box<dyn AnyScored>>, Failure>;
+    ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure>;
 
     /// [`World::score`](crate::World::score).
     ///
@@ -330,14 +335,14 @@ pub trait AnyPrepared: Send + Sync {
         &self,
         frames: Range<u64>,
         factory: &AnyFactory,
-    ) -> Result<RunResult<Box<dyn AnyScored>>, Failure>;
+    ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure>;
 
-    /// What is prepared, with its type.
+    /// The mission with its type.
     fn into_any(self: Box<Self>) -> Box<dyn Any>;
 }
 
 /// A scored run of any world.
-pub trait AnyScored: Send {
+pub trait AnyJudgement: Send {
     /// The content of `score.json`.
     ///
     /// # Errors
@@ -382,7 +387,7 @@ impl ScenarioSource {
     ///
     /// # Errors
     /// A [`Failure`] with the place of the first value that is not allowed, or for an option that the world does not have.
-    pub fn prepare(&self, options: Options) -> Result<Box<dyn AnyPrepared>, Failure> {
+    pub fn prepare(&self, options: Options) -> Result<Box<dyn AnyMission>, Failure> {
         self.world().prepare(self, options)
     }
 

@@ -15,31 +15,31 @@ use pipeline::external::ExternalFactory;
 use scenario::AttitudeChoice;
 use scenario::run_file::{RunFile, ScenarioFile};
 use schemars::{Schema, SchemaGenerator};
-use score::{Figure, UnitTable};
+use score::{Figure, FigureSpec, UnitTable};
 use serde_json::Value;
 
 use crate::any_world::{
-    AnyFactory, AnyPrepared, AnyScenario, AnyScored, AnyWorld, Options, ProcessedDataset, ProcessingOrder,
+    AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld, DatasetAnswers, Options, ProcessingOrder,
     ScenarioSource,
 };
 use crate::flight::Flight;
 use crate::pipeline_choice::PipelineChoice;
 use crate::run_result::RunResult;
 use crate::slips::slips;
-use crate::world::{Answers, Scored, World, process};
+use crate::world::{Answers, Judgement, World, process};
 
-impl<S: Scored + Send + 'static> AnyScored for S {
+impl<S: Judgement + Send + 'static> AnyJudgement for S {
     fn json(&self) -> Result<String, Failure> {
         serde_json::to_string_pretty(self.score())
             .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))
     }
 
     fn figures(&self) -> &IndexMap<String, Figure> {
-        Scored::figures(self)
+        Judgement::figures(self)
     }
 
     fn units(&self) -> UnitTable {
-        Scored::units(self)
+        Judgement::units(self)
     }
 
     fn as_any(&self) -> &dyn Any {
@@ -106,8 +106,8 @@ impl<W: World> AnyWorld for Of<W> {
         W::PICTURES
     }
 
-    fn figure_names(&self) -> Vec<String> {
-        W::figure_names()
+    fn figures(&self) -> Vec<FigureSpec> {
+        W::figures()
     }
 
     fn has_scenarios_of(&self, type_id: TypeId) -> bool {
@@ -131,7 +131,7 @@ impl<W: World> AnyWorld for Of<W> {
         Ok(run.map(|scenario| Box::new(ScenarioOf::<W>(scenario)) as Box<dyn AnyScenario>))
     }
 
-    fn prepare(&self, source: &ScenarioSource, options: Options) -> Result<Box<dyn AnyPrepared>, Failure> {
+    fn prepare(&self, source: &ScenarioSource, options: Options) -> Result<Box<dyn AnyMission>, Failure> {
         Ok(Box::new(W::prepare(source, Self::scenario(source)?, options)?))
     }
 
@@ -155,7 +155,7 @@ impl<W: World> AnyWorld for Of<W> {
         word.parse::<W::Images>().map(drop)
     }
 
-    fn process(&self, order: &ProcessingOrder<'_>) -> Result<ProcessedDataset, Failure> {
+    fn process(&self, order: &ProcessingOrder<'_>) -> Result<DatasetAnswers, Failure> {
         let dataset = W::open(order.directory)?;
         let factory = order.choice.factory::<W>(&dataset.config, order.scratch)?;
         (order.begin)(&factory.name(), dataset.count);
@@ -166,7 +166,7 @@ impl<W: World> AnyWorld for Of<W> {
             order.measurements,
             order.done,
         )?;
-        Ok(ProcessedDataset {
+        Ok(DatasetAnswers {
             frames: processed.frames,
             files: W::Answers::files(order.measurements),
             first_failure: processed.first_failure,
@@ -179,7 +179,7 @@ impl<W: World> AnyWorld for Of<W> {
         measurements: &Path,
         evidence: Option<&Path>,
         attitude: Option<AttitudeChoice>,
-    ) -> Result<Box<dyn AnyScored>, Failure> {
+    ) -> Result<Box<dyn AnyJudgement>, Failure> {
         Ok(Box::new(W::score_files(directory, measurements, evidence, attitude)?))
     }
 
@@ -236,7 +236,7 @@ impl<W: World> AnyScenario for ScenarioOf<W> {
     }
 }
 
-impl<W: World> AnyPrepared for W {
+impl<W: World> AnyMission for W {
     fn frame_count(&self) -> u64 {
         World::frame_count(self)
     }
@@ -285,7 +285,7 @@ impl<W: World> AnyPrepared for W {
         flight: &Flight<String>,
         factory: &AnyFactory,
         go_on: &dyn Fn() -> Result<(), Failure>,
-    ) -> Result<RunResult<Box<dyn AnyScored>>, Failure> {
+    ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure> {
         Ok(World::run(self, directory, &flight.parse()?, factory.of()?, go_on)?.boxed())
     }
 
@@ -293,7 +293,7 @@ impl<W: World> AnyPrepared for W {
         &self,
         frames: Range<u64>,
         factory: &AnyFactory,
-    ) -> Result<RunResult<Box<dyn AnyScored>>, Failure> {
+    ) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure> {
         Ok(World::score(self, frames, factory.of()?)?.boxed())
     }
 
@@ -302,8 +302,8 @@ impl<W: World> AnyPrepared for W {
     }
 }
 
-impl<S: Scored + Send + 'static> RunResult<S> {
-    fn boxed(self) -> RunResult<Box<dyn AnyScored>> {
+impl<S: Judgement + Send + 'static> RunResult<S> {
+    fn boxed(self) -> RunResult<Box<dyn AnyJudgement>> {
         let Self { scored, first_failure, not_flown } = self;
         RunResult { scored: Box::new(scored), first_failure, not_flown }
     }

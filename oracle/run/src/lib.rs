@@ -20,20 +20,22 @@ pub mod far_range;
 pub mod flight;
 pub mod pipeline_choice;
 mod provenance;
+mod renderer_choice;
 mod run_result;
 mod slips;
 mod source;
 pub mod world;
 pub mod worlds;
 
-pub use any_world::{AnyFactory, AnyPrepared, AnyScenario, AnyScored, AnyWorld, Options, ScenarioSource};
-pub use docking::PreparedDocking;
+pub use any_world::{AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld, Options, ScenarioSource};
+pub use docking::DockingMission;
 pub use erased::Of;
-pub use far_range::{Prepared, SceneTruth};
+pub use far_range::{FarRangeMission, SceneTruth};
 pub use flight::{Expectation, Flight};
+pub use renderer_choice::RendererChoice;
 pub use run_result::{FirstFailure, NotFlown, RunResult};
 pub use source::world_of_run;
 pub use world::{
-    OpenDataset, Processed, ProcessedFrame, Scored, World, process, process_into, refuse_attitude,
+    AnswerCount, FrameAnswer, Judgement, OpenDataset, World, process, process_into, refuse_attitude,
 };
-pub use worlds::{json_schema, register, world_called, worlds};
+pub use worlds::{figure_called, json_schema, register, world_called, worlds};

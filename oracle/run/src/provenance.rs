@@ -11,7 +11,7 @@ use scenario::run_file::RunFile;
 use sim::truth::clock;
 use toml::{Table, Value};
 
-use crate::any_world::{AnyScenario, AnyScored, AnyWorld};
+use crate::any_world::{AnyJudgement, AnyScenario, AnyWorld};
 use crate::source::world_of_run;
 
 /// How far a time in a table of answers may be off, s: half of a millisecond is rounded away by whoever writes three decimals.
@@ -31,7 +31,7 @@ impl dyn AnyWorld {
         measurements: &Path,
         evidence: Option<&Path>,
         attitude: Option<AttitudeChoice>,
-    ) -> Result<Box<dyn AnyScored>, Failure> {
+    ) -> Result<Box<dyn AnyJudgement>, Failure> {
         for file in [Some(measurements), evidence].into_iter().flatten() {
             check_record_beside(self, directory, file)?;
         }

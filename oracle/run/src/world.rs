@@ -12,7 +12,7 @@ use indexmap::IndexMap;
 use pipeline::external::Protocol;
 use scenario::AttitudeChoice;
 use scenario::run_file::{RunFile, ScenarioFile};
-use score::{Figure, UnitTable};
+use score::{Figure, FigureSpec, UnitTable};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -85,7 +85,7 @@ pub trait World: Sized + Send + Sync + 'static {
     where
         Self: 'a;
     /// A scored run.
-    type Scored: Scored + Send + 'static;
+    type Judgement: Judgement + Send + 'static;
 
     /// Checks all values of a scenario and prepares its simulator.
     ///
@@ -181,8 +181,8 @@ pub trait World: Sized + Send + Sync + 'static {
     /// A [`Failure`] for a file that cannot be read.
     fn telemetry_rows(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure>;
 
-    /// Names of the figures of a score.
-    fn figure_names() -> Vec<String>;
+    /// The figures of a score. A key that another world has too is the same figure.
+    fn figures() -> Vec<FigureSpec>;
 
     /// Number of frames of the whole scenario.
     fn frame_count(&self) -> u64;
@@ -262,7 +262,7 @@ pub trait World: Sized + Send + Sync + 'static {
         measurements: &Path,
         beside: Option<&Path>,
         attitude: Option<AttitudeChoice>,
-    ) -> Result<Self::Scored, Failure>;
+    ) -> Result<Self::Judgement, Failure>;
 
     /// Makes frames and writes them as a dataset; `done` is called after each.
     ///
@@ -297,14 +297,14 @@ pub trait World: Sized + Send + Sync + 'static {
         flight: &Flight<Self::Images>,
         factory: &dyn PipelineFactory<Self::Interface>,
         go_on: impl Fn() -> Result<(), Failure>,
-    ) -> Result<RunResult<Self::Scored>, Failure> {
+    ) -> Result<RunResult<Self::Judgement>, Failure> {
         let mut dataset = self.dataset(directory, flight)?;
         let mut running = Running::build(self, factory)?;
         let mut answers = Self::Answers::create(&Self::Answers::files(&directory.measurements()))?;
         let mut scorer = self.scorer();
         let mut first_failure = None;
         let flown = fly(self, directory, flight, |exposure| {
-            let ProcessedFrame { image, telemetry, truth, outcome } = running.process(exposure)?;
+            let FrameAnswer { image, telemetry, truth, outcome } = running.process(exposure)?;
             let number = Self::Interface::number(&image);
             first_failure =
                 first_failure.take().or_else(|| FirstFailure::of::<Self::Interface>(number, &outcome));
@@ -340,7 +340,7 @@ pub trait World: Sized + Send + Sync + 'static {
         frames: Range<u64>,
         jobs: usize,
         factory: &dyn PipelineFactory<Self::Interface>,
-        mut take: impl FnMut(ProcessedFrame<Self>) -> Result<(), Failure>,
+        mut take: impl FnMut(FrameAnswer<Self>) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         let mut running = Running::build(self, factory)?;
         let make = |workspace: &mut Self::Workspace<'_>, frame| self.expose(workspace, frame);
@@ -367,7 +367,7 @@ pub trait World: Sized + Send + Sync + 'static {
         &self,
         frames: Range<u64>,
         factory: &dyn PipelineFactory<Self::Interface>,
-    ) -> Result<RunResult<Self::Scored>, Failure> {
+    ) -> Result<RunResult<Self::Judgement>, Failure> {
         let mut running = Running::build(self, factory)?;
         let mut first_failure = None;
         let mut scorer = self.scorer();
@@ -402,7 +402,7 @@ pub struct OpenDataset<W: World> {
 pub type Images<W> = Box<dyn Iterator<Item = Result<(ImageOf<W>, TelemetryOf<W>), Failure>>>;
 
 /// An image of a run, and what the pipeline answered.
-pub struct ProcessedFrame<W: World> {
+pub struct FrameAnswer<W: World> {
     /// The image, as it was received.
     pub image: ImageOf<W>,
     /// What the pipeline was told of it.
@@ -485,11 +485,11 @@ pub trait Scorer<W: World> {
     ) -> Result<(), Failure>;
 
     /// The score, with what it was counted from.
-    fn finish(self) -> W::Scored;
+    fn finish(self) -> W::Judgement;
 }
 
 /// A scored run.
-pub trait Scored {
+pub trait Judgement {
     /// The content of `score.json`.
     type Score: Serialize;
 
@@ -523,14 +523,14 @@ impl<W: World> Running<W> {
         Ok(Self { pipeline, feedback: W::Feedback::default() })
     }
 
-    fn process(&mut self, exposure: W::Exposure) -> Result<ProcessedFrame<W>, Failure> {
+    fn process(&mut self, exposure: W::Exposure) -> Result<FrameAnswer<W>, Failure> {
         let (image, telemetry, truth) = W::receive(exposure, &self.feedback);
         let outcome = match &mut self.pipeline {
             Processor::Own(pipeline) => pipeline.process(&image, &telemetry),
             Processor::Informed(pipeline) => pipeline.process(&image, &telemetry, &truth)?,
         };
         self.feedback = W::feedback(self.feedback.clone(), &outcome);
-        Ok(ProcessedFrame { image, telemetry, truth, outcome })
+        Ok(FrameAnswer { image, telemetry, truth, outcome })
     }
 
     fn failed_starts(&self) -> Option<&FailedStarts> {
@@ -607,7 +607,7 @@ pub fn process<I: Interface, A: Answers<I>>(
     factory: &dyn PipelineFactory<I>,
     measurements: &Path,
     done: impl Fn(),
-) -> Result<Processed, Failure> {
+) -> Result<AnswerCount, Failure> {
     // Under other names until all is done, so that a run that fails leaves nothing in the way of the next one.
     let files = A::files(measurements);
     let partial = PartialFiles::of(&files.iter().map(PathBuf::as_path).collect::<Vec<_>>())?;
@@ -627,9 +627,9 @@ pub fn process_into<I: Interface, A: Answers<I>>(
     factory: &dyn PipelineFactory<I>,
     mut answers: A,
     done: impl Fn(),
-) -> Result<Processed, Failure> {
+) -> Result<AnswerCount, Failure> {
     let mut pipeline = factory.build(setup)?;
-    let mut processed = Processed { frames: 0, first_failure: None };
+    let mut processed = AnswerCount { frames: 0, first_failure: None };
     for image in images {
         let (image, telemetry) = image?;
         let (number, outcome) = (I::number(&image), pipeline.process(&image, &telemetry));
@@ -649,7 +649,7 @@ pub fn process_into<I: Interface, A: Answers<I>>(
 
 /// What [`process`] did.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Processed {
+pub struct AnswerCount {
     /// Images answered.
     pub frames: u64,
     /// The first failure of the pipeline, if it failed at all.

@@ -1,26 +1,43 @@
 //! The register of worlds.
 
-use std::sync::{PoisonError, RwLock};
+use std::collections::HashMap;
+use std::sync::{LazyLock, PoisonError, RwLock};
 
 use files::toml_file;
 use schemars::{Schema, SchemaGenerator, json_schema};
+use score::FigureSpec;
 
 use crate::any_world::AnyWorld;
 use crate::erased::Of;
-use crate::{Prepared, PreparedDocking};
+use crate::{DockingMission, FarRangeMission};
 
 /// The world of a scenario that names none.
-pub const FIRST: &dyn AnyWorld = &Of::<Prepared>::NEW;
+pub const FIRST: &dyn AnyWorld = &Of::<FarRangeMission>::NEW;
 
 /// The worlds that there are: one line each.
-const BUILT_IN: [&dyn AnyWorld; 2] = [FIRST, &Of::<PreparedDocking>::NEW];
+const BUILT_IN: [&dyn AnyWorld; 2] = [FIRST, &Of::<DockingMission>::NEW];
 
 /// Worlds of somebody's own.
 static REGISTERED: RwLock<Vec<&'static dyn AnyWorld>> = RwLock::new(Vec::new());
 
+/// The figures of all worlds, by their keys.
+static FIGURES: LazyLock<RwLock<HashMap<String, FigureSpec>>> =
+    LazyLock::new(|| RwLock::new(BUILT_IN.into_iter().flat_map(by_key).collect()));
+
+fn by_key(world: &'static dyn AnyWorld) -> impl Iterator<Item = (String, FigureSpec)> {
+    world.figures().into_iter().map(|figure| (figure.name.clone(), figure))
+}
+
 /// Adds a world for the rest of the process, as in `register(&Of::<MyWorld>::NEW)`: every command, study and gate then has it.
 pub fn register(world: &'static dyn AnyWorld) {
+    FIGURES.write().unwrap_or_else(PoisonError::into_inner).extend(by_key(world));
     REGISTERED.write().unwrap_or_else(PoisonError::into_inner).push(world);
+}
+
+/// The figure of a key, of whatever world; a key that no world has is [`FigureSpec::unknown`].
+pub fn figure_called(key: &str) -> FigureSpec {
+    let figures = FIGURES.read().unwrap_or_else(PoisonError::into_inner);
+    figures.get(key).cloned().unwrap_or_else(|| FigureSpec::unknown(key))
 }
 
 /// Every world.

@@ -13,7 +13,8 @@ use super::angles::{
 use super::argon_table2::Table2;
 use super::cause::{Cause, Detector};
 use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
-use super::report::{Figure, GroupScore, Score, names};
+use super::figure_spec::{Better, FigureSpec};
+use super::report::{GroupScore, Score, names};
 use super::verdict::{FrameVerdict, Taken, Unproject, Verdict, judge};
 
 /// What the score needs besides the frames.
@@ -38,7 +39,7 @@ pub struct ScoreContext<'a> {
 
 /// A score and the verdicts that it counts.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scored {
+pub struct FarRangeJudgement {
     /// The figures.
     pub score: Score,
     /// One verdict a frame, in order.
@@ -175,7 +176,7 @@ impl<'a> Scorer<'a> {
 
     /// The figures over all frames. Each group is one sequence for the statistics, even where another one
     /// interrupts it.
-    pub fn finish(self) -> Scored {
+    pub fn finish(self) -> FarRangeJudgement {
         let mut groups: IndexMap<&str, Vec<&FrameVerdict>> = IndexMap::new();
         for verdict in &self.verdicts {
             groups.entry(&verdict.group).or_default().push(verdict);
@@ -199,14 +200,14 @@ impl<'a> Scorer<'a> {
             wrong: all.wrong,
             wrong_taken: all.wrong_taken,
         };
-        Scored { score, verdicts: self.verdicts, limits, published: None }
+        FarRangeJudgement { score, verdicts: self.verdicts, limits, published: None }
     }
 }
 
-/// Names of the figures of every score, in their order.
-pub fn figure_names() -> Vec<String> {
+/// The figures of every score, in their order.
+pub fn figures() -> Vec<FigureSpec> {
     let limits = WithinLimits::of_degrees([0.0; 2]);
-    definitions(&limits).into_iter().map(|definition| definition.name).collect()
+    definitions(&limits).into_iter().map(|definition| definition.figure).collect()
 }
 
 /// The attitude that the lines of sight of some frames rest on.
@@ -228,7 +229,10 @@ fn group_score(sequences: &[&[&FrameVerdict]], limits: &WithinLimits) -> GroupSc
     };
     GroupScore {
         frames: frames().count() as u64,
-        figures: figures(sequences, limits),
+        figures: definitions(limits)
+            .iter()
+            .map(|definition| (definition.figure.name.clone(), definition.figure(sequences)))
+            .collect(),
         misses: causes(&|verdict| match verdict {
             Verdict::Missed { cause } => Some(*cause),
             _ => None,
@@ -268,32 +272,33 @@ pub(super) fn counts(
     counts
 }
 
-fn figures(sequences: &[&[&FrameVerdict]], limits: &WithinLimits) -> IndexMap<String, Figure> {
-    definitions(limits).iter().map(|figure| (figure.name.clone(), figure.figure(sequences))).collect()
-}
-
 /// The figures of a far-range score, in their order.
 fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> {
-    let of_all = |name: &str, holds: fn(&FrameVerdict) -> bool| {
-        Definition::rate(name, move |frame: &FrameVerdict| Some(holds(frame)))
+    let of_all = |name: &str, words: &str, holds: fn(&FrameVerdict) -> bool| {
+        Definition::rate(name, words, move |frame: &FrameVerdict| Some(holds(frame)))
     };
-    let of_detected = |name: &str, component: fn(LineOfSightError) -> Angle, limit_deg: f64| {
+    let within = |name: &str, words: &str, component: fn(LineOfSightError) -> Angle, limit_deg: f64| {
         let limit = Angle::from_degrees(limit_deg);
         let holds = move |frame: &FrameVerdict| {
             frame.verdict.line_of_sight_error().map(|error| component(error).abs() < limit)
         };
-        Definition::rate(name, holds).within(limit_deg)
+        Definition::rate(name, words, holds).within(limit_deg).resting_on_attitude()
     };
-    let of_correct = |name: &str, reduction: Reduction, component: fn(AnswerError) -> Option<f64>| {
-        Definition::of(name, reduction, move |frame: &FrameVerdict| match frame.verdict {
+    let px = |name: &str, words: &str, reduction: Reduction, component: fn(AnswerError) -> Option<f64>| {
+        Definition::of(name, words, "px", reduction, move |frame: &FrameVerdict| match frame.verdict {
             Verdict::Correct { error } => component(error),
             _ => None,
         })
     };
+    let deg = |name: &str, words: &str, reduction: Reduction, component: fn(LineOfSightError) -> Angle| {
+        let value = move |frame: &FrameVerdict| match frame.verdict {
+            Verdict::Correct { error } => Some(component(error.line_of_sight?).degrees()),
+            _ => None,
+        };
+        Definition::of(name, words, "°", reduction, value).resting_on_attitude()
+    };
     let ra = |error: LineOfSightError| error.ra;
     let dec = |error: LineOfSightError| error.dec;
-    let ra_deg = |error: AnswerError| Some(error.line_of_sight?.ra.degrees());
-    let dec_deg = |error: AnswerError| Some(error.line_of_sight?.dec.degrees());
     let x_px = |error: AnswerError| error.centroid_px.map(|[x, _]| x);
     let y_px = |error: AnswerError| error.centroid_px.map(|[_, y]| y);
     let has_own = |frame: &FrameVerdict| {
@@ -303,29 +308,33 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
     let ([ra_1px, ra_2px], [dec_1px, dec_2px]) = (limits.ra_deg, limits.dec_deg);
     let stars = |frame: &FrameVerdict| frame.n_stars.map(f64::from);
     vec![
-        of_all(names::HIT_RATE, |frame| frame.verdict.is_detected()),
-        of_detected(names::RA_WITHIN_1PX, ra, ra_1px),
-        of_detected(names::RA_WITHIN_2PX, ra, ra_2px),
-        of_detected(names::DEC_WITHIN_1PX, dec, dec_1px),
-        of_detected(names::DEC_WITHIN_2PX, dec, dec_2px),
-        of_all(names::CORRECT_RATE, |frame| matches!(frame.verdict, Verdict::Correct { .. })),
-        of_all(names::WRONG_RATE, |frame| matches!(frame.verdict, Verdict::Wrong { .. })),
-        of_all(names::MISS_RATE, |frame| matches!(frame.verdict, Verdict::Missed { .. })),
-        of_correct(names::RA_RMS_DEG, Reduction::Rms, ra_deg),
-        of_correct(names::DEC_RMS_DEG, Reduction::Rms, dec_deg),
-        of_correct(names::RA_MEAN_DEG, Reduction::Mean, ra_deg),
-        of_correct(names::DEC_MEAN_DEG, Reduction::Mean, dec_deg),
-        of_correct(names::RA_MEDIAN_DEG, Reduction::Median, ra_deg),
-        of_correct(names::DEC_MEDIAN_DEG, Reduction::Median, dec_deg),
-        of_correct(names::CENTROID_X_RMS_PX, Reduction::Rms, x_px),
-        of_correct(names::CENTROID_Y_RMS_PX, Reduction::Rms, y_px),
-        of_correct(names::CENTROID_X_MEAN_PX, Reduction::Mean, x_px),
-        of_correct(names::CENTROID_Y_MEAN_PX, Reduction::Mean, y_px),
-        of_correct(names::CENTROID_X_MEDIAN_PX, Reduction::Median, x_px),
-        of_correct(names::CENTROID_Y_MEDIAN_PX, Reduction::Median, y_px),
-        Definition::rate(names::LINE_OF_SIGHT_RATE, has_own),
-        Definition::of(names::STARS_MEAN, Reduction::Mean, stars),
-        of_all(names::ATTITUDE_FROM_STARS_RATE, |frame| frame.attitude_source == Some(AttitudeSource::Stars)),
+        of_all(names::HIT_RATE, "hit rate", |frame| frame.verdict.is_detected()),
+        within(names::RA_WITHIN_1PX, "RA within 1 px", ra, ra_1px),
+        within(names::RA_WITHIN_2PX, "RA within 2 px", ra, ra_2px),
+        within(names::DEC_WITHIN_1PX, "Dec within 1 px", dec, dec_1px),
+        within(names::DEC_WITHIN_2PX, "Dec within 2 px", dec, dec_2px),
+        of_all(names::CORRECT_RATE, "correct rate", |frame| matches!(frame.verdict, Verdict::Correct { .. })),
+        of_all(names::WRONG_RATE, "wrong rate", |frame| matches!(frame.verdict, Verdict::Wrong { .. }))
+            .best(Better::Less),
+        of_all(names::MISS_RATE, "miss rate", |frame| matches!(frame.verdict, Verdict::Missed { .. }))
+            .best(Better::Less),
+        deg(names::RA_RMS_DEG, "RA RMS", Reduction::Rms, ra),
+        deg(names::DEC_RMS_DEG, "Dec RMS", Reduction::Rms, dec),
+        deg(names::RA_MEAN_DEG, "RA mean", Reduction::Mean, ra),
+        deg(names::DEC_MEAN_DEG, "Dec mean", Reduction::Mean, dec),
+        deg(names::RA_MEDIAN_DEG, "RA median", Reduction::Median, ra),
+        deg(names::DEC_MEDIAN_DEG, "Dec median", Reduction::Median, dec),
+        px(names::CENTROID_X_RMS_PX, "centroid x RMS", Reduction::Rms, x_px),
+        px(names::CENTROID_Y_RMS_PX, "centroid y RMS", Reduction::Rms, y_px),
+        px(names::CENTROID_X_MEAN_PX, "centroid x mean", Reduction::Mean, x_px),
+        px(names::CENTROID_Y_MEAN_PX, "centroid y mean", Reduction::Mean, y_px),
+        px(names::CENTROID_X_MEDIAN_PX, "centroid x median", Reduction::Median, x_px),
+        px(names::CENTROID_Y_MEDIAN_PX, "centroid y median", Reduction::Median, y_px),
+        Definition::rate(names::LINE_OF_SIGHT_RATE, "line of sight rate", has_own),
+        Definition::of(names::STARS_MEAN, "stars mean", None, Reduction::Mean, stars).best(Better::More),
+        of_all(names::ATTITUDE_FROM_STARS_RATE, "attitude from stars rate", |frame| {
+            frame.attitude_source == Some(AttitudeSource::Stars)
+        }),
     ]
 }
 
@@ -346,7 +355,9 @@ impl UnitTable {
             units: frames.iter().map(unit).collect(),
             figures: definitions(limits)
                 .iter()
-                .map(|figure| FigureTerms::new(figure, frames).resting_on(attitude.as_ref()))
+                .map(|definition| {
+                    FigureTerms::new(definition, frames).resting_on(&definition.figure, attitude.as_ref())
+                })
                 .collect(),
         }
     }
@@ -529,7 +540,7 @@ mod tests {
                 n_stars: None,
                 attitude_source: None,
             };
-            figures(&[&[&verdict]], &LIMITS)[names::RA_WITHIN_1PX].count
+            group_score(&[&[&verdict]], &LIMITS).figures[names::RA_WITHIN_1PX].count
         };
         assert_eq!(with_error(Angle::from_degrees(0.024)), 0);
         assert_eq!(with_error(Angle::from_degrees(-0.024)), 0);
@@ -601,7 +612,8 @@ mod tests {
 
     #[test]
     fn every_score_has_the_figures_of_the_list_in_its_order() {
-        assert!(figure_names().iter().eq(score(&day()).figures.keys()) && figure_names().len() == 23);
+        let figures: Vec<String> = figures().into_iter().map(|figure| figure.name).collect();
+        assert!(figures.iter().eq(score(&day()).figures.keys()) && figures.len() == 23);
     }
 
     #[test]

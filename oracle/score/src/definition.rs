@@ -1,5 +1,6 @@
 //! What a figure is: the values that every frame has for it, and how they are summed up.
 
+use super::figure_spec::{Better, FigureSpec, Kind, Sense};
 use super::report::Figure;
 
 /// How a figure sums up the values of the frames.
@@ -38,10 +39,10 @@ impl Reduction {
 /// The values of one unit (a frame, a field) for a figure, added to the list.
 type Values<'a, U> = Box<dyn Fn(&U, &mut Vec<f64>) + 'a>;
 
-/// The definition of a figure over units of the type `U`: score and gate both count by it.
+/// The definition of a figure over units of the type `U`: score and gate both count by it, tables and reports show it by its words.
 pub struct Definition<'a, U> {
-    /// Name of the figure.
-    pub name: String,
+    /// What the figure is.
+    pub figure: FigureSpec,
     /// How its values are summed up.
     pub reduction: Reduction,
     /// Of a rate of errors "within" something: the limit, degrees.
@@ -50,22 +51,55 @@ pub struct Definition<'a, U> {
 }
 
 impl<'a, U> Definition<'a, U> {
-    /// A rate of the units for which `holds` says something.
-    pub fn rate(name: impl Into<String>, holds: impl Fn(&U) -> Option<bool> + 'a) -> Self {
-        Self::pooled(name, move |unit, values| {
+    /// A rate of the units for which `holds` says something; more is better unless [`Definition::best`] says otherwise.
+    pub fn rate(
+        name: impl Into<String>,
+        words: impl Into<String>,
+        holds: impl Fn(&U) -> Option<bool> + 'a,
+    ) -> Self {
+        Self::pooled(name, words, move |unit, values| {
             values.extend(holds(unit).map(|held| f64::from(u8::from(held))))
         })
     }
 
     /// A rate of values, 0 or 1, of which a unit may have several.
-    pub fn pooled(name: impl Into<String>, values: impl Fn(&U, &mut Vec<f64>) + 'a) -> Self {
-        Self { name: name.into(), reduction: Reduction::Rate, limit_deg: None, values: Box::new(values) }
+    pub fn pooled(
+        name: impl Into<String>,
+        words: impl Into<String>,
+        values: impl Fn(&U, &mut Vec<f64>) + 'a,
+    ) -> Self {
+        let sense = Sense { kind: Kind::Rate, better: Better::More };
+        let figure = FigureSpec { unit: Some("%"), sense, ..FigureSpec::amount(name, words, Better::More) };
+        Self { figure, reduction: Reduction::Rate, limit_deg: None, values: Box::new(values) }
     }
 
-    /// A mean, median or root mean square of the units that have a value.
-    pub fn of(name: impl Into<String>, reduction: Reduction, value: impl Fn(&U) -> Option<f64> + 'a) -> Self {
+    /// A mean, median or root mean square of the units that have a value, in the unit `unit`: an error's, of which a root mean square is
+    /// the better the less it is, a mean or median the nearer to 0, unless [`Definition::best`] says otherwise.
+    pub fn of(
+        name: impl Into<String>,
+        words: impl Into<String>,
+        unit: impl Into<Option<&'static str>>,
+        reduction: Reduction,
+        value: impl Fn(&U) -> Option<f64> + 'a,
+    ) -> Self {
+        let better = if reduction == Reduction::Rms { Better::Less } else { Better::Near(0.0) };
+        let figure = FigureSpec { unit: unit.into(), ..FigureSpec::amount(name, words, better) };
         let values: Values<'a, U> = Box::new(move |unit, values| values.extend(value(unit)));
-        Self { name: name.into(), reduction, limit_deg: None, values }
+        Self { figure, reduction, limit_deg: None, values }
+    }
+
+    /// The same with another direction.
+    #[must_use]
+    pub fn best(mut self, better: Better) -> Self {
+        self.figure.sense.better = better;
+        self
+    }
+
+    /// The same, one of lines of sight.
+    #[must_use]
+    pub fn resting_on_attitude(mut self) -> Self {
+        self.figure.rests_on_attitude = true;
+        self
     }
 
     /// The same, of errors below a limit, degrees.
@@ -129,17 +163,16 @@ pub struct FigureTerms {
 }
 
 impl FigureTerms {
-    /// The same figure with the attitude that its lines of sight rest on, if it is one of lines of sight.
+    /// The same figure with the attitude that its lines of sight rest on, if `figure`, which it is of, is one of lines of sight.
     #[must_use]
-    pub fn resting_on(self, attitude: Option<&String>) -> Self {
-        let is_of_lines_of_sight = ["ra_", "dec_"].iter().any(|axis| self.name.starts_with(axis));
-        Self { attitude: attitude.filter(|_| is_of_lines_of_sight).cloned(), ..self }
+    pub fn resting_on(self, figure: &FigureSpec, attitude: Option<&String>) -> Self {
+        Self { attitude: attitude.filter(|_| figure.rests_on_attitude).cloned(), ..self }
     }
 
     /// The terms of units by a definition.
     pub fn new<U>(definition: &Definition<'_, U>, units: &[U]) -> Self {
         let terms = units.iter().map(|unit| definition.term(unit)).collect();
-        let counted = Self::counted(&definition.name, definition.reduction, terms);
+        let counted = Self::counted(&definition.figure.name, definition.reduction, terms);
         Self { limit_deg: definition.limit_deg, ..counted }
     }
 
@@ -187,24 +220,18 @@ mod tests {
 
     #[test]
     fn figures_of_lines_of_sight_alone_rest_on_an_attitude() {
-        let attitude = |name: &str| {
-            let definition = Definition::rate(name, |unit: &u32| Some(*unit > 0));
-            FigureTerms::new(&definition, &[1]).resting_on(Some(&"true".to_owned())).attitude
-        };
-        for (name, rests) in [
-            ("ra_rms_deg", true),
-            ("dec_within_1px", true),
-            ("hit_rate", false),
-            ("centroid_x_rms_px", false),
-        ] {
-            assert_eq!(attitude(name).is_some(), rests, "{name}");
+        for figure in crate::figures() {
+            let terms = FigureTerms::counted(&figure.name, Reduction::Mean, Vec::new());
+            let rests = terms.resting_on(&figure, Some(&"true".to_owned())).attitude.is_some();
+            let is_of_lines_of_sight = ["ra_", "dec_"].iter().any(|axis| figure.name.starts_with(axis));
+            assert_eq!(rests, is_of_lines_of_sight, "{figure}");
         }
     }
 
     #[test]
     fn a_unit_adds_the_sum_of_its_values_and_their_number() {
         let definition =
-            Definition::pooled("held", |unit: &u32, values| values.extend((0..*unit).map(f64::from)));
+            Definition::pooled("held", "held", |unit: &u32, values| values.extend((0..*unit).map(f64::from)));
         assert_eq!(definition.term(&4), Term { sum: 6.0, of: 4 });
         assert_eq!(definition.term(&0), Term { sum: 0.0, of: 0 });
     }

@@ -32,14 +32,13 @@ mod definition;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 pub mod docking;
+mod figure_spec;
 #[cfg(test)]
 mod hand_made;
-mod label;
 mod report;
-mod sense;
 mod verdict;
 
-pub use accumulate::{ScoreContext, ScoreError, Scored, Scorer, figure_names};
+pub use accumulate::{FarRangeJudgement, ScoreContext, ScoreError, Scorer, figures};
 pub use angles::{
     AnswerError, AttitudeUsed, GrantedAttitude, LineOfSightError, WithinLimits, attitude_note, attitude_word,
 };
@@ -47,7 +46,6 @@ pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
 pub use belonging::belonging_to;
 pub use cause::Cause;
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
-pub use label::{FigureLabel, angle};
+pub use figure_spec::{Better, FigureSpec, Kind, Sense, angle};
 pub use report::{Figure, GroupScore, Score, names};
-pub use sense::{Better, Kind, Sense, sense};
 pub use verdict::{FrameVerdict, Taken, Unproject, Verdict, VerdictRow};

@@ -1,7 +1,7 @@
 //! Values of many cases together, with their intervals.
 
 use rand::Rng;
-use score::{Kind, sense};
+use run::figure_called;
 use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed, Stream};
 use statistics::{
@@ -36,7 +36,7 @@ impl Estimate {
 ///
 /// [`CaseTable::draws`]: super::CaseTable::draws
 pub fn overall(name: &str, cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
-    let is_rate = sense(name).kind == Kind::Rate;
+    let is_rate = figure_called(name).is_rate();
     let sums = sums(is_rate, cases, draws);
     let (sum, of) = sums.iter().fold((0.0, 0.0), |(sum, of), draw| (sum + draw.sum, of + draw.of));
     let value = (of > 0.0).then(|| sum / of)?;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use files::Failure;
-use run::{AnyScored, FirstFailure, Options, RunResult};
+use run::{AnyJudgement, FirstFailure, Options, RunResult};
 
 use super::cases::{CaseFigure, CaseRow};
 use super::definition::{Case, Study};
@@ -51,7 +51,7 @@ fn run(
     case: &Case,
     pipeline: &dyn StudyPipeline,
     scratch: &Path,
-) -> Result<RunResult<Box<dyn AnyScored>>, Failure> {
+) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure> {
     let factory = pipeline.factory(case.source.scenario.as_ref(), scratch)?;
     let prepared = case.source.prepare(Options::default())?;
     prepared.score(study.frames(prepared.frame_count())?, &factory)

@@ -2,7 +2,8 @@
 use std::path::Path;
 
 use indexmap::IndexMap;
-use score::{Better, Kind, sense};
+use run::figure_called;
+use score::Better;
 use serde::{Deserialize, Serialize};
 use statistics::{
     ClusterSum, LEAST_CLUSTERS, cluster_rank_correlation, mean_difference_interval, rate_difference_interval,
@@ -227,7 +228,7 @@ fn differences(points: &[Point]) -> Vec<SweepDifference> {
 
 /// A figure of the second table less that of the first, over the draws that have it in both, and how many these are.
 fn difference(figure: &str, first: &CaseTable, second: &CaseTable) -> Option<(Estimate, u64)> {
-    let is_rate = sense(figure).kind == Kind::Rate;
+    let is_rate = figure_called(figure).is_rate();
     // A point of the sweep has one case of each draw.
     let sums = |table: &CaseTable| -> IndexMap<u64, ClusterSum> {
         let cases = table.figure(figure).unwrap_or_default();
@@ -330,7 +331,7 @@ fn indices(table: &CaseTable, seed: u64) -> Vec<SobolIndex> {
 }
 
 fn worst(table: &CaseTable, by: &str, replay: impl Fn(u64) -> String) -> Vec<WorstCase> {
-    let badness = |value: f64| match sense(by).better {
+    let badness = |value: f64| match figure_called(by).sense.better {
         Better::More => -value,
         Better::Less => value,
         Better::Near(best) => (value - best).abs(),

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use files::Failure;
 use gate::GateReport;
-use run::AnyScored;
+use run::AnyJudgement;
 use visibility::VisibilityReport;
 
 use crate::command::missing_feature;
@@ -17,7 +17,7 @@ pub(super) fn check_place(_: &Path) -> Result<(), Failure> {
     Err(missing_feature("report"))
 }
 
-pub(in crate::command) fn write_beside_run(_: &Path, _: &mut dyn AnyScored, output: &Output) {
+pub(in crate::command) fn write_beside_run(_: &Path, _: &mut dyn AnyJudgement, output: &Output) {
     note(output);
 }
 

@@ -8,7 +8,7 @@ use report::{
     FlippedFrames, Page, REPORTS, gate_page, report_of, report_of_run, report_with_budget, visibility_page,
     write_page,
 };
-use run::AnyScored;
+use run::AnyJudgement;
 use visibility::VisibilityReport;
 
 use super::budget::fly_budget;
@@ -41,7 +41,7 @@ pub(super) fn write_report(
 }
 
 /// Writes the report of a run that has just been scored into its directory.
-pub(in crate::command) fn write_beside_run(directory: &Path, scored: &mut dyn AnyScored, output: &Output) {
+pub(in crate::command) fn write_beside_run(directory: &Path, scored: &mut dyn AnyJudgement, output: &Output) {
     write_beside(report_of_run(directory, scored), directory, output);
 }
 

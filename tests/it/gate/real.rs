@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use boresight::pipeline_choice::PipelineChoice;
 use boresight::run::docking::renderer::DockingRenderer;
-use boresight::run::{Prepared, PreparedDocking, ScenarioSource, Scored as _, World as _};
+use boresight::run::{DockingMission, FarRangeMission, Judgement as _, ScenarioSource, World as _};
 use boresight::scenario::FarRangeScenario;
 use boresight::score::{FrameVerdict, UnitTable};
 use contract::docking::{Docking, DockingOutcome, DockingSetup, DockingSolution, Field, FieldTelemetry};
@@ -30,9 +30,10 @@ pub(crate) fn runs(seeds: Range<u64>, stretches: usize, frames: u64) -> Vec<Vec<
         let mut place = 0..;
         scenario.schedule.retain(|_| place.next().unwrap() % 6 < stretches);
         scenario.schedule.iter_mut().for_each(|stretch| stretch.count = frames);
-        let prepared = Prepared::new(&source).unwrap();
-        let factory =
-            PIPELINE.factory::<Prepared>(&prepared.scenario().far_range, &std::env::temp_dir()).unwrap();
+        let prepared = FarRangeMission::new(&source).unwrap();
+        let factory = PIPELINE
+            .factory::<FarRangeMission>(&prepared.scenario().far_range, &std::env::temp_dir())
+            .unwrap();
         prepared.score(0..prepared.frame_count(), factory.as_ref()).unwrap().scored.verdicts
     };
     seeds.into_par_iter().map(run).collect()
@@ -41,9 +42,9 @@ pub(crate) fn runs(seeds: Range<u64>, stretches: usize, frames: u64) -> Vec<Vec<
 /// Runs of the gate's docking by seed, each as it is and with all its ranges a thousandth too long.
 pub(crate) fn docking_runs(seeds: Range<u64>, fields: Range<u64>) -> Vec<(UnitTable, UnitTable)> {
     let run = |seed: u64| {
-        let prepared = PreparedDocking::new(&source("docking", seed), DockingRenderer::Fast).unwrap();
+        let prepared = DockingMission::new(&source("docking", seed), DockingRenderer::Fast).unwrap();
         let factory =
-            PIPELINE.factory::<PreparedDocking>(&prepared.scenario().docking, &std::env::temp_dir()).unwrap();
+            PIPELINE.factory::<DockingMission>(&prepared.scenario().docking, &std::env::temp_dir()).unwrap();
         let own = prepared.score(fields.clone(), factory.as_ref()).unwrap().scored.units();
         let scaled = prepared.score(fields.clone(), &Scaled(factory.as_ref())).unwrap().scored.units();
         (own, scaled)

@@ -6,6 +6,8 @@ mod limits;
 mod motion;
 mod run;
 
+use std::path::Path;
+
 use indexmap::IndexMap;
 
 pub use field_sheet::FieldSheet;
@@ -16,11 +18,29 @@ use super::colours::colour_of;
 use super::data_table::DataTable;
 use super::figures::{figure_table, least_to_most, percent_cell, shown_percent};
 use super::page::{Page, Section};
+use super::picture::Rendered;
 use super::plotly::Trace;
 use super::words::spoken;
-use files::Failure;
+use ::run::AnyJudgement;
+use files::{Checksums, Failure};
 use score::docking::DockingGroup;
 use score::{Figure, UnitVerdict};
+
+/// The page of a run directory.
+pub(crate) fn page(directory: &Path, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
+    let page = docking_page(&DockingRun::read(directory)?, &FieldSheet::open(directory)?)?;
+    Checksums::check(directory, |_| true)?;
+    Ok(page)
+}
+
+/// Pictures of some fields of a run directory.
+pub(crate) fn pictures(directory: &Path, fields: &[u64]) -> Result<Rendered, Failure> {
+    let run = DockingRun::read(directory)?;
+    let row = |field: &u64| run.truths.binary_search_by_key(field, |truth| truth.field).ok();
+    let sheet = FieldSheet::open(directory)?;
+    let pictures = sheet.pictures(&run, &fields.iter().filter_map(row).collect::<Vec<_>>())?;
+    Ok((pictures, sheet.reason().map(str::to_owned)))
+}
 
 /// The page of a docking run; `sheet` draws its fields anew.
 ///

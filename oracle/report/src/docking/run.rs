@@ -15,7 +15,7 @@ use std::path::Path;
 use contract::docking::{DockingOutcome, Motion};
 use files::docking::{read_field_measurements, read_motion};
 use files::{Failure, FieldRow, TableReader, read_field_telemetry};
-use run::{PreparedDocking, Scored as _, World as _};
+use run::{DockingMission, Judgement as _, World as _};
 use scenario::DockingScenario;
 use scenario::run_file::RunFile;
 use score::UnitVerdict;
@@ -69,7 +69,7 @@ impl DockingRun {
         let measurements = directory.join("measurements.csv");
         let motion = Some(directory.join("motion.csv")).filter(|path| path.is_file());
         let verdicts =
-            PreparedDocking::score_files(directory, &measurements, motion.as_deref(), None)?.units().units;
+            DockingMission::score_files(directory, &measurements, motion.as_deref(), None)?.units().units;
         let mut truths = Vec::with_capacity(verdicts.len());
         for field in TableReader::<FieldTruth>::open(&directory.join("truth/fields.parquet"))? {
             truths.extend(field?.1);

@@ -9,6 +9,8 @@ mod injected;
 mod run;
 mod series;
 
+use std::path::Path;
+
 use indexmap::IndexMap;
 
 pub use frame_sheet::FrameSheet;
@@ -21,11 +23,36 @@ use super::colours::colour_of;
 use super::data_table::DataTable;
 use super::figures::{figure_table, least_to_most, percent_cell, shown_percent};
 use super::page::{Page, Section};
+use super::picture::Rendered;
 use super::plotly::Trace;
 use super::words::spoken;
-use files::Failure;
+use ::run::AnyJudgement;
+use files::{Checksums, Failure};
 use scenario::is_argon;
-use score::{ARGON_TABLE_2, AttitudeUsed, GroupScore, angle, attitude_note};
+use score::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore, angle, attitude_note};
+
+/// The page of a run directory with the error budget that is kept there; without one, of a run whose verdicts are known.
+pub(crate) fn page(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
+    let run = match scored.and_then(|scored| scored.as_any_mut().downcast_mut::<FarRangeJudgement>()) {
+        Some(scored) => FarRangeRun::with_verdicts(directory, std::mem::take(&mut scored.verdicts))?,
+        None => {
+            let mut run = FarRangeRun::read(directory)?;
+            run.budget = InjectedRun::read_all(&kept_budget(directory), &run.run_file, &run.score)?;
+            Checksums::check(directory, |_| true)?;
+            run
+        }
+    };
+    far_range_page(&run, &FrameSheet::open(directory)?)
+}
+
+/// Pictures of some frames of a run directory.
+pub(crate) fn pictures(directory: &Path, frames: &[u64]) -> Result<Rendered, Failure> {
+    let run = FarRangeRun::read(directory)?;
+    let row = |frame: &u64| run.truths.binary_search_by_key(frame, |truth| truth.frame).ok();
+    let sheet = FrameSheet::open(directory)?;
+    let pictures = sheet.pictures(&run, &frames.iter().filter_map(row).collect::<Vec<_>>())?;
+    Ok((pictures, sheet.reason().map(str::to_owned)))
+}
 
 /// The page of a far-range run; `sheet` renders its frames anew.
 ///

@@ -16,7 +16,7 @@ use std::path::Path;
 use contract::Outcome;
 use files::{Failure, TableReader, TelemetryRow, format_utc, read_measurements, read_telemetry};
 use hifitime::{Epoch, Unit};
-use run::{Prepared, World as _};
+use run::{FarRangeMission, World as _};
 use scenario::FarRangeScenario;
 use scenario::run_file::RunFile;
 use score::{FrameVerdict, Score};
@@ -57,8 +57,12 @@ impl FarRangeRun {
     pub fn read(directory: &Path) -> Result<Self, Failure> {
         check_files(directory)?;
         let clusters = Some(directory.join("clusters.parquet")).filter(|path| path.is_file());
-        let scored =
-            Prepared::score_files(directory, &directory.join("measurements.csv"), clusters.as_deref(), None)?;
+        let scored = FarRangeMission::score_files(
+            directory,
+            &directory.join("measurements.csv"),
+            clusters.as_deref(),
+            None,
+        )?;
         Self::with_verdicts(directory, scored.verdicts)
     }
 

@@ -10,7 +10,7 @@ use scenario::DockingScenario;
 use scenario::run_file::RunFile;
 use sim::docking::FieldTruth;
 
-use super::PreparedDocking;
+use super::DockingMission;
 use crate::world::Dataset;
 
 /// Quality of Motion-JPEG: its error is below the noise of a field.
@@ -132,7 +132,7 @@ impl<'a> FieldDataset<'a> {
     }
 }
 
-impl Dataset<PreparedDocking> for FieldDataset<'_> {
+impl Dataset<DockingMission> for FieldDataset<'_> {
     fn add(&mut self, field: &Field, telemetry: FieldTelemetry, truth: FieldTruth) -> Result<(), FileError> {
         let number = field.number();
         let is_png = self.is_png;

@@ -5,10 +5,10 @@
 
 pub mod answers;
 pub mod dataset;
-mod prepared;
+mod mission;
 pub mod renderer;
 
-pub use prepared::{PreparedDocking, simulator};
+pub use mission::{DockingMission, simulator};
 
 use std::fmt::Debug;
 use std::path::Path;
@@ -25,20 +25,21 @@ use pipeline::docking::{DockingConfig, DockingFactory};
 use scenario::run_file::RunFile;
 use scenario::{AttitudeChoice, DOCKING, DockingScenario};
 use score::docking::{DockingContext, DockingScore, DockingScorer, TrueField, names};
-use score::{Figure, UnitTable};
+use score::{Figure, FigureSpec, UnitTable};
 use serde_json::{Value, json};
 use sim::docking::{CameraConfig, DockingWorkspace, FieldExposure, FieldTruth};
 use sim::optics::Projection;
 
 use self::answers::{FieldAnswers, answer_as_filed};
 use self::dataset::{FieldDataset, FieldImages};
+use self::renderer::DockingRenderer;
 use crate::any_world::{Options, ScenarioSource};
 use crate::by_number::ByNumber;
 use crate::derived::{View, size};
 use crate::flight::{Expectation, Flight, in_order};
 use crate::world::{self, OpenDataset, World, refuse_attitude, unscorable};
 
-impl World for PreparedDocking {
+impl World for DockingMission {
     const STARTING_POINT: &'static str = DOCKING;
     const SETUP_FILE: &'static str = "setup.toml";
     /// An approach is one sequence; its groups are ranges.
@@ -61,7 +62,7 @@ impl World for PreparedDocking {
     type Dataset<'a> = FieldDataset<'a>;
     type Answers = FieldAnswers;
     type Scorer<'a> = Scorer;
-    type Scored = ScoredFields;
+    type Judgement = DockingJudgement;
 
     fn prepare(source: &ScenarioSource, _: &DockingScenario, options: Options) -> Result<Self, Failure> {
         refuse_attitude(options.attitude)?;
@@ -69,7 +70,7 @@ impl World for PreparedDocking {
             Some(stage) => {
                 Err(Failure::Usage(format!("--inject is {stage}, expected with a far-range scenario alone")))
             }
-            None => Self::new(source, options.renderer),
+            None => Self::new(source, DockingRenderer::new(options.renderer)?),
         }
     }
 
@@ -192,8 +193,8 @@ impl World for PreparedDocking {
         Ok(())
     }
 
-    fn figure_names() -> Vec<String> {
-        score::docking::figure_names()
+    fn figures() -> Vec<FigureSpec> {
+        score::docking::figures()
     }
 
     fn frame_count(&self) -> u64 {
@@ -244,7 +245,7 @@ impl World for PreparedDocking {
         measurements: &Path,
         motion: Option<&Path>,
         attitude: Option<AttitudeChoice>,
-    ) -> Result<ScoredFields, Failure> {
+    ) -> Result<DockingJudgement, Failure> {
         refuse_attitude(attitude)?;
         let run_file = RunFile::<DockingScenario>::read(&directory.join("run.toml"))?;
         let setup = SetupFile::read(&directory.join("setup.toml"))?.setup();
@@ -292,7 +293,7 @@ impl Scorer {
     }
 }
 
-impl world::Scorer<PreparedDocking> for Scorer {
+impl world::Scorer<DockingMission> for Scorer {
     /// Truth and answer are judged as their files would give them back, so that a run and its files have the same score to the bit.
     fn add(
         &mut self,
@@ -304,19 +305,19 @@ impl world::Scorer<PreparedDocking> for Scorer {
         self.scorer.add(&truth, Some(&answer_as_filed(outcome))).map_err(unscorable)
     }
 
-    fn finish(self) -> ScoredFields {
-        ScoredFields { score: self.scorer.score(), scorer: self.scorer }
+    fn finish(self) -> DockingJudgement {
+        DockingJudgement { score: self.scorer.score(), scorer: self.scorer }
     }
 }
 
 /// The score of a docking run, with the fields that it was counted from.
-pub struct ScoredFields {
+pub struct DockingJudgement {
     /// The score.
     pub score: DockingScore,
     scorer: DockingScorer,
 }
 
-impl world::Scored for ScoredFields {
+impl world::Judgement for DockingJudgement {
     type Score = DockingScore;
 
     fn score(&self) -> &DockingScore {

@@ -6,6 +6,8 @@ use mitsuba::{MitsubaOptions, MitsubaRenderer, VARIANT, VERSION};
 use scenario::run_file::MitsubaRecord;
 use sim::docking::{DockingSimulator, DockingWorkspace, FieldExposure};
 
+use crate::renderer_choice::RendererChoice;
+
 /// What draws the light that falls on the detector. The television chain after it is the same, draw by draw.
 #[derive(Debug, Default)]
 pub enum DockingRenderer {
@@ -26,6 +28,18 @@ pub struct MitsubaImages {
 }
 
 impl DockingRenderer {
+    /// The renderer chosen.
+    ///
+    /// # Errors
+    /// As [`DockingRenderer::mitsuba`].
+    pub fn new(choice: RendererChoice) -> Result<Self, Failure> {
+        match choice {
+            RendererChoice::BuiltIn => Ok(Self::Fast),
+            #[cfg(feature = "mitsuba")]
+            RendererChoice::Mitsuba(options) => Self::mitsuba(*options),
+        }
+    }
+
     /// Mitsuba with these options; it is not looked for yet.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ use scenario::run_file::RunFile;
 use sim::truth::{FrameTruth, ObjectTruth, Observer};
 use sim::{Exposure, Simulator};
 
-use super::{Prepared, SceneTruth};
+use super::{FarRangeMission, SceneTruth};
 use crate::world::Dataset;
 
 /// Writes `run.toml`, `camera.toml`, `stars.csv`, then frame by frame `telemetry.csv` and the truth tables.
@@ -57,7 +57,7 @@ impl FrameDataset {
     }
 }
 
-impl Dataset<Prepared> for FrameDataset {
+impl Dataset<FarRangeMission> for FrameDataset {
     /// Adds a frame to the tables. Its image is not in them: if images are kept, it was saved by [`save_image`].
     fn add(&mut self, frame: &Frame, telemetry: Telemetry, truth: SceneTruth) -> Result<(), FileError> {
         let number = frame.number();

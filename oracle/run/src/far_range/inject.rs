@@ -6,7 +6,7 @@ use scenario::Stage;
 use score::belonging_to;
 use sim::truth::{ObjectKind, Observer};
 
-use super::{Prepared, SceneTruth};
+use super::{FarRangeMission, SceneTruth};
 use crate::world::InformedPipeline;
 
 /// The built-in pipeline with the truth in the place of one stage's result.
@@ -28,7 +28,7 @@ impl InjectedPipeline {
     }
 }
 
-impl InformedPipeline<Prepared> for InjectedPipeline {
+impl InformedPipeline<FarRangeMission> for InjectedPipeline {
     fn process(
         &mut self,
         frame: &Frame,

@@ -3,10 +3,10 @@
 pub mod answers;
 pub mod dataset;
 mod inject;
-mod prepared;
+mod mission;
 pub mod star_list;
 
-pub use prepared::{Prepared, SceneTruth, simulator};
+pub use mission::{FarRangeMission, SceneTruth, simulator};
 
 use std::fmt::Debug;
 use std::path::Path;
@@ -23,8 +23,8 @@ use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
 use scenario::run_file::RunFile;
 use scenario::{AttitudeChoice, FarRangeScenario, STARTING_POINT, is_argon};
 use score::{
-    ARGON_TABLE_2, Figure, GrantedAttitude, Score, ScoreContext, ScoreError, Scored, UnitTable, WithinLimits,
-    names,
+    ARGON_TABLE_2, FarRangeJudgement, Figure, FigureSpec, GrantedAttitude, Score, ScoreContext, ScoreError,
+    UnitTable, WithinLimits, names,
 };
 use serde_json::{Value, json};
 use sim::catalog::Catalog;
@@ -51,7 +51,7 @@ fn fits_bytes(columns: usize, rows: usize) -> u64 {
     ((columns * rows * size_of::<u16>()) as u64).div_ceil(BLOCK) * BLOCK + 3 * BLOCK
 }
 
-impl World for Prepared {
+impl World for FarRangeMission {
     const STARTING_POINT: &'static str = STARTING_POINT;
     const SETUP_FILE: &'static str = "camera.toml";
     const TRUTH_FILE: &'static str = "truth/frames.parquet";
@@ -72,12 +72,12 @@ impl World for Prepared {
     type Dataset<'a> = FrameDataset;
     type Answers = FrameAnswers;
     type Scorer<'a> = Scorer<'a>;
-    type Scored = Scored;
+    type Judgement = FarRangeJudgement;
 
     fn prepare(source: &ScenarioSource, _: &FarRangeScenario, options: Options) -> Result<Self, Failure> {
-        if options.renderer.record().is_some() {
-            let message = "--renderer is mitsuba, expected with a docking scenario alone";
-            return Err(Failure::Usage(message.to_owned()));
+        if let Some(renderer) = options.renderer.word() {
+            let message = format!("--renderer is {renderer}, expected with a docking scenario alone");
+            return Err(Failure::Usage(message));
         }
         Self::with_options(source, options.inject, options.attitude)
     }
@@ -198,8 +198,8 @@ impl World for Prepared {
         Ok(())
     }
 
-    fn figure_names() -> Vec<String> {
-        score::figure_names()
+    fn figures() -> Vec<FigureSpec> {
+        score::figures()
     }
 
     fn frame_count(&self) -> u64 {
@@ -280,7 +280,7 @@ impl World for Prepared {
         measurements: &Path,
         clusters: Option<&Path>,
         attitude: Option<AttitudeChoice>,
-    ) -> Result<Scored, Failure> {
+    ) -> Result<FarRangeJudgement, Failure> {
         let mut run_file = RunFile::<FarRangeScenario>::read(&directory.join("run.toml"))?;
         run_file.scenario.score.attitude = attitude.or(run_file.scenario.score.attitude);
         let projection = Projection::new(&run_file.scenario.camera)?;
@@ -386,19 +386,19 @@ impl<'a> Scorer<'a> {
     }
 }
 
-impl world::Scorer<Prepared> for Scorer<'_> {
+impl world::Scorer<FarRangeMission> for Scorer<'_> {
     fn add(&mut self, truth: &SceneTruth, telemetry: &Telemetry, outcome: &Outcome) -> Result<(), Failure> {
         let granted = self.granted(Some(telemetry.body_from_icrs)).unwrap_or_default();
         self.scorer.add(&truth.frame, &truth.objects, Some(outcome), granted).map_err(unscorable)?;
         Ok(())
     }
 
-    fn finish(self) -> Scored {
-        Scored { published: self.is_argon.then_some(&ARGON_TABLE_2), ..self.scorer.finish() }
+    fn finish(self) -> FarRangeJudgement {
+        FarRangeJudgement { published: self.is_argon.then_some(&ARGON_TABLE_2), ..self.scorer.finish() }
     }
 }
 
-impl world::Scored for Scored {
+impl world::Judgement for FarRangeJudgement {
     type Score = Score;
 
     fn score(&self) -> &Score {

@@ -16,7 +16,7 @@ use super::sight::Sights;
 use super::truth::{TrueField, View};
 use super::verdict::{Gross, Verdict, gross};
 use crate::accumulate::counts;
-use crate::{Figure, FigureTerms, ScoreError, UnitTable, UnitVerdict};
+use crate::{Better, Figure, FigureSpec, FigureTerms, ScoreError, UnitTable, UnitVerdict};
 
 /// What the score of a docking run needs besides the fields.
 #[derive(Debug, Clone)]
@@ -221,9 +221,10 @@ fn name_of((bin, camera): (usize, usize), lenses: &[String]) -> String {
     group_name(bin, &lens)
 }
 
-/// Names of the figures of every score, in their order.
-pub fn figure_names() -> Vec<String> {
-    group_score(&[]).figures.into_keys().chain([names::LATENCY_FIELDS.to_owned()]).collect()
+/// The figures of every score, in their order.
+pub fn figures() -> Vec<FigureSpec> {
+    let latency = FigureSpec::amount(names::LATENCY_FIELDS, "latency fields", Better::Less);
+    definitions().into_iter().map(|definition| definition.figure).chain([latency]).collect()
 }
 
 /// Fields from the first clear one to the first success at or after it; `None` when there is no such pair.
@@ -247,7 +248,10 @@ fn group_score(sequences: &[&[&FieldVerdict]]) -> DockingGroup {
     DockingGroup {
         frames: fields().count() as u64,
         portions: fields().filter(|field| field.portion.is_some()).count() as u64,
-        figures: definitions().iter().map(|figure| (figure.name.clone(), figure.figure(sequences))).collect(),
+        figures: definitions()
+            .iter()
+            .map(|definition| (definition.figure.name.clone(), definition.figure(sequences)))
+            .collect(),
         misses: counts(&MissCause::CODES, misses),
         wrong: counts(&Gross::ALL.map(Gross::code), wrong),
     }

@@ -50,8 +50,11 @@ pub fn nees<const N: usize>(error: &SVector<f64, N>, covariance: &SMatrix<f64, N
     if sum.is_nan() { None } else { Some((sum / N as f64).min(LARGEST)) }
 }
 
+/// Share of errors within three standard deviations under the normal law.
+pub const WITHIN_3_SIGMA: f64 = 0.9973;
+
 /// Whether an error is at most three standard deviations; `None` for a standard deviation that is not positive: it then
-/// says nothing. Of a normal law 99.73 % are.
+/// says nothing.
 pub fn within_3_sigma(error: f64, sigma: f64) -> Option<bool> {
     (sigma > 0.0 && sigma.is_finite()).then(|| error.abs() <= 3.0 * sigma)
 }

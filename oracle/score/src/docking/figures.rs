@@ -1,50 +1,138 @@
 //! The figures of a docking score, from the verdicts of fields and of the portions that they end.
 
+use super::consistency::{WITHIN_3_SIGMA, within_3_sigma};
 use super::errors::PoseErrors;
 use super::field_verdict::FieldVerdict;
 use super::portions::{MotionVerdict, PortionVerdict};
 use super::report::names;
 use super::verdict::Verdict;
-use crate::{Definition, Reduction};
+use crate::{Better, Definition, Reduction};
 
-/// The six parameters of a pose.
-const PARAMETERS: [&str; 6] = ["d1", "d2", "d3", "phi1", "phi2", "phi3"];
+/// A unit: what it is called in keys, and its sign.
+type Unit = (&'static str, &'static str);
+const M: Unit = ("m", "m");
+const M_S: Unit = ("m_s", "m/s");
+const DEG: Unit = ("deg", "°");
 
-/// The seven that are shown: name, and name of the root mean square with its unit.
-const SHOWN: [(&str, &str); 7] = [
-    ("range", "range_rms_m"),
-    ("range_rate", "range_rate_rms_m_s"),
-    ("alpha", "alpha_rms_deg"),
-    ("beta", "beta_rms_deg"),
-    ("phi1", "phi1_rms_deg"),
-    ("phi2", "phi2_rms_deg"),
-    ("phi3", "phi3_rms_deg"),
+/// A parameter: what it is called in keys, its words and its unit.
+type Parameter = (&'static str, &'static str, Unit);
+
+/// The six of a pose.
+const PARAMETERS: [Parameter; 6] = [
+    ("d1", "d1", M),
+    ("d2", "d2", M),
+    ("d3", "d3", M),
+    ("phi1", "φ1", DEG),
+    ("phi2", "φ2", DEG),
+    ("phi3", "φ3", DEG),
+];
+
+/// The seven that are shown.
+const SHOWN: [Parameter; 7] = [
+    ("range", "range", M),
+    ("range_rate", "range rate", M_S),
+    ("alpha", "α", DEG),
+    ("beta", "β", DEG),
+    ("phi1", "φ1", DEG),
+    ("phi2", "φ2", DEG),
+    ("phi3", "φ3", DEG),
 ];
 
 /// NEES of what is shown: of (d, φ), of (d, d'), of (φ, φ').
-const MOTION_NEES: [&str; 3] = ["nees_mean", "position_nees_mean", "attitude_nees_mean"];
+const MOTION_NEES: [(&str, &str); 3] = [
+    (names::NEES_MEAN, "NEES mean"),
+    ("position_nees_mean", "position NEES mean"),
+    ("attitude_nees_mean", "attitude NEES mean"),
+];
 
-type Figures = Vec<Definition<'static, FieldVerdict>>;
+const HONEST_NEES: Better = Better::Near(1.0);
+const HONEST_3_SIGMA: Better = Better::Near(WITHIN_3_SIGMA);
+
+/// Figures whose keys and words begin alike.
+struct Figures<'l> {
+    key: &'static str,
+    words: &'static str,
+    list: &'l mut Vec<Definition<'static, FieldVerdict>>,
+}
+
+impl Figures<'_> {
+    fn rate(
+        &mut self,
+        name: &str,
+        words: &str,
+        better: Better,
+        holds: impl Fn(&FieldVerdict) -> Option<bool> + 'static,
+    ) {
+        let (name, words) = (format!("{}{name}", self.key), format!("{}{words}", self.words));
+        self.list.push(Definition::rate(name, words, holds).best(better));
+    }
+
+    /// The share of errors within three standard deviations, of which a field may have several.
+    fn within_3_sigma(&mut self, within: impl Fn(&FieldVerdict) -> Option<Vec<Option<bool>>> + 'static) {
+        let name = format!("{}{}", self.key, names::WITHIN_3_SIGMA);
+        let values = move |field: &FieldVerdict, values: &mut Vec<f64>| {
+            let held = within(field).into_iter().flatten().flatten();
+            values.extend(held.map(|held| f64::from(u8::from(held))));
+        };
+        let definition = Definition::pooled(name, format!("{}within 3 σ", self.words), values);
+        self.list.push(definition.best(HONEST_3_SIGMA));
+    }
+
+    /// The same of a parameter.
+    fn parameter_within_3_sigma(
+        &mut self,
+        (key, words, _): Parameter,
+        within: impl Fn(&FieldVerdict) -> Option<bool> + 'static,
+    ) {
+        let name = format!("{key}_{}", names::WITHIN_3_SIGMA);
+        self.rate(&name, &format!("{words} within 3 σ"), HONEST_3_SIGMA, within);
+    }
+
+    fn rms(
+        &mut self,
+        (key, words, (in_key, unit)): Parameter,
+        value: impl Fn(&FieldVerdict) -> Option<f64> + 'static,
+    ) {
+        let name = format!("{}{key}_rms_{in_key}", self.key);
+        let words = format!("{}{words} RMS", self.words);
+        self.list.push(Definition::of(name, words, unit, Reduction::Rms, value));
+    }
+
+    fn mean(
+        &mut self,
+        name: &str,
+        words: &str,
+        better: Better,
+        value: impl Fn(&FieldVerdict) -> Option<f64> + 'static,
+    ) {
+        let (name, words) = (format!("{}{name}", self.key), format!("{}{words}", self.words));
+        self.list.push(Definition::of(name, words, None, Reduction::Mean, value).best(better));
+    }
+}
 
 /// All figures over fields, those about single fields first.
-pub(super) fn definitions() -> Figures {
-    let mut figures = Figures::new();
+pub(super) fn definitions() -> Vec<Definition<'static, FieldVerdict>> {
+    let mut list = Vec::new();
+    let mut figures = Figures { key: "", words: "", list: &mut list };
     rates(&mut figures);
-    errors("", success, &mut figures);
+    errors(success, &mut figures);
     consistency(&mut figures);
     range_only(&mut figures);
-    figures.push(Definition::rate(
-        format!("{}{}", names::PAPER, names::SUCCESS_RATE),
-        |field: &FieldVerdict| field.is_asked.then(|| right_by_paper(field).is_some()),
-    ));
-    errors(names::PAPER, right_by_paper, &mut figures);
-    motion(names::MOTION, |portion| portion.best, &mut figures);
-    motion(&format!("{}{}", names::PAPER, names::MOTION), |portion| portion.paper, &mut figures);
-    figures.push(Definition::of(names::PORTION_LATENCY_FIELDS, Reduction::Mean, |field: &FieldVerdict| {
+    let mut paper = Figures { key: names::PAPER, words: "paper ", list: &mut list };
+    paper.rate(names::SUCCESS_RATE, "success rate", Better::More, |field| {
+        field.is_asked.then(|| right_by_paper(field).is_some())
+    });
+    errors(right_by_paper, &mut paper);
+    let best = Figures { key: names::MOTION, words: "motion ", list: &mut list };
+    motion(|portion| portion.best, best);
+    let paper = Figures { key: "paper_motion_", words: "paper motion ", list: &mut list };
+    motion(|portion| portion.paper, paper);
+    let mut figures = Figures { key: "", words: "", list: &mut list };
+    figures.mean(names::PORTION_LATENCY_FIELDS, "portion latency fields", Better::Less, |field| {
         field.portion.as_ref().map(|portion| portion.fields as f64)
-    }));
-    figures.push(Definition::rate(names::RENEWED_WITHIN_1S, |field: &FieldVerdict| field.is_renewed));
-    figures
+    });
+    figures.rate(names::RENEWED_WITHIN_1S, "renewed within 1s", Better::More, |field| field.is_renewed);
+    list
 }
 
 /// The errors of a pose that is not grossly wrong.
@@ -61,120 +149,110 @@ fn right_by_paper(field: &FieldVerdict) -> Option<PoseErrors> {
 }
 
 /// What became of the fields.
-fn rates(figures: &mut Figures) {
-    let mut rate = |name: &str, holds: fn(&FieldVerdict) -> Option<bool>| {
-        figures.push(Definition::rate(name, holds));
-    };
+fn rates(figures: &mut Figures<'_>) {
     fn is_success(field: &FieldVerdict) -> bool {
         matches!(field.verdict, Verdict::Success { .. })
     }
-    rate(names::SUCCESS_RATE, |field| field.is_asked.then(|| is_success(field)));
-    rate(names::CLEAR_SUCCESS_RATE, |field| field.is_clear.then(|| is_success(field)));
-    rate(names::MEASURED_RATE, |field| Some(field.is_measured));
-    rate(names::RANGE_ONLY_RATE, |field| Some(matches!(field.verdict, Verdict::RangeOnly { .. })));
-    rate(names::WRONG_RATE, |field| Some(matches!(field.verdict, Verdict::Wrong { .. })));
-    rate(names::MISS_RATE, |field| Some(matches!(field.verdict, Verdict::Missed { .. })));
+    figures.rate(names::SUCCESS_RATE, "success rate", Better::More, |field| {
+        field.is_asked.then(|| is_success(field))
+    });
+    figures.rate(names::CLEAR_SUCCESS_RATE, "clear success rate", Better::More, |field| {
+        field.is_clear.then(|| is_success(field))
+    });
+    figures.rate(names::MEASURED_RATE, "measured rate", Better::More, |field| Some(field.is_measured));
+    figures.rate(names::RANGE_ONLY_RATE, "range only rate", Better::Less, |field| {
+        Some(matches!(field.verdict, Verdict::RangeOnly { .. }))
+    });
+    figures.rate(names::WRONG_RATE, "wrong rate", Better::Less, |field| {
+        Some(matches!(field.verdict, Verdict::Wrong { .. }))
+    });
+    figures.rate(names::MISS_RATE, "miss rate", Better::Less, |field| {
+        Some(matches!(field.verdict, Verdict::Missed { .. }))
+    });
 }
 
 /// How large the errors of poses are.
-fn errors(prefix: &str, pick: fn(&FieldVerdict) -> Option<PoseErrors>, figures: &mut Figures) {
-    let mut add = |name: &str, reduction: Reduction, value: fn(&PoseErrors) -> f64| {
-        let value = move |field: &FieldVerdict| pick(field).map(|errors| value(&errors));
-        figures.push(Definition::of(format!("{prefix}{name}"), reduction, value));
-    };
-    add(names::RANGE_RMS_M, Reduction::Rms, |errors| errors.range_m);
-    add("range_mean_m", Reduction::Mean, |errors| errors.range_m);
-    let relative = move |field: &FieldVerdict| pick(field).map(|errors| errors.range_m / field.range_m);
-    figures.push(Definition::of(format!("{prefix}range_rms_relative"), Reduction::Rms, relative));
-    let mut rms = |name: &str, value: fn(&PoseErrors) -> f64| {
-        let value = move |field: &FieldVerdict| pick(field).map(|errors| value(&errors));
-        figures.push(Definition::of(format!("{prefix}{name}"), Reduction::Rms, value));
-    };
-    rms(names::LATERAL_RMS_M, |errors| errors.lateral_m);
-    rms(names::ATTITUDE_RMS_DEG, |errors| errors.attitude_rad.to_degrees());
-    rms("alpha_rms_deg", |errors| errors.alpha_rad.to_degrees());
-    rms("beta_rms_deg", |errors| errors.beta_rad.to_degrees());
-    for (axis, name) in PARAMETERS.iter().enumerate() {
-        figures.push(if axis < 3 {
-            Definition::of(format!("{prefix}{name}_rms_m"), Reduction::Rms, move |field: &FieldVerdict| {
-                pick(field).map(|errors| errors.position_m[axis])
-            })
-        } else {
-            Definition::of(format!("{prefix}{name}_rms_deg"), Reduction::Rms, move |field: &FieldVerdict| {
-                pick(field).map(|errors| errors.phi_rad[axis - 3].to_degrees())
+fn errors(pick: fn(&FieldVerdict) -> Option<PoseErrors>, figures: &mut Figures<'_>) {
+    let of =
+        |value: fn(&PoseErrors) -> f64| move |field: &FieldVerdict| pick(field).map(|errors| value(&errors));
+    let (key, words) = (figures.key, figures.words);
+    figures.rms(("range", "range", M), of(|errors| errors.range_m));
+    figures.list.push(Definition::of(
+        format!("{key}range_mean_m"),
+        format!("{words}range mean"),
+        "m",
+        Reduction::Mean,
+        of(|errors| errors.range_m),
+    ));
+    figures.list.push(Definition::of(
+        format!("{key}range_rms_relative"),
+        format!("{words}range RMS relative"),
+        None,
+        Reduction::Rms,
+        move |field: &FieldVerdict| pick(field).map(|errors| errors.range_m / field.range_m),
+    ));
+    figures.rms(("lateral", "lateral", M), of(|errors| errors.lateral_m));
+    figures.rms(("attitude", "attitude", DEG), of(|errors| errors.attitude_rad.to_degrees()));
+    figures.rms(("alpha", "α", DEG), of(|errors| errors.alpha_rad.to_degrees()));
+    figures.rms(("beta", "β", DEG), of(|errors| errors.beta_rad.to_degrees()));
+    for (axis, parameter) in PARAMETERS.into_iter().enumerate() {
+        figures.rms(parameter, move |field| {
+            pick(field).map(|errors| match axis {
+                0..3 => errors.position_m[axis],
+                _ => errors.phi_rad[axis - 3].to_degrees(),
             })
         });
     }
-    let score = move |field: &FieldVerdict| pick(field).map(|errors| errors.speed_score);
-    figures.push(Definition::of(format!("{prefix}{}", names::SPEED_SCORE_MEAN), Reduction::Mean, score));
+    let score = of(|errors| errors.speed_score);
+    figures.mean(names::SPEED_SCORE_MEAN, "speed score mean", Better::Less, score);
 }
 
 /// Whether the errors of single fields are as large as their covariances say.
-fn consistency(figures: &mut Figures) {
-    let within = |field: &FieldVerdict| field.within.unwrap_or_default();
-    figures.push(Definition::pooled(names::WITHIN_3_SIGMA, move |field: &FieldVerdict, values| {
-        values.extend(within(field).into_iter().flatten().map(one_or_zero));
-    }));
-    for (axis, name) in PARAMETERS.iter().enumerate() {
-        let one = move |field: &FieldVerdict| within(field)[axis];
-        figures.push(Definition::rate(format!("{name}_{}", names::WITHIN_3_SIGMA), one));
+fn consistency(figures: &mut Figures<'_>) {
+    figures.within_3_sigma(|field| field.within.map(Vec::from));
+    for (axis, parameter) in PARAMETERS.into_iter().enumerate() {
+        figures.parameter_within_3_sigma(parameter, move |field| field.within?[axis]);
     }
-    figures.push(Definition::of(names::NEES_MEAN, Reduction::Mean, |field: &FieldVerdict| field.nees));
-    figures.push(Definition::rate("covariance_rate", |field: &FieldVerdict| {
+    figures.mean(names::NEES_MEAN, "NEES mean", HONEST_NEES, |field| field.nees);
+    figures.rate("covariance_rate", "covariance rate", Better::More, |field| {
         field.within.map(|_| field.nees.is_some())
-    }));
+    });
 }
 
 /// Ranges that are given alone.
-fn range_only(figures: &mut Figures) {
+fn range_only(figures: &mut Figures<'_>) {
     let told = |field: &FieldVerdict| match field.verdict {
         Verdict::RangeOnly { error_m, sigma_m } => Some((error_m, sigma_m)),
         _ => None,
     };
-    figures.push(Definition::of(names::RANGE_ONLY_RMS_M, Reduction::Rms, move |field: &FieldVerdict| {
-        told(field).map(|(error_m, _)| error_m)
-    }));
-    figures.push(Definition::of(
-        names::RANGE_ONLY_RMS_PERCENT,
-        Reduction::Rms,
-        move |field: &FieldVerdict| told(field).map(|(error_m, _)| 100.0 * error_m / field.range_m),
-    ));
-    figures.push(Definition::rate("range_only_within_3_sigma", move |field: &FieldVerdict| {
-        told(field).and_then(|(error_m, sigma_m)| super::consistency::within_3_sigma(error_m, sigma_m))
-    }));
+    const RANGE_ONLY: Parameter = ("range_only", "range only", M);
+    figures.rms(RANGE_ONLY, move |field| told(field).map(|(error_m, _)| error_m));
+    figures.rms(("range_only", "range only", ("percent", "%")), move |field| {
+        told(field).map(|(error_m, _)| 100.0 * error_m / field.range_m)
+    });
+    figures.parameter_within_3_sigma(RANGE_ONLY, move |field| {
+        told(field).and_then(|(error_m, sigma_m)| within_3_sigma(error_m, sigma_m))
+    });
 }
 
 /// What is said at the end of portions. Consistency is counted from an estimator's second motion on: the first has no
 /// portion before it to lean on.
-fn motion(prefix: &str, pick: fn(&PortionVerdict) -> Option<MotionVerdict>, figures: &mut Figures) {
+fn motion(pick: fn(&PortionVerdict) -> Option<MotionVerdict>, mut figures: Figures<'_>) {
     let told = move |field: &FieldVerdict| field.portion.as_ref().and_then(pick);
     let right = move |field: &FieldVerdict| told(field).filter(|motion| !motion.is_wrong);
     let led = move |field: &FieldVerdict| right(field).filter(|motion| motion.is_led);
-    figures.push(Definition::rate(format!("{prefix}{}", names::WRONG_RATE), move |field: &FieldVerdict| {
+    figures.rate(names::WRONG_RATE, "wrong rate", Better::Less, move |field| {
         told(field).map(|motion| motion.is_wrong)
-    }));
-    for (index, (_, name)) in SHOWN.iter().enumerate() {
-        let in_files = move |error: f64| if index < 2 { error } else { error.to_degrees() };
-        let error = move |field: &FieldVerdict| right(field).map(|motion| in_files(motion.errors[index]));
-        figures.push(Definition::of(format!("{prefix}{name}"), Reduction::Rms, error));
+    });
+    for (index, parameter) in SHOWN.into_iter().enumerate() {
+        let in_files = move |error: f64| if parameter.2 == DEG { error.to_degrees() } else { error };
+        figures.rms(parameter, move |field| right(field).map(|motion| in_files(motion.errors[index])));
     }
-    figures.push(Definition::pooled(
-        format!("{prefix}{}", names::WITHIN_3_SIGMA),
-        move |field: &FieldVerdict, values| {
-            let within = led(field).into_iter().flat_map(|motion| motion.within.into_iter().flatten());
-            values.extend(within.map(one_or_zero));
-        },
-    ));
-    for (index, (name, _)) in SHOWN.iter().enumerate() {
-        let within = move |field: &FieldVerdict| led(field).and_then(|motion| motion.within[index]);
-        figures.push(Definition::rate(format!("{prefix}{name}_{}", names::WITHIN_3_SIGMA), within));
+    figures.within_3_sigma(move |field| led(field).map(|motion| motion.within.into()));
+    for (index, parameter) in SHOWN.into_iter().enumerate() {
+        figures.parameter_within_3_sigma(parameter, move |field| led(field)?.within[index]);
     }
-    for (index, name) in MOTION_NEES.iter().enumerate() {
-        let nees = move |field: &FieldVerdict| led(field).and_then(|motion| motion.nees[index]);
-        figures.push(Definition::of(format!("{prefix}{name}"), Reduction::Mean, nees));
+    for (index, (name, words)) in MOTION_NEES.into_iter().enumerate() {
+        figures.mean(name, words, HONEST_NEES, move |field| led(field)?.nees[index]);
     }
-}
-
-fn one_or_zero(held: bool) -> f64 {
-    f64::from(u8::from(held))
 }

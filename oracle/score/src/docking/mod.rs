@@ -21,7 +21,7 @@ mod sight;
 mod truth;
 mod verdict;
 
-pub use accumulate::{DockingContext, DockingScorer, figure_names};
+pub use accumulate::{DockingContext, DockingScorer, figures};
 pub use bins::{RANGE_BINS_M, group_name, lens_names};
 pub use cause::MissCause;
 pub use errors::PoseErrors;

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::hint::black_box;
 
 use boresight::run::ScenarioSource;
-use boresight::run::{Prepared, World as _};
+use boresight::run::{FarRangeMission, World as _};
 use boresight::scenario::FarRangeScenario;
 use contract::{Frame, Outcome, Pipeline, Rotation, Setup, Telemetry};
 use hifitime::{Epoch, Unit};
@@ -71,7 +71,7 @@ pub(crate) fn works(scene: &PlainScene) -> Result<Vec<Work>, Box<dyn Error>> {
         works.push(frames(format!("argon-{day}"), regions, first)?);
         works.push(frames(format!("argon-{day}-whole"), whole, first)?);
     }
-    let setup = Prepared::new(&source)?.setup().clone();
+    let setup = FarRangeMission::new(&source)?.setup().clone();
     works.push(detection_plain(scene, &setup)?);
     works.push(detection("process-argon-regions", regions, &scenario.far_range, &setup)?);
     works.push(detection("process-argon-whole", whole, &scenario.far_range, &setup)?);

@@ -5,8 +5,8 @@ use hifitime::Epoch;
 use nalgebra::Vector3;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Trajectory, Visibility};
 
-use super::ground::GroundTrack;
-use super::report::{Fact, FrameReport, ImageLayout, Model, Parameter, Phase, Shape, View};
+use crate::ground::GroundTrack;
+use crate::report::{Fact, FrameReport, ImageLayout, Model, Parameter, Phase, Shape, View};
 
 /// Half side of the box about a cluster, px.
 const CLUSTER_PX: f64 = 5.0;
@@ -18,17 +18,17 @@ const MOST_TRUTHS: usize = 300;
 const MOST_CUT: f64 = 0.5;
 
 /// Makes the reports of frames.
-pub(super) struct FarRangeReporter<'a> {
-    pub(super) camera: &'a Camera,
-    pub(super) trajectory: &'a Trajectory,
-    pub(super) ground: &'a GroundTrack,
+pub(crate) struct FarRangeReporter<'a> {
+    pub(crate) camera: &'a Camera,
+    pub(crate) trajectory: &'a Trajectory,
+    pub(crate) ground: &'a GroundTrack,
     /// The moment of the scenario's first frame.
-    pub(super) start: Epoch,
+    pub(crate) start: Epoch,
 }
 
 impl FarRangeReporter<'_> {
     /// The report of a frame; no outcome is a frame that nobody answered.
-    pub(super) fn report(
+    pub(crate) fn report(
         &self,
         truth: &FrameTruth,
         objects: &[ObjectTruth],
@@ -73,7 +73,7 @@ impl FarRangeReporter<'_> {
 }
 
 /// Range, km, and range rate, m/s.
-pub(super) fn range_and_rate(trajectory: &Trajectory, time: Epoch) -> [f64; 2] {
+pub(crate) fn range_and_rate(trajectory: &Trajectory, time: Epoch) -> [f64; 2] {
     let states = trajectory.at(time);
     let apart = states.line_of_sight_km();
     let range_km = apart.norm();

@@ -8,8 +8,8 @@ use score::docking::Shown;
 use sim::docking::FieldTruth;
 use sim::truth::approach::target_from_camera;
 
-use super::ground::GroundTrack;
-use super::report::{Fact, FrameReport, ImageLayout, Model, Parameter, Phase, Shape, View};
+use crate::ground::GroundTrack;
+use crate::report::{Fact, FrameReport, ImageLayout, Model, Parameter, Phase, Shape, View};
 
 /// Arm of a cross whose size in the picture is not known, px.
 const PLAIN_ARM_PX: f64 = 14.0;
@@ -17,7 +17,7 @@ const PLAIN_ARM_PX: f64 = 14.0;
 const MARK_PX: f64 = 6.0;
 
 /// Makes the reports of a sequence of fields, in order: what a portion said holds until the next one.
-pub(super) struct DockingReporter<'a> {
+pub(crate) struct DockingReporter<'a> {
     setup: &'a DockingSetup,
     names: Vec<String>,
     ground: Option<&'a GroundTrack>,
@@ -33,12 +33,12 @@ struct Portion {
 
 impl<'a> DockingReporter<'a> {
     /// For the cameras of these names.
-    pub(super) fn new(setup: &'a DockingSetup, names: Vec<String>, ground: Option<&'a GroundTrack>) -> Self {
+    pub(crate) fn new(setup: &'a DockingSetup, names: Vec<String>, ground: Option<&'a GroundTrack>) -> Self {
         Self { setup, names, ground, portion: None }
     }
 
     /// The report of the next field. `features` are the rows of `features.parquet`; no outcome is a field that nobody answered.
-    pub(super) fn report(
+    pub(crate) fn report(
         &mut self,
         truth: &FieldTruth,
         outcome: Option<&DockingOutcome>,

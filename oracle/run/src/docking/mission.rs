@@ -11,14 +11,14 @@ use super::renderer::DockingRenderer;
 use crate::any_world::ScenarioSource;
 
 /// A docking scenario with its simulator, ready to fly.
-pub struct PreparedDocking {
+pub struct DockingMission {
     pub(super) simulator: DockingSimulator,
     pub(super) setup: DockingSetup,
     pub(super) renderer: DockingRenderer,
     pub(super) run_file: RunFile<DockingScenario>,
 }
 
-impl PreparedDocking {
+impl DockingMission {
     /// Checks a scenario and prepares its simulator.
     ///
     /// # Errors

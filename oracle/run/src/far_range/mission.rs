@@ -12,7 +12,7 @@ use super::star_list::star_list;
 use crate::any_world::ScenarioSource;
 
 /// A scenario with its simulator and star list, ready to fly.
-pub struct Prepared {
+pub struct FarRangeMission {
     pub(super) simulator: Simulator,
     pub(super) run_file: RunFile,
     pub(super) setup: Setup,
@@ -29,7 +29,7 @@ pub struct SceneTruth {
     pub objects: Vec<ObjectTruth>,
 }
 
-impl Prepared {
+impl FarRangeMission {
     /// Checks a scenario and prepares its simulator.
     ///
     /// # Errors
@@ -38,11 +38,11 @@ impl Prepared {
         Self::with_options(source, None, None)
     }
 
-    /// [`Prepared::new`], for a run of the built-in pipeline in which the truth stands in the place of a stage's result, or with an
+    /// [`FarRangeMission::new`], for a run of the built-in pipeline in which the truth stands in the place of a stage's result, or with an
     /// attitude granted to answers with a centroid alone.
     ///
     /// # Errors
-    /// As [`Prepared::new`]; [`Failure::Usage`] for the regions of interest of a scenario that has none.
+    /// As [`FarRangeMission::new`]; [`Failure::Usage`] for the regions of interest of a scenario that has none.
     pub fn with_options(
         source: &ScenarioSource,
         inject: Option<Stage>,

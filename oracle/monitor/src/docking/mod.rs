@@ -1,0 +1,167 @@
+//! Docking as the page shows it.
+
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod report;
+
+use std::path::Path;
+
+use contract::docking::Digitiser;
+use files::docking::{FeatureRow, read_field_measurements, read_motion};
+use files::{Failure, TableReader, read_field_telemetry};
+use hifitime::Epoch;
+use run::{DockingMission, World};
+use scenario::DockingScenario;
+use scenario::run_file::RunFile;
+use serde::Serialize;
+use serde_json::{Value, json};
+use sim::docking::FieldTruth;
+
+use self::report::DockingReporter;
+use super::feed::{Measurements, Monitored, Serve, Surroundings, frames, optional};
+use super::ground::GroundTrack;
+use super::overview::camera;
+use super::picture::Stretch;
+use super::plan::Plan;
+use super::session::Session;
+
+/// Least half width of the corridor, m/s.
+const MARGIN_M_S: f64 = 0.05;
+
+impl Monitored for DockingMission {
+    fn surroundings(&self, measurements: &Measurements) -> Result<Surroundings, Failure> {
+        Ok(Surroundings {
+            ground: GroundTrack::station(self.simulator()),
+            stretch: Stretch::plain(),
+            frames: frames::<FieldTruth>(measurements, Self::TRUTH_FILE)?,
+        })
+    }
+
+    fn time(&self, field: u64) -> Option<Epoch> {
+        Some(self.simulator().moment(field).ok()?.time)
+    }
+
+    fn overview(
+        &self,
+        measurements: &Measurements,
+        surroundings: &Surroundings,
+    ) -> Result<[Value; 2], Failure> {
+        let (scenario, simulator) = (self.scenario(), self.simulator());
+        let plan = Plan::new("m", &surroundings.frames, MARGIN_M_S, |field| {
+            let state = simulator.moment(field).ok()?.state;
+            Some([state.range_m(), state.range_rate_m_s()])
+        });
+        let cameras: Vec<Value> = scenario.cameras.iter().map(|c| camera(&c.name, &c.camera)).collect();
+        let mut notes = Vec::new();
+        if let Measurements::Replay(directory) = measurements
+            && RunFile::<DockingScenario>::read(&directory.join("run.toml"))?.mitsuba.is_some()
+        {
+            notes.push("The run's pictures were Mitsuba's; these are the fast renderer's.");
+        }
+        if surroundings.ground.is_some() {
+            notes.push(
+                "The scenario names no orbit: the track is that of 51.6° and 370 km on which the Sun stands where the \
+                 scene has it.",
+            );
+        }
+        let session = json!({
+            "world": Self::CODE,
+            "title": scenario.title,
+            "seed": scenario.seed,
+            "mode": measurements.mode(),
+            "rate_hz": simulator.field_rate_hz(),
+            "cameras": cameras,
+            "plan": plan,
+            "begins": [],
+            "docking_unit_m": self.setup().target.docking_unit.centre_m,
+            "notes": notes,
+        });
+        let parts = simulator.scene().parts.iter().filter(|part| part.visible);
+        let facets: Vec<Facet> = parts
+            .flat_map(|part| &part.facets)
+            .map(|facet| Facet {
+                outer: ring(&facet.outer),
+                holes: facet.holes.iter().map(|hole| ring(hole)).collect(),
+                normal: facet.normal.into(),
+                reflectance: facet.reflectance,
+            })
+            .collect();
+        Ok([session, json!({ "facets": facets })])
+    }
+
+    fn feed(
+        &self,
+        measurements: &Measurements,
+        surroundings: &Surroundings,
+        session: &Session,
+    ) -> Result<(), Failure> {
+        let names = self.scenario().cameras.iter().map(|camera| camera.name.clone()).collect();
+        let mut reporter = DockingReporter::new(self.setup(), names, surroundings.ground.as_ref());
+        match measurements {
+            Measurements::Live { factory, frames, jobs } => {
+                self.follow(frames.clone(), *jobs, factory.of()?, |processed| {
+                    let number = processed.image.number();
+                    session.wait_for_goal(number)?;
+                    let features = FeatureRow::of(number, &processed.outcome.features);
+                    let report = reporter.report(&processed.truth, Some(&processed.outcome), &features);
+                    let picture = surroundings.stretch.picture(processed.image.image());
+                    session.publish(&report, processed.telemetry.digitiser, Some(picture))
+                })
+            }
+            Measurements::Replay(directory) => replay(directory, &mut reporter, session),
+        }
+    }
+
+    fn paint(&self, surroundings: &Surroundings, serve: Serve<'_>) -> Result<(), Failure> {
+        let simulator = self.simulator();
+        let mut workspace = simulator.workspace()?;
+        serve(&mut |order| {
+            let exposure = self.renderer().expose(simulator, self.setup(), &mut workspace, order.frame)?;
+            Ok(surroundings.stretch.picture(exposure.video.digitise(&order.digitiser).image()))
+        })
+    }
+}
+
+fn replay(directory: &Path, reporter: &mut DockingReporter<'_>, session: &Session) -> Result<(), Failure> {
+    let mut features = optional(&directory.join("features.parquet"))
+        .map(|path| TableReader::<FeatureRow>::open(&path))
+        .transpose()?;
+    let motion = optional(&directory.join("motion.csv")).map(|path| read_motion(&path)).transpose()?;
+    let mut motion = motion.unwrap_or_default().into_iter().peekable();
+    let mut answers = read_field_measurements(&directory.join("measurements.csv"))?.into_iter().peekable();
+    let mut telemetry = read_field_telemetry(&directory.join("telemetry.csv"))?.into_iter().peekable();
+    for row in TableReader::<FieldTruth>::open(&directory.join("truth/fields.parquet"))? {
+        let (number, truths) = row?;
+        session.wait_for_goal(number)?;
+        let features = features.as_mut().map(|table| table.rows_of(number)).transpose()?.unwrap_or_default();
+        let said = motion.next_if(|(reported, _)| *reported == number).map(|(_, report)| report);
+        let answer = answers.next_if(|(answered, _)| *answered == number).map(|(_, mut outcome)| {
+            outcome.motion = said;
+            outcome
+        });
+        let digitiser = telemetry
+            .next_if(|row| row.field == number)
+            .map_or_else(Digitiser::default, |row| row.telemetry.digitiser);
+        for truth in truths.iter().take(1) {
+            session.publish(&reporter.report(truth, answer.as_ref(), &features), digitiser, None)?;
+        }
+    }
+    Ok(())
+}
+
+/// A facet of the docking scene, target frame, m.
+#[derive(Serialize)]
+struct Facet {
+    outer: Vec<[f64; 3]>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    holes: Vec<Vec<[f64; 3]>>,
+    normal: [f64; 3],
+    reflectance: f64,
+}
+
+fn ring(corners: &[nalgebra::Vector3<f64>]) -> Vec<[f64; 3]> {
+    // A tenth of a millimetre is as fine as it is drawn.
+    corners.iter().map(|corner| corner.map(|v| (v * 1e4).round() / 1e4).into()).collect()
+}

@@ -1,0 +1,133 @@
+//! The far range as the page shows it.
+
+mod report;
+
+use std::path::Path;
+
+use contract::docking::Digitiser;
+use files::{Failure, FrameCluster, TableReader, read_measurements};
+use hifitime::Epoch;
+use run::{FarRangeMission, SceneTruth, World};
+use serde_json::{Value, json};
+use sim::truth::{FrameTruth, ObjectTruth, Trajectory};
+
+use self::report::{FarRangeReporter, range_and_rate};
+use super::feed::{Measurements, Monitored, Serve, Surroundings, frames, optional};
+use super::ground::GroundTrack;
+use super::overview::camera;
+use super::picture::Stretch;
+use super::plan::Plan;
+use super::session::Session;
+
+/// Frames a second at which a sequence is played: its own cadence is many seconds a frame.
+const RATE_HZ: f64 = 25.0;
+/// Least half width of the corridor, m/s.
+const MARGIN_M_S: f64 = 0.1;
+/// Points of the relative orbit that are drawn.
+const ORBIT_POINTS: u64 = 3000;
+
+impl Monitored for FarRangeMission {
+    fn surroundings(&self, measurements: &Measurements) -> Result<Surroundings, Failure> {
+        let scenario = self.scenario();
+        Ok(Surroundings {
+            ground: Some(GroundTrack::Chaser(Box::new(Trajectory::new(&scenario.orbit)?))),
+            stretch: Stretch::of_sensor(&scenario.sensor),
+            frames: frames::<FrameTruth>(measurements, Self::TRUTH_FILE)?,
+        })
+    }
+
+    fn time(&self, frame: u64) -> Option<Epoch> {
+        self.simulator().schedule().frame(frame).map(|(_, time)| time)
+    }
+
+    fn overview(
+        &self,
+        measurements: &Measurements,
+        surroundings: &Surroundings,
+    ) -> Result<[Value; 2], Failure> {
+        let scenario = self.scenario();
+        let schedule = self.simulator().schedule();
+        let trajectory = Trajectory::new(&scenario.orbit)?;
+        let frames = &surroundings.frames;
+        let at = |frame| schedule.frame(frame).map(|(_, time)| time);
+        let plan = Plan::new("km", frames, MARGIN_M_S, |frame| {
+            at(frame).map(|time| range_and_rate(&trajectory, time))
+        });
+        let radius_km = at(frames.start).map(|time| trajectory.at(time).target.position_km.norm());
+        let step = ((frames.end - frames.start) / ORBIT_POINTS).max(1);
+        let orbit: Vec<(u64, [f64; 3])> = frames
+            .clone()
+            .step_by(usize::try_from(step).unwrap_or(usize::MAX))
+            .filter_map(|frame| at(frame).map(|time| (frame, trajectory.at(time).chaser_rtn_km().into())))
+            .collect();
+        // Nobody looked between one day and the next: no line crosses that time.
+        let begins: Vec<u64> = schedule.sequences().map(|day| day.frames.start).collect();
+        let session = json!({
+            "world": Self::CODE,
+            "title": scenario.title,
+            "seed": scenario.seed,
+            "mode": measurements.mode(),
+            "rate_hz": RATE_HZ,
+            "cameras": [camera("", &scenario.camera)],
+            "plan": plan,
+            "begins": begins,
+            "orbit_rtn_km": orbit,
+            "orbit_radius_km": radius_km,
+            "notes": [],
+        });
+        Ok([session, json!({ "facets": [] })])
+    }
+
+    fn feed(
+        &self,
+        measurements: &Measurements,
+        surroundings: &Surroundings,
+        session: &Session,
+    ) -> Result<(), Failure> {
+        let Some(ground) = &surroundings.ground else { return Ok(()) };
+        let Some(start) = self.time(0) else { return Ok(()) };
+        let trajectory = &Trajectory::new(&self.scenario().orbit)?;
+        let reporter = FarRangeReporter { camera: &self.scenario().camera, trajectory, ground, start };
+        match measurements {
+            Measurements::Live { factory, frames, jobs } => {
+                self.follow(frames.clone(), *jobs, factory.of()?, |processed| {
+                    let SceneTruth { frame: truth, objects } = &processed.truth;
+                    session.wait_for_goal(truth.frame)?;
+                    let report = reporter.report(truth, objects, Some(&processed.outcome));
+                    let picture = surroundings.stretch.picture(&processed.image);
+                    session.publish(&report, Digitiser::default(), Some(picture))
+                })
+            }
+            Measurements::Replay(directory) => replay(directory, &reporter, session),
+        }
+    }
+
+    fn paint(&self, surroundings: &Surroundings, serve: Serve<'_>) -> Result<(), Failure> {
+        let mut camera = self.simulator().camera()?;
+        serve(&mut |order| Ok(surroundings.stretch.picture(&camera.expose(order.frame)?.frame)))
+    }
+}
+
+fn replay(directory: &Path, reporter: &FarRangeReporter<'_>, session: &Session) -> Result<(), Failure> {
+    let mut objects = TableReader::<ObjectTruth>::open(&directory.join("truth/objects.parquet"))?;
+    let mut clusters = optional(&directory.join("clusters.parquet"))
+        .map(|path| TableReader::<FrameCluster>::open(&path))
+        .transpose()?;
+    let mut answers =
+        read_measurements(&directory.join("measurements.csv"), reporter.camera)?.into_iter().peekable();
+    for row in TableReader::<FrameTruth>::open(&directory.join("truth/frames.parquet"))? {
+        let (number, truths) = row?;
+        session.wait_for_goal(number)?;
+        let objects = objects.rows_of(number)?;
+        let found = clusters.as_mut().map(|table| table.rows_of(number)).transpose()?.unwrap_or_default();
+        let answer = answers.next_if(|(answered, _)| *answered == number).map(|(_, mut outcome)| {
+            outcome.clusters = found.into_iter().map(|row| row.cluster).collect();
+            outcome
+        });
+        for truth in truths.iter().take(1) {
+            let report = reporter.report(truth, &objects, answer.as_ref());
+            session.publish(&report, Digitiser::default(), None)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,68 @@
+//! Frames of a scenario for Python, with their truth.
+
+use std::sync::Arc;
+
+use arrow_array::RecordBatch;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyDict;
+
+use crate::errors::{raised, refused};
+use crate::frame::Frame;
+use crate::ready::Ready;
+use crate::table::{Table, row};
+use crate::worlds::{Made, Parts};
+
+/// A frame with its telemetry and its truth. As a `Frame` it can be given to a pipeline, which looks at no more than a `Frame` has.
+#[pyclass(frozen, extends = Frame, module = "boresight")]
+pub(crate) struct SimulatedFrame {
+    /// What a pipeline is told beside the frame: `Telemetry`, or `FieldTelemetry` of a docking field.
+    #[pyo3(get)]
+    telemetry: Py<PyAny>,
+    truth: RecordBatch,
+    objects: Option<RecordBatch>,
+    ready: Arc<Ready>,
+    expected: PyOnceLock<Py<PyArray2<f64>>>,
+}
+
+impl SimulatedFrame {
+    pub(crate) fn new(py: Python<'_>, made: Made, ready: &Arc<Ready>) -> PyResult<Py<Self>> {
+        let Parts { frame, telemetry, truth, objects } = made(py)?;
+        let own = Self { telemetry, truth, objects, ready: Arc::clone(ready), expected: PyOnceLock::new() };
+        Py::new(py, PyClassInitializer::from(frame).add_subclass(own))
+    }
+}
+
+#[pymethods]
+impl SimulatedFrame {
+    /// The truth about the frame, by the names of truth/frames.parquet (docking: truth/fields.parquet), units in the names.
+    #[getter]
+    fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        row(py, self.truth.clone())
+    }
+
+    /// The truth about every object in the frame: a table with the columns of truth/objects.parquet. Far range alone.
+    #[getter]
+    fn objects(&self) -> PyResult<Table> {
+        let objects = self.objects.clone();
+        let objects = objects
+            .ok_or_else(|| refused("objects", "asked of a docking field", "a frame of the far range"))?;
+        Ok(Table::of_batch(objects))
+    }
+
+    /// The frame without noise: expected photoelectrons, dark current and hot pixels included, before saturation; float64 of shape
+    /// (rows, columns). Made when it is first asked for. Far range alone.
+    #[getter]
+    fn expected<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (py, own, number) = (slf.py(), slf.get(), slf.as_super().get().number);
+        let make = || -> PyResult<_> {
+            let ([rows, columns], electrons) = py
+                .detach(|| own.ready.world.expected(number))
+                .ok_or_else(|| refused("expected", "asked of a docking field", "a frame of the far range"))?
+                .map_err(raised)?;
+            Ok(PyArray1::from_vec(py, electrons).reshape([rows, columns])?.unbind())
+        };
+        Ok(own.expected.get_or_try_init(py, make)?.bind(py).clone())
+    }
+}

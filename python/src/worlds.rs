@@ -1,0 +1,225 @@
+//! The worlds whose frames and answers are values in Python.
+
+use std::any::Any;
+use std::ops::Range;
+
+use arrow_array::RecordBatch;
+use boresight::failure::Failure;
+use boresight::files::Row;
+use boresight::flight::in_order;
+use boresight::run::world::{ImageOf, TelemetryOf};
+use boresight::run::{AnyFactory, AnyMission, AnyWorld, DockingMission, FarRangeMission, SceneTruth, World};
+use contract::docking::{Docking, Field, FieldTelemetry as DockingTelemetry};
+use contract::{FarRange, PipelineFactory};
+use pipeline::external::Protocol;
+use pyo3::prelude::*;
+use sim::docking::FieldTruth;
+use sim::truth::{FrameTruth, ObjectTruth};
+
+use crate::arrow::batch;
+use crate::frame::{FieldTelemetry, Frame, Telemetry};
+
+/// One line each.
+fn all<P: PythonFactory>() -> [Entry<P>; 2] {
+    [Entry::of::<FarRangeMission>(), Entry::of::<DockingMission>()]
+}
+
+/// A mission of a world, or what is none of it.
+type Taken = Result<Box<dyn AnyPythonWorld>, Box<dyn Any>>;
+/// Rows and columns of a frame, and its electrons row by row.
+type ExpectedFrame = Result<([usize; 2], Vec<f64>), Failure>;
+
+/// A world: its word, what makes its frames, and the factory of a pipeline that is a callable.
+struct Entry<P> {
+    code: &'static str,
+    take: fn(Box<dyn Any>) -> Taken,
+    factory: fn(P) -> AnyFactory,
+}
+
+impl<P: PythonFactory> Entry<P> {
+    fn of<W: PythonWorld>() -> Self {
+        Self {
+            code: W::CODE,
+            take: |prepared| prepared.downcast::<W>().map(|prepared| prepared as Box<dyn AnyPythonWorld>),
+            factory: |pipeline| {
+                let factory: Box<dyn PipelineFactory<W::Interface> + Send> = pipeline.of();
+                AnyFactory::new(factory)
+            },
+        }
+    }
+}
+
+/// What makes the frames of a scenario.
+///
+/// # Errors
+/// [`Failure::Usage`] when they are of a world that has no class in Python.
+pub(crate) fn in_python(
+    world: &dyn AnyWorld,
+    prepared: Box<dyn AnyMission>,
+) -> Result<Box<dyn AnyPythonWorld>, Failure> {
+    let mut prepared = prepared.into_any();
+    for entry in all::<Never>() {
+        match (entry.take)(prepared) {
+            Ok(taken) => return Ok(taken),
+            Err(other) => prepared = other,
+        }
+    }
+    Err(Failure::Usage(format!("frames of the world {} have no class", world.code())))
+}
+
+/// The factory of a pipeline that is a callable, for a world.
+///
+/// # Errors
+/// [`Failure::Usage`] when its frames have no class in Python.
+pub(crate) fn factory<P: PythonFactory>(world: &dyn AnyWorld, pipeline: P) -> Result<AnyFactory, Failure> {
+    match all::<P>().into_iter().find(|entry| entry.code == world.code()) {
+        Some(entry) => Ok((entry.factory)(pipeline)),
+        None => Err(Failure::Usage(format!("a callable of the world {} cannot be called", world.code()))),
+    }
+}
+
+/// A callable that can be the pipeline of any world.
+pub(crate) trait PythonFactory {
+    /// It as one of the interface `I`.
+    fn of<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send>;
+}
+
+/// No callable.
+enum Never {}
+
+impl PythonFactory for Never {
+    fn of<I: PythonInterface>(self) -> Box<dyn PipelineFactory<I> + Send> {
+        match self {}
+    }
+}
+
+/// An interface whose images and telemetry are values in Python.
+pub(crate) trait PythonInterface: Protocol {
+    /// An image as an object.
+    fn frame(py: Python<'_>, image: Self::Image) -> PyResult<Frame>;
+
+    /// What is told beside it.
+    fn telemetry(py: Python<'_>, telemetry: &Self::Telemetry) -> PyResult<Py<PyAny>>;
+}
+
+impl PythonInterface for FarRange {
+    fn frame(py: Python<'_>, frame: contract::Frame) -> PyResult<Frame> {
+        Frame::of(py, frame)
+    }
+
+    fn telemetry(py: Python<'_>, telemetry: &contract::Telemetry) -> PyResult<Py<PyAny>> {
+        Ok(Py::new(py, Telemetry::of(telemetry))?.into_any())
+    }
+}
+
+impl PythonInterface for Docking {
+    fn frame(py: Python<'_>, field: Field) -> PyResult<Frame> {
+        Frame::of_field(py, field)
+    }
+
+    fn telemetry(py: Python<'_>, telemetry: &DockingTelemetry) -> PyResult<Py<PyAny>> {
+        Ok(Py::new(py, FieldTelemetry::of(telemetry))?.into_any())
+    }
+}
+
+/// A world whose frames are values in Python.
+pub(crate) trait PythonWorld: World<Interface: PythonInterface, Truth: Send> {
+    /// The truth about a frame, a row; and about the objects in it, where the world tells of objects.
+    fn tables(truth: Self::Truth) -> PyResult<(RecordBatch, Option<RecordBatch>)>;
+
+    /// A frame without noise, row by row, where the world has it: its rows and columns, and its electrons.
+    fn expected(&self, _frame: u64) -> Option<ExpectedFrame> {
+        None
+    }
+}
+
+impl PythonWorld for FarRangeMission {
+    fn tables(truth: SceneTruth) -> PyResult<(RecordBatch, Option<RecordBatch>)> {
+        let objects = batch(ObjectTruth::columns(&truth.objects))?;
+        Ok((batch(FrameTruth::columns(&[truth.frame]))?, Some(objects)))
+    }
+
+    fn expected(&self, frame: u64) -> Option<ExpectedFrame> {
+        let make = || {
+            let mut camera = self.simulator().camera()?;
+            camera.expose(frame)?;
+            let image = camera.expected();
+            let (columns, rows) = image.size();
+            Ok(([rows, columns], image.iter().collect()))
+        };
+        Some(make().map_err(|error: sim::SimError| error.into()))
+    }
+}
+
+impl PythonWorld for DockingMission {
+    fn tables(truth: FieldTruth) -> PyResult<(RecordBatch, Option<RecordBatch>)> {
+        Ok((batch(FieldTruth::columns(&[truth]))?, None))
+    }
+}
+
+/// A frame that was made, not a value of Python yet.
+pub(crate) type Made = Box<dyn FnOnce(Python<'_>) -> PyResult<Parts> + Send>;
+
+/// What a frame of a scenario consists of.
+pub(crate) struct Parts {
+    pub(crate) frame: Frame,
+    pub(crate) telemetry: Py<PyAny>,
+    pub(crate) truth: RecordBatch,
+    pub(crate) objects: Option<RecordBatch>,
+}
+
+/// A [`PythonWorld`], without its types.
+pub(crate) trait AnyPythonWorld: AnyMission {
+    /// What a program is told before the first frame, a line of JSON.
+    fn greeting(&self) -> Result<Vec<u8>, String>;
+
+    /// Makes frames on threads and hands them on, in order.
+    fn make(
+        &self,
+        frames: Range<u64>,
+        jobs: usize,
+        take: &mut dyn FnMut(Made) -> Result<(), Failure>,
+    ) -> Result<(), Failure>;
+
+    /// [`PythonWorld::expected`].
+    fn expected(&self, frame: u64) -> Option<ExpectedFrame>;
+}
+
+impl<W: PythonWorld> AnyPythonWorld for W
+where
+    ImageOf<W>: Send,
+    TelemetryOf<W>: Send,
+{
+    fn greeting(&self) -> Result<Vec<u8>, String> {
+        W::Interface::greeting(self.setup())
+    }
+
+    fn make(
+        &self,
+        frames: Range<u64>,
+        jobs: usize,
+        take: &mut dyn FnMut(Made) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let expose = |workspace: &mut W::Workspace<'_>, frame| World::expose(self, workspace, frame);
+        let bytes = self.exposure_bytes() as u64;
+        in_order(
+            frames,
+            jobs,
+            bytes,
+            || self.workspace(),
+            expose,
+            |exposure| {
+                let (image, telemetry, truth) = W::receive(exposure, &W::Feedback::default());
+                take(Box::new(move |py| {
+                    let (truth, objects) = W::tables(truth)?;
+                    let telemetry = W::Interface::telemetry(py, &telemetry)?;
+                    Ok(Parts { frame: W::Interface::frame(py, image)?, telemetry, truth, objects })
+                }))
+            },
+        )
+    }
+
+    fn expected(&self, frame: u64) -> Option<ExpectedFrame> {
+        PythonWorld::expected(self, frame)
+    }
+}
