@@ -2,8 +2,8 @@
 //! pipeline's own best estimator.
 use comfy_table::{Attribute, Cell};
 use indexmap::IndexMap;
-use score::Figure;
 use score::docking::{DockingGroup, DockingScore, Gross, MissCause, names};
+use score::{Figure, warm_up_note};
 
 use crate::table::far_range::{finish, percent, plain_table, share};
 
@@ -25,6 +25,9 @@ pub fn docking(score: &DockingScore, styled: bool) -> String {
         text.push_str("Root mean squares of the errors at the end of portions; in 3σ and NEES from the second report on.\n");
     }
     text.push_str(&latency(score));
+    if let Some(note) = warm_up_note(score.warm_up_frames, "fields") {
+        text.push_str(&format!("{note}\n"));
+    }
     let misses = |row: &Row<'_>| row.misses.clone();
     text.push('\n');
     text.push_str(&causes("Misses by cause", &rows, &MissCause::CODES, misses, styled));
@@ -100,7 +103,7 @@ fn rows(score: &DockingScore) -> Vec<Row<'_>> {
         misses: &score.misses,
         wrong: &score.wrong,
     };
-    groups.filter(|_| score.groups.len() > 1).chain([all]).collect()
+    groups.filter(|_| score.groups.len() > 1 || score.warm_up_frames > 0).chain([all]).collect()
 }
 
 fn fields(rows: &[Row<'_>], styled: bool) -> String {
@@ -285,6 +288,7 @@ mod tests {
             seed: 1,
             version: "0.1.0".to_owned(),
             renderer: "fast".to_owned(),
+            warm_up_frames: 0,
             frames,
             portions: all.portions,
             figures: all.figures,

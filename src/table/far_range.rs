@@ -1,7 +1,7 @@
 //! The table that a person reads, shaped like Table 2 of the far-range paper.
 use comfy_table::{Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use indexmap::IndexMap;
-use score::{Cause, Figure, Score, Table2, Table2Distance, angle, attitude_note, names};
+use score::{Cause, Figure, Score, Table2, Table2Distance, angle, attitude_note, names, warm_up_note};
 
 /// How to print a score.
 #[derive(Debug, Clone, Copy)]
@@ -35,6 +35,9 @@ pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
          of the centroid (x, y) in pixels.\n\
          The cause of a wrong answer is what kept the target itself from being taken.\n",
     );
+    if let Some(note) = warm_up_note(score.warm_up_frames, "frames") {
+        text.push_str(&format!("{note}\n"));
+    }
     if let Some(note) = attitude_note(score.attitude.as_deref()) {
         text.push_str(&format!("{note}\n"));
     }
@@ -81,7 +84,7 @@ fn columns(score: &Score) -> Vec<Column<'_>> {
         misses: &score.misses,
         wrong: &score.wrong,
     };
-    groups.filter(|_| score.groups.len() > 1).chain([all]).collect()
+    groups.filter(|_| score.groups.len() > 1 || score.warm_up_frames > 0).chain([all]).collect()
 }
 
 /// One row: its label and the value and interval of every column.
@@ -257,6 +260,7 @@ mod tests {
             version: "0.1.0".to_owned(),
             inject: None,
             attitude: None,
+            warm_up_frames: 0,
             frames: frames * groups as u64,
             figures: figures(frames * groups as u64),
             groups: (1..=groups).map(|day| (format!("day {day}"), group.clone())).collect(),

@@ -3,7 +3,7 @@ use std::collections::HashMap;
 
 use comfy_table::{Attribute, Cell};
 use run::figure_called;
-use score::attitude_note;
+use score::{attitude_note, warm_up_note};
 use study::{CaseFigure, CaseRow, Estimate, Study, Summary, Waited, overall};
 
 use crate::table::far_range::{finish, percent, plain_table};
@@ -53,6 +53,9 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         "Intervals are of 95 %, over independent draws. All together: rates over all frames (Wilson, by the scatter between draws), other\n\
          figures the mean of the cases (Student's t). Quantiles are of the cases (order statistics; none of too few draws).\n",
     );
+    if let Some(note) = warm_up_note(summary.warm_up_frames, "frames of every case") {
+        text.push_str(&format!("{note}\n"));
+    }
     if let Some(note) = attitude_note(summary.attitude.as_deref()) {
         text.push_str(&format!("{note}\n"));
     }

@@ -17,6 +17,7 @@ pub(super) fn identity() -> Identity {
         catalog_sha256: None,
         inject: None,
         renderer: None,
+        warm_up_frames: 0,
         scenario_sha256: "5".to_owned(),
         frames_sha256: "f".to_owned(),
         pipeline: Table::new(),

@@ -48,6 +48,9 @@ pub struct Identity {
     /// What drew the scene, where the fast renderer did not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub renderer: Option<String>,
+    /// The first frames, which count in no figure; absent when 0.
+    #[serde(default, skip_serializing_if = "score::is_zero")]
+    pub warm_up_frames: u64,
     /// SHA-256 of the resolved scenario without its title, its seed and the pipeline's own parameters; the content of every file that it
     /// reads stands in the place of its path.
     pub scenario_sha256: String,
@@ -98,6 +101,9 @@ impl Identity {
                 return Err(cannot(field, &optional(of_baseline), &optional(of_result)));
             }
         }
+        if self.warm_up_frames != result.warm_up_frames {
+            return Err(cannot("score.warm_up_frames", &self.warm_up_frames, &result.warm_up_frames));
+        }
         if self.scenario_sha256 != result.scenario_sha256 {
             let (at, of_baseline, of_result) = first_difference(
                 &Value::Table(self.scenario.clone()),
@@ -133,6 +139,7 @@ mod tests {
             catalog_sha256: None,
             inject: None,
             renderer: None,
+            warm_up_frames: 0,
             scenario_sha256: split.scenario_sha256,
             frames_sha256: "f".to_owned(),
             pipeline: split.pipeline,
@@ -192,6 +199,10 @@ mod tests {
             (
                 Identity { catalog_sha256: text("ab"), ..base.clone() },
                 ["`catalog_sha256`", "`none` in the baseline", "`ab` in the result"],
+            ),
+            (
+                Identity { warm_up_frames: 30, ..base.clone() },
+                ["`score.warm_up_frames`", "`0` in the baseline", "`30` in the result"],
             ),
             // A digest that nothing in the scenario explains.
             (

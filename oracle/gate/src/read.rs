@@ -71,7 +71,8 @@ fn run(directory: &Path, path: &Path, attitude: Option<AttitudeChoice>) -> Resul
     })?;
     let mut scenario_table = scenario_of(path, &text)?;
     // How it is scored is compared figure by figure: those that do not depend on it may be.
-    scenario_table.remove("score");
+    let score = scenario_table.remove("score");
+    let warm_up = score.as_ref().and_then(|score| score.get("warm_up_frames")?.as_integer());
     let split = split(world.code(), scenario_table, &files)?;
     let identity = Identity {
         kind: SourceKind::Run,
@@ -82,6 +83,7 @@ fn run(directory: &Path, path: &Path, attitude: Option<AttitudeChoice>) -> Resul
         catalog_sha256,
         inject: inject.map(|stage| stage.to_string()),
         renderer: mitsuba.map(|_| "mitsuba".to_owned()),
+        warm_up_frames: warm_up.map_or(0, |frames| frames.max(0) as u64),
         scenario_sha256: split.scenario_sha256,
         frames_sha256: digest.finish(),
         pipeline: split.pipeline,
@@ -133,6 +135,8 @@ fn study(directory: &Path, path: &Path) -> Result<Sample, Failure> {
         catalog_sha256: None,
         inject: None,
         renderer: None,
+        // Those of a study are in its definition or its scenario.
+        warm_up_frames: 0,
         scenario_sha256: sha256_hex(&text),
         frames_sha256: digest.finish(),
         pipeline: split.pipeline,

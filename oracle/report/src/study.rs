@@ -6,7 +6,7 @@ use std::path::Path;
 use files::{Failure, FileError};
 use indexmap::IndexMap;
 use run::figure_called;
-use score::{Better, attitude_note};
+use score::{Better, attitude_note, warm_up_note};
 use study::{CaseTable, Estimate, FigureSummary, Summary, Waited};
 
 use super::chart::{
@@ -92,7 +92,11 @@ pub fn study_page(study: &StudyResult) -> Page {
         },
         kind: "Study",
         version: summary.version.clone(),
-        lead: [lead].into_iter().chain(attitude_note(summary.attitude.as_deref())).collect(),
+        lead: [lead]
+            .into_iter()
+            .chain(warm_up_note(summary.warm_up_frames, "frames of every case"))
+            .chain(attitude_note(summary.attitude.as_deref()))
+            .collect(),
         warnings: Vec::new(),
         facts: vec![
             ("Study", summary.study.clone()),

@@ -36,9 +36,29 @@ pub struct DockingScenario {
     /// The television chain.
     #[serde(default)]
     pub television: TelevisionConfig,
+    /// How answers are scored; nothing of it is simulated.
+    #[serde(default, skip_serializing_if = "DockingScoreConfig::is_default")]
+    pub score: DockingScoreConfig,
     /// Parameters of the pipeline `docking`.
     #[serde(default)]
     pub docking: DockingConfig,
+}
+
+/// How answers are scored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DockingScoreConfig {
+    /// The first so many fields, in which the pipeline starts up, are a group of their own, `warm-up`; all other figures but the latency
+    /// leave them out.
+    #[serde(default, skip_serializing_if = "crate::zero::is_zero")]
+    #[schemars(range(min = 0, max = 1_u64 << 40))]
+    pub warm_up_frames: u64,
+}
+
+impl DockingScoreConfig {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// The one world of a [`DockingScenario`].

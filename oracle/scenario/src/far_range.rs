@@ -90,6 +90,10 @@ pub struct ScoreConfig {
     /// The attitude that is granted to answers with a centroid alone; absent: none, and they have no line of sight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude: Option<AttitudeChoice>,
+    /// The first so many frames, in which the pipeline starts up, are a group of their own, `warm-up`; all other figures leave them out.
+    #[serde(default, skip_serializing_if = "crate::zero::is_zero")]
+    #[schemars(range(min = 0, max = 1_u64 << 40))]
+    pub warm_up_frames: u64,
 }
 
 impl ScoreConfig {

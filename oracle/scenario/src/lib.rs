@@ -18,6 +18,7 @@ mod far_range;
 pub mod identity;
 pub mod run_file;
 mod stage;
+mod zero;
 
 pub use builtin::{BUILT_IN, BuiltIn, DOCKING, STARTING_POINT, is_argon};
 pub use cameras::CAMERAS;

@@ -33,9 +33,15 @@ pub struct ScoreContext<'a> {
     pub rows: usize,
     /// What "within one pixel" and "within two" mean.
     pub limits: WithinLimits,
+    /// From the first frame on, so many numbers of frames belong to the pipeline's start-up: their verdicts are a group of their own
+    /// ([`WARM_UP`]), and all other figures leave them out.
+    pub warm_up_frames: u64,
     /// Inverse projection of the true camera.
     pub unproject: Box<Unproject<'a>>,
 }
+
+/// Name of the group of the frames in which the pipeline starts up.
+pub const WARM_UP: &str = "warm-up";
 
 /// A score and the verdicts that it counts.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,6 +126,7 @@ fn check_possible(truth: &FrameTruth, objects: &[ObjectTruth]) -> Result<(), Sco
 ///     columns: 752,
 ///     rows: 580,
 ///     limits: WithinLimits::of_degrees([0.024, 0.048]),
+///     warm_up_frames: 0,
 ///     unproject: Box::new(|_| Some(contract::Direction::z())),
 /// };
 /// let scored = Scorer::new(context).finish();
@@ -160,13 +167,17 @@ impl<'a> Scorer<'a> {
         }
         check_possible(truth, objects)?;
         let detector = Detector { columns: self.context.columns, rows: self.context.rows };
+        let first = self.verdicts.first().map_or(frame, |first| first.frame);
+        let is_warm_up = frame - first < self.context.warm_up_frames;
+        let name = if is_warm_up { WARM_UP } else { &truth.group };
         let group = match self.verdicts.last() {
-            Some(last) if *last.group == *truth.group => Arc::clone(&last.group),
-            _ => Arc::from(truth.group.as_str()),
+            Some(last) if *last.group == *name => Arc::clone(&last.group),
+            _ => Arc::from(name),
         };
         let verdict = FrameVerdict {
             frame,
             group,
+            is_warm_up,
             verdict: judge(truth, objects, outcome, detector, &self.context.unproject, granted),
             n_stars: outcome.and_then(|outcome| outcome.n_stars),
             attitude_source: outcome.and_then(|outcome| outcome.attitude_source),
@@ -181,7 +192,8 @@ impl<'a> Scorer<'a> {
         for verdict in &self.verdicts {
             groups.entry(&verdict.group).or_default().push(verdict);
         }
-        let sequences: Vec<&[&FrameVerdict]> = groups.values().map(Vec::as_slice).collect();
+        let counted = |sequence: &&Vec<&FrameVerdict>| !sequence.iter().any(|frame| frame.is_warm_up);
+        let sequences: Vec<&[&FrameVerdict]> = groups.values().filter(counted).map(Vec::as_slice).collect();
         let limits = self.context.limits;
         let all = group_score(&sequences, &limits);
         let of_group = |sequence: &Vec<&FrameVerdict>| group_score(&[sequence], &limits);
@@ -193,6 +205,7 @@ impl<'a> Scorer<'a> {
             version: self.context.version,
             inject: self.context.inject,
             attitude: attitude_of(&self.verdicts),
+            warm_up_frames: self.context.warm_up_frames,
             frames: all.frames,
             figures: all.figures,
             groups,
@@ -356,7 +369,8 @@ impl UnitTable {
             figures: definitions(limits)
                 .iter()
                 .map(|definition| {
-                    FigureTerms::new(definition, frames).resting_on(&definition.figure, attitude.as_ref())
+                    FigureTerms::of_counted(definition, frames, |frame| !frame.is_warm_up)
+                        .resting_on(&definition.figure, attitude.as_ref())
                 })
                 .collect(),
         }
@@ -381,6 +395,7 @@ mod tests {
             columns: COLUMNS,
             rows: ROWS,
             limits: LIMITS,
+            warm_up_frames: 0,
             unproject: Box::new(unproject),
         })
     }
@@ -394,14 +409,50 @@ mod tests {
     }
 
     fn granted(outcomes: &[Option<Outcome>], granted: GrantedAttitude) -> Score {
-        let mut scorer = scorer();
+        judged(scorer(), outcomes, granted).score
+    }
+
+    fn judged(
+        mut scorer: Scorer<'_>,
+        outcomes: &[Option<Outcome>],
+        granted: GrantedAttitude,
+    ) -> FarRangeJudgement {
         for (number, outcome) in outcomes.iter().enumerate() {
             let mut truth = frame(number as u64);
             truth.group = format!("day {}", 1 + number / 10);
             let objects = [ObjectTruth { frame: truth.frame, ..target_with(1000.0) }];
             scorer.add(&truth, &objects, outcome.as_ref(), granted).unwrap();
         }
-        scorer.finish().score
+        scorer.finish()
+    }
+
+    /// The figures of days without their first frames, which have verdicts and figures of their own.
+    #[test]
+    fn frames_of_the_warm_up_count_in_their_own_group_alone() {
+        let outcomes: Vec<_> = day().into_iter().cycle().take(20).collect();
+        let mut scorer = scorer();
+        scorer.context.warm_up_frames = 10;
+        let judgement = judged(scorer, &outcomes, GrantedAttitude::True);
+        let (score, day) = (&judgement.score, score(&outcomes[..10]));
+        assert_eq!((score.frames, score.warm_up_frames), (10, 10));
+        assert_eq!(score.groups.keys().collect::<Vec<_>>(), [WARM_UP, "day 2"]);
+        assert_eq!((&score.figures, &score.misses), (&day.figures, &day.misses));
+        assert_eq!((&score.wrong, &score.wrong_taken), (&day.wrong, &day.wrong_taken));
+        assert_eq!(score.groups[WARM_UP].figures, day.figures);
+        let table = UnitTable::of_frames(&judgement.verdicts, &judgement.limits);
+        assert_eq!((table.units[9].group.as_str(), table.units[9].cause.is_some()), (WARM_UP, false));
+        for figure in &table.figures {
+            let counted: u32 = figure.terms.iter().map(|term| term.of).sum();
+            assert_eq!(u64::from(counted), score.figures[&figure.name].of, "{}", figure.name);
+        }
+        // Frames that are not there belong to it by their numbers.
+        let mut scorer = self::scorer();
+        scorer.context.warm_up_frames = 10;
+        for number in [100, 109, 110] {
+            let objects = [ObjectTruth { frame: number, ..target_with(1000.0) }];
+            scorer.add(&frame(number), &objects, None, GrantedAttitude::None).unwrap();
+        }
+        assert_eq!(scorer.finish().score.frames, 1);
     }
 
     /// Ten frames a day: 6 correct (4 of them within a pixel), 1 wrong, 2 without a target, 1 without a row.
@@ -534,6 +585,7 @@ mod tests {
             let error = LineOfSightError { ra, dec: Angle::ZERO, attitude: AttitudeUsed::Own };
             let error = AnswerError { centroid_px: None, line_of_sight: Some(error) };
             let verdict = FrameVerdict {
+                is_warm_up: false,
                 frame: 0,
                 group: "day 1".into(),
                 verdict: Verdict::Correct { error },

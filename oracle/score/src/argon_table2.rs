@@ -115,6 +115,7 @@ mod tests {
             wrong_taken: IndexMap::new(),
         };
         Score {
+            warm_up_frames: 0,
             scenario: "argon".to_owned(),
             seed: 1,
             version: "0.1.0".to_owned(),

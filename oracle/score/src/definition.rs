@@ -171,7 +171,17 @@ impl FigureTerms {
 
     /// The terms of units by a definition.
     pub fn new<U>(definition: &Definition<'_, U>, units: &[U]) -> Self {
-        let terms = units.iter().map(|unit| definition.term(unit)).collect();
+        Self::of_counted(definition, units, |_| true)
+    }
+
+    /// The terms of units by a definition; those that are not counted have no value.
+    pub fn of_counted<U>(
+        definition: &Definition<'_, U>,
+        units: &[U],
+        is_counted: impl Fn(&U) -> bool,
+    ) -> Self {
+        let term = |unit: &U| if is_counted(unit) { definition.term(unit) } else { Term::default() };
+        let terms = units.iter().map(term).collect();
         let counted = Self::counted(&definition.figure.name, definition.reduction, terms);
         Self { limit_deg: definition.limit_deg, ..counted }
     }

@@ -38,7 +38,7 @@ mod hand_made;
 mod report;
 mod verdict;
 
-pub use accumulate::{FarRangeJudgement, ScoreContext, ScoreError, Scorer, figures};
+pub use accumulate::{FarRangeJudgement, ScoreContext, ScoreError, Scorer, WARM_UP, figures};
 pub use angles::{
     AnswerError, AttitudeUsed, GrantedAttitude, LineOfSightError, WithinLimits, attitude_note, attitude_word,
 };
@@ -47,5 +47,5 @@ pub use belonging::belonging_to;
 pub use cause::Cause;
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 pub use figure_spec::{Better, FigureSpec, Kind, Sense, angle};
-pub use report::{Figure, GroupScore, Score, names};
+pub use report::{Figure, GroupScore, Score, is_zero, names, warm_up_note};
 pub use verdict::{FrameVerdict, Taken, Unproject, Verdict, VerdictRow};

@@ -136,6 +136,18 @@ fn mean(sequences: &[Vec<f64>]) -> Option<f64> {
     (n > 0).then(|| sequences.iter().flatten().sum::<f64>() / n as f64)
 }
 
+/// What a reader must know of frames that are left out of the figures; nothing where there are none. `images`: frames or fields.
+pub fn warm_up_note(frames: u64, images: &str) -> Option<String> {
+    (frames > 0).then(|| {
+        format!("The first {frames} {images}, the pipeline's start-up, are the group `warm-up` and count in no other figure.")
+    })
+}
+
+/// Whether a number need not be written: files are as they were before there was such a number.
+pub fn is_zero(number: &u64) -> bool {
+    *number == 0
+}
+
 /// The score of a run: the content of `score.json`. Figures and groups keep their order in the file; groups are in
 /// the order of their first frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -153,6 +165,9 @@ pub struct Score {
     /// answer has one ([`crate::attitude_word`]). Absent when nothing is detected.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude: Option<String>,
+    /// The first frames, in which the pipeline starts up: they are in the group `warm-up` and in no other number. Absent when 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub warm_up_frames: u64,
     /// Number of frames: detected and missed, each counted once.
     pub frames: u64,
     /// Figures over all frames, by name (see [`names`] for far range).

@@ -120,6 +120,8 @@ pub struct FrameVerdict {
     pub frame: u64,
     /// Name of the group it belongs to.
     pub group: Arc<str>,
+    /// Whether it is one of the first frames, in which the pipeline starts up: it counts in no figure but its group's.
+    pub is_warm_up: bool,
     /// The verdict.
     pub verdict: Verdict,
     /// Stars that the pipeline identified; `None` when it did not answer the frame.
@@ -453,6 +455,7 @@ mod tests {
         let frame_verdict = |verdict| FrameVerdict {
             frame: 3,
             group: "day 1".into(),
+            is_warm_up: false,
             verdict,
             n_stars: Some(12),
             attitude_source: Some(AttitudeSource::Stars),

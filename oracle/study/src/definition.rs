@@ -8,7 +8,7 @@ use files::{Failure, file_sha256, toml_file};
 use indexmap::IndexMap;
 use run::{AnyScenario, Options, ScenarioSource};
 use scenario::run_file::{FileDigests, content};
-use serde_json::Value;
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 use sim::randomness::{Effect, Seed};
 
@@ -77,6 +77,11 @@ impl Study {
         self.base_values.get("score")?.get("attitude")?.as_str()
     }
 
+    /// The first frames of every case, which count in no figure.
+    pub(super) fn warm_up_frames(&self) -> u64 {
+        self.base_values.pointer("/score/warm_up_frames").and_then(Value::as_u64).unwrap_or(0)
+    }
+
     /// Reads and checks a study, the scenario that it names included; the first case is made, so that a path that leads nowhere or a
     /// value of the wrong type is found before anything runs.
     ///
@@ -101,7 +106,14 @@ impl Study {
             Err(Failure::Usage(message)) => return Err(refuse("scenario", message)),
             other => other?,
         };
-        let base_values = base.scenario.to_json()?;
+        let mut base_values = base.scenario.to_json()?;
+        if let Some(frames) = file.warm_up_frames {
+            let score =
+                base_values.as_object_mut().map(|base| base.entry("score").or_insert_with(|| json!({})));
+            if let Some(Value::Object(score)) = score {
+                score.insert("warm_up_frames".to_owned(), frames.into());
+            }
+        }
         let identity = identity(&file, &folder, &mut base)?;
 
         let mut vary = Vec::new();
@@ -177,7 +189,15 @@ impl Study {
         study.hash = study.make_hash()?;
         study.check_names()?;
         let first = study.case(0)?.source;
-        study.frames(first.prepare(Options::default())?.frame_count())?;
+        let frames = study.frames(first.prepare(Options::default())?.frame_count())?;
+        let warm_up = study.warm_up_frames();
+        if warm_up >= frames.end - frames.start {
+            let count = frames.end - frames.start;
+            return Err(study.refuse(
+                "warm_up_frames",
+                format!("is {warm_up}, expected fewer than the {count} frames of a case"),
+            ));
+        }
         Ok(study)
     }
 

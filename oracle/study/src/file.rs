@@ -19,6 +19,10 @@ pub struct StudyFile {
     pub seed: u64,
     /// Frames (docking: fields) of every case, `A..B`: from A up to and without B; absent: all of the scenario.
     pub frames: Option<String>,
+    /// The first frames of every case, in which the pipeline starts up: they count in no figure. Absent: as the scenario says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1_u64 << 40))]
+    pub warm_up_frames: Option<u64>,
     /// How the dispersed parameters are spread over their laws.
     #[serde(default)]
     pub design: DesignKind,

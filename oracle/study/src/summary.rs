@@ -92,6 +92,9 @@ pub struct Summary {
     /// The attitude that the lines of sight of the far range rest on ([`CaseTable::attitude`]).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude: Option<String>,
+    /// The first frames of every case, which count in no figure.
+    #[serde(default, skip_serializing_if = "score::is_zero")]
+    pub warm_up_frames: u64,
     /// Cases that were run.
     pub cases: u64,
     /// Cases that were asked for, the most there are.
@@ -137,6 +140,7 @@ impl Summary {
             hash: study.hash_with(pipeline),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             attitude: table.attitude(study.granted_attitude()),
+            warm_up_frames: study.warm_up_frames(),
             cases: table.rows.len() as u64,
             of: study.cases(),
             failed_cases: table.rows.iter().filter(|row| row.has_failed).count() as u64,

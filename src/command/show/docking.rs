@@ -170,6 +170,7 @@ fn verdict(
         seed: run_file.scenario.seed,
         version: run_file.version.clone(),
         renderer: run_file.mitsuba.as_ref().map_or("fast", |_| "mitsuba").to_owned(),
+        warm_up_frames: 0,
         setup: setup.clone(),
     });
     let rows = setup.cameras.get(truth.camera).map_or(0, |camera| camera.rows);

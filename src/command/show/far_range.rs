@@ -153,6 +153,7 @@ fn verdict(
         columns: camera.columns,
         rows: camera.rows,
         limits: run::far_range::limits(&run_file.scenario),
+        warm_up_frames: 0,
         unproject: Box::new(|point| projection.unproject(point)),
     });
     let judged = scorer.add(truth, objects, answer, GrantedAttitude::None);

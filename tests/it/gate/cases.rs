@@ -153,6 +153,7 @@ impl Synthetic {
                     (true, false) => Verdict::Correct { error },
                 };
                 FrameVerdict {
+                    is_warm_up: false,
                     frame: stretch * self.frames + frame,
                     group: std::sync::Arc::clone(&group),
                     verdict,
@@ -187,6 +188,7 @@ fn identity(world: &str, seed: u64) -> Identity {
         catalog_sha256: None,
         inject: None,
         renderer: None,
+        warm_up_frames: 0,
         scenario_sha256: String::new(),
         frames_sha256: seed.to_string(),
         pipeline: toml::Table::new(),

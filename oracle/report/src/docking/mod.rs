@@ -24,7 +24,7 @@ use super::words::spoken;
 use ::run::AnyJudgement;
 use files::{Checksums, Failure};
 use score::docking::DockingGroup;
-use score::{Figure, UnitVerdict};
+use score::{Figure, UnitVerdict, warm_up_note};
 
 /// The page of a run directory.
 pub(crate) fn page(directory: &Path, _: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
@@ -64,7 +64,10 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldSheet) -> Result<Page, Failur
             run.score.frames,
             figure("success_rate"),
             figure("wrong_rate")
-        )],
+        )]
+        .into_iter()
+        .chain(warm_up_note(run.score.warm_up_frames, "fields"))
+        .collect(),
         warnings: Vec::new(),
         facts: vec![
             ("Scenario", run.run_file.name.clone()),

@@ -29,7 +29,7 @@ use super::words::spoken;
 use ::run::AnyJudgement;
 use files::{Checksums, Failure};
 use scenario::is_argon;
-use score::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore, angle, attitude_note};
+use score::{ARGON_TABLE_2, AttitudeUsed, FarRangeJudgement, GroupScore, angle, attitude_note, warm_up_note};
 
 /// The page of a run directory with the error budget that is kept there; without one, of a run whose verdicts are known.
 pub(crate) fn page(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
@@ -95,7 +95,11 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Page, Fai
         title: scenario.title.clone(),
         kind: "Far range: a run",
         version: run.run_file.version.clone(),
-        lead: [lead].into_iter().chain(attitude_note(run.score.attitude.as_deref())).collect(),
+        lead: [lead]
+            .into_iter()
+            .chain(warm_up_note(run.score.warm_up_frames, "frames"))
+            .chain(attitude_note(run.score.attitude.as_deref()))
+            .collect(),
         warnings,
         facts: vec![
             fact("Scenario", run.run_file.name.clone()),

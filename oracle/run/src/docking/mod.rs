@@ -339,6 +339,7 @@ fn context(run_file: &RunFile<DockingScenario>, setup: &DockingSetup) -> Docking
         seed: run_file.scenario.seed,
         version: run_file.version.clone(),
         renderer: run_file.mitsuba.as_ref().map_or("fast", |_| "mitsuba").to_owned(),
+        warm_up_frames: run_file.scenario.score.warm_up_frames,
         setup: setup.clone(),
     }
 }

@@ -429,6 +429,7 @@ fn context<'a>(run_file: &RunFile, projection: &'a Projection) -> ScoreContext<'
         columns: run_file.scenario.camera.columns,
         rows: run_file.scenario.camera.rows,
         limits: limits(&run_file.scenario),
+        warm_up_frames: run_file.scenario.score.warm_up_frames,
         unproject: Box::new(|point| projection.unproject(point)),
     }
 }

@@ -15,7 +15,7 @@ use super::report::{DockingGroup, DockingScore, names};
 use super::sight::Sights;
 use super::truth::{TrueField, View};
 use super::verdict::{Gross, Verdict, gross};
-use crate::accumulate::counts;
+use crate::accumulate::{WARM_UP, counts};
 use crate::{Better, Figure, FigureSpec, FigureTerms, ScoreError, UnitTable, UnitVerdict};
 
 /// What the score of a docking run needs besides the fields.
@@ -29,6 +29,9 @@ pub struct DockingContext {
     pub version: String,
     /// What drew the scene: `fast` or `mitsuba`.
     pub renderer: String,
+    /// From the first field on, so many numbers of fields belong to the pipeline's start-up: their verdicts are a group of their own
+    /// ([`WARM_UP`]), and all other figures but the latency leave them out.
+    pub warm_up_frames: u64,
     /// The true cameras and the target's true dimensions.
     pub setup: DockingSetup,
 }
@@ -112,9 +115,11 @@ impl DockingScorer {
         let portion = self.portion(truth, measurement.is_some(), report);
         let is_resolved = self.sights.resolves(truth.camera, &truth.pose);
         let is_clear = truth.view == View::Whole && is_resolved;
+        let first = self.verdicts.first().map_or(truth.field, |first| first.field);
+        let is_warm_up = truth.field - first < self.context.warm_up_frames;
         self.verdicts.push(FieldVerdict {
             field: truth.field,
-            group: (bin(range_m), truth.camera),
+            group: (!is_warm_up).then(|| (bin(range_m), truth.camera)),
             range_m,
             is_clear,
             is_renewed: self.portions.is_renewed(truth.time_s).filter(|_| is_clear),
@@ -181,18 +186,23 @@ impl DockingScorer {
         };
         UnitTable {
             units: self.verdicts.iter().map(unit).collect(),
-            figures: definitions().iter().map(|figure| FigureTerms::new(figure, &self.verdicts)).collect(),
+            figures: definitions()
+                .iter()
+                .map(|figure| FigureTerms::of_counted(figure, &self.verdicts, |field| field.group.is_some()))
+                .collect(),
         }
     }
 
     /// The figures over all fields. A bin of range and lens is one sequence for the statistics, even where another one
     /// interrupts it.
     pub fn score(&self) -> DockingScore {
-        let mut groups: BTreeMap<(usize, usize), Vec<&FieldVerdict>> = BTreeMap::new();
+        // The warm-up is before all bins.
+        let mut groups: BTreeMap<Option<(usize, usize)>, Vec<&FieldVerdict>> = BTreeMap::new();
         for verdict in &self.verdicts {
             groups.entry(verdict.group).or_default().push(verdict);
         }
-        let sequences: Vec<&[&FieldVerdict]> = groups.values().map(Vec::as_slice).collect();
+        let counted = groups.iter().filter(|(group, _)| group.is_some());
+        let sequences: Vec<&[&FieldVerdict]> = counted.map(|(_, fields)| fields.as_slice()).collect();
         let mut all = group_score(&sequences);
         let latency = Figure::mean(&[latency(&self.verdicts).into_iter().collect()]);
         all.figures.insert(names::LATENCY_FIELDS.to_owned(), latency);
@@ -203,6 +213,7 @@ impl DockingScorer {
             seed: self.context.seed,
             version: self.context.version.clone(),
             renderer: self.context.renderer.clone(),
+            warm_up_frames: self.context.warm_up_frames,
             frames: all.frames,
             portions: all.portions,
             figures: all.figures,
@@ -216,7 +227,8 @@ impl DockingScorer {
     }
 }
 
-fn name_of((bin, camera): (usize, usize), lenses: &[String]) -> String {
+fn name_of(group: Option<(usize, usize)>, lenses: &[String]) -> String {
+    let Some((bin, camera)) = group else { return WARM_UP.to_owned() };
     let lens = lenses.get(camera).cloned().unwrap_or_else(|| format!("camera {camera}"));
     group_name(bin, &lens)
 }

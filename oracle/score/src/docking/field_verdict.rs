@@ -9,8 +9,8 @@ use super::verdict::Verdict;
 pub(super) struct FieldVerdict {
     /// Number of the field.
     pub(super) field: u64,
-    /// Bin of the true range, and camera.
-    pub(super) group: (usize, usize),
+    /// Bin of the true range, and camera; none for the first fields, in which the pipeline starts up.
+    pub(super) group: Option<(usize, usize)>,
     /// True ρ, m.
     pub(super) range_m: f64,
     /// Whether the target is resolved and wholly in the image.

@@ -61,6 +61,10 @@ pub struct DockingScore {
     pub version: String,
     /// What drew the scene: `fast` or `mitsuba`.
     pub renderer: String,
+    /// The first fields, in which the pipeline starts up: they are in the group `warm-up` and in no other number but the latency. Absent
+    /// when 0.
+    #[serde(default, skip_serializing_if = "crate::report::is_zero")]
+    pub warm_up_frames: u64,
     /// Number of fields, each counted once: succeeded, range alone, wrong, missed.
     pub frames: u64,
     /// Number of reports at the end of a portion.

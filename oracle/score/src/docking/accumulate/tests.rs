@@ -10,11 +10,16 @@ fn score(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScore {
 }
 
 fn scored(fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScorer {
+    scored_after(0, fields)
+}
+
+fn scored_after(warm_up_frames: u64, fields: &[(TrueField, Option<DockingOutcome>)]) -> DockingScorer {
     let context = DockingContext {
         scenario: "hand-made".to_owned(),
         seed: 42,
         version: "0.1.0".to_owned(),
         renderer: "fast".to_owned(),
+        warm_up_frames,
         setup: setup(),
     };
     let mut scorer = DockingScorer::new(context);
@@ -48,6 +53,26 @@ fn mixed() -> Vec<(TrueField, Option<DockingOutcome>)> {
         None,
     ];
     answers.into_iter().enumerate().map(|(i, answer)| (field(i as u64, 10.0), answer)).collect()
+}
+
+#[test]
+fn fields_of_the_warm_up_count_in_their_own_group_and_in_the_latency_alone() {
+    let fields: Vec<_> = (0..20).map(|i| (field(i, 10.0), mixed()[i as usize % 10].1.clone())).collect();
+    let scorer = scored_after(10, &fields);
+    let (warm, ten, all) = (scorer.score(), score(&fields[..10]), score(&fields));
+    assert_eq!((warm.frames, warm.warm_up_frames), (10, 10));
+    let groups: Vec<&String> = warm.groups.keys().collect();
+    assert!(groups.len() == 2 && groups[0] == WARM_UP && ten.groups.contains_key(groups[1]), "{groups:?}");
+    assert_eq!(warm.figures[names::LATENCY_FIELDS], all.figures[names::LATENCY_FIELDS]);
+    let without = |score: &DockingScore| {
+        let figures = score.figures.iter().filter(|(name, _)| *name != names::LATENCY_FIELDS);
+        figures.map(|(name, figure)| (name.clone(), *figure)).collect::<Vec<_>>()
+    };
+    assert_eq!((without(&warm), &warm.misses, &warm.wrong), (without(&ten), &ten.misses, &ten.wrong));
+    for figure in &scorer.units().figures {
+        let counted: u32 = figure.terms.iter().map(|term| term.of).sum();
+        assert_eq!(u64::from(counted), warm.figures[&figure.name].of, "{}", figure.name);
+    }
 }
 
 #[test]
@@ -275,6 +300,7 @@ fn a_score_of_nothing_and_of_nothing_right_has_no_nan() {
 #[test]
 fn a_field_met_twice_is_refused() {
     let context = DockingContext {
+        warm_up_frames: 0,
         scenario: String::new(),
         seed: 0,
         version: String::new(),
