@@ -200,19 +200,26 @@ mod tests {
         let table = CaseTable {
             drawn: indexmap::IndexMap::new(),
             figures: ["correct_rate", "ra_rms_deg"].map(str::to_owned).to_vec(),
+            causes: Vec::new(),
             rows: vec![
                 study::CaseRow {
                     case: 0,
                     seed: 3,
                     has_failed: false,
+                    error: None,
+                    frames: 40,
                     drawn: Vec::new(),
+                    causes: Vec::new(),
                     figures: vec![figure(Some(0.75), 30, 40), figure(Some(0.5), 30, 30)],
                 },
                 study::CaseRow {
                     case: 1,
                     seed: 4,
                     has_failed: false,
+                    error: None,
+                    frames: 40,
                     drawn: Vec::new(),
+                    causes: Vec::new(),
                     figures: vec![figure(Some(0.0), 0, 40), figure(None, 0, 0)],
                 },
             ],

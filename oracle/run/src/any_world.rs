@@ -65,6 +65,9 @@ pub trait AnyWorld: Sync {
     /// [`World::figures`](crate::World::figures).
     fn figures(&self) -> Vec<FigureSpec>;
 
+    /// [`World::causes`](crate::World::causes).
+    fn causes(&self) -> Vec<(&'static str, &'static str)>;
+
     /// Whether its scenarios are of the type `type_id`.
     fn has_scenarios_of(&self, type_id: TypeId) -> bool;
 

@@ -110,6 +110,10 @@ impl<W: World> AnyWorld for Of<W> {
         W::figures()
     }
 
+    fn causes(&self) -> Vec<(&'static str, &'static str)> {
+        W::causes()
+    }
+
     fn has_scenarios_of(&self, type_id: TypeId) -> bool {
         type_id == TypeId::of::<W::Scenario>()
     }

@@ -184,6 +184,11 @@ pub trait World: Sized + Send + Sync + 'static {
     /// The figures of a score. A key that another world has too is the same figure.
     fn figures() -> Vec<FigureSpec>;
 
+    /// All causes that a unit's verdict may have, each as (verdict, cause) in the words of [`score::UnitVerdict`]; a study counts them.
+    fn causes() -> Vec<(&'static str, &'static str)> {
+        Vec::new()
+    }
+
     /// Number of frames of the whole scenario.
     fn frame_count(&self) -> u64;
 

@@ -23,7 +23,7 @@ pub struct Campaign<'a> {
     starts: Starts,
 }
 
-/// Cases in which the pipeline does not start, before it starts in any, that end a study: it would start in none.
+/// Cases that cannot be run, or in which the pipeline does not start, before it starts in any, that end a study: it would start in none.
 const MOST_FAILED_CASES: u64 = 10;
 
 /// What is known of the pipeline's starts in the cases that were run.
@@ -39,10 +39,20 @@ impl Starts {
         if case.has_started || self.has_started.load(Ordering::Relaxed) {
             self.has_started.store(true, Ordering::Relaxed);
         } else if self.failed_cases.fetch_add(1, Ordering::Relaxed) + 1 >= MOST_FAILED_CASES {
-            let reason = case.first_failure.as_ref().map_or("", |first| &first.reason);
-            return Err(Failure::Usage(format!(
-                "the pipeline did not start in any of the first {MOST_FAILED_CASES} cases: {reason}"
-            )));
+            return Err(Failure::Usage(match (&case.row.error, &case.first_failure) {
+                (Some(error), _) => {
+                    format!(
+                        "none of the first {MOST_FAILED_CASES} cases can be run; of case {}: {error}",
+                        case.row.case
+                    )
+                }
+                (None, first) => {
+                    let reason = first.as_ref().map_or("", |first| &first.reason);
+                    format!(
+                        "the pipeline did not start in any of the first {MOST_FAILED_CASES} cases: {reason}"
+                    )
+                }
+            }));
         }
         Ok(())
     }

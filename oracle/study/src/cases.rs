@@ -52,10 +52,17 @@ pub struct CaseRow {
     pub seed: u64,
     /// Whether the pipeline itself failed, at one frame or more: it crashed, gave no answer in time, or none that can be read.
     pub has_failed: bool,
+    /// Why the case cannot be run, where its values make no scenario: it has no frames, and counts in no figure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+    /// Frames that count.
+    pub frames: u64,
     /// Drawn values, in the order of the table's columns.
     pub drawn: Vec<Drawn>,
     /// Figures, in the order of the table's columns.
     pub figures: Vec<CaseFigure>,
+    /// Frames by cause, in the order of the table's columns.
+    pub causes: Vec<u32>,
 }
 
 /// Rows with their columns.
@@ -65,12 +72,16 @@ pub struct CaseTable {
     pub drawn: IndexMap<String, bool>,
     /// Names of the figures.
     pub figures: Vec<String>,
+    /// Names of the causes of misses and wrong answers, as in `missed.cut_by_roi`.
+    pub causes: Vec<String>,
     /// The rows, by number of the case.
     pub rows: Vec<CaseRow>,
 }
 
 /// Before the name of a drawn value's column.
 const SET: &str = "set.";
+/// Before the name of a cause's column.
+const CAUSE: &str = "cause.";
 /// Rows read at a time.
 const BATCH_ROWS: usize = 8192;
 
@@ -83,11 +94,16 @@ impl CaseTable {
             hash.update(text);
         };
         self.drawn.keys().for_each(|name| text(name));
-        self.figures.iter().for_each(|name| text(name));
+        self.figures.iter().chain(&self.causes).for_each(|name| text(name));
         for row in &self.rows {
             hash.update(row.case.to_le_bytes());
             hash.update(row.seed.to_le_bytes());
             hash.update([u8::from(row.has_failed)]);
+            hash.update([u8::from(row.error.is_some())]);
+            let error = row.error.as_deref().unwrap_or_default();
+            hash.update((error.len() as u64).to_le_bytes());
+            hash.update(error);
+            hash.update(row.frames.to_le_bytes());
             for drawn in &row.drawn {
                 match drawn {
                     Drawn::Number(number) => hash.update(number.to_bits().to_le_bytes()),
@@ -103,11 +119,13 @@ impl CaseTable {
                 hash.update(figure.count.to_le_bytes());
                 hash.update(figure.of.to_le_bytes());
             }
+            row.causes.iter().for_each(|count| hash.update(count.to_le_bytes()));
         }
         hex(hash.finalize())
     }
 
-    /// Writes the rows as Parquet: `case`, `seed`, `has_failed`, `set.PATH` for what was drawn, and NAME, NAME.count, NAME.of for each figure.
+    /// Writes the rows as Parquet: `case`, `seed`, `has_failed`, `error`, `frames`, `set.PATH` for what was drawn, NAME, NAME.count, NAME.of
+    /// for each figure, and `cause.VERDICT.CAUSE` for each cause.
     ///
     /// # Errors
     /// [`FileError`], of `path`, when the file cannot be written.
@@ -128,6 +146,8 @@ impl CaseTable {
             Column::new("case", rows().map(|row| row.case)),
             Column::new("seed", rows().map(|row| row.seed)),
             Column::new("has_failed", rows().map(|row| row.has_failed)),
+            Column::nullable_texts("error", rows().map(|row| row.error.as_ref())),
+            Column::new("frames", rows().map(|row| row.frames)),
         ];
         for (index, (name, is_number)) in self.drawn.iter().enumerate() {
             let name = format!("{SET}{name}");
@@ -151,6 +171,9 @@ impl CaseTable {
                 Column::new(format!("{name}.of"), figures().map(|figure| figure.of)),
             ]);
         }
+        for (index, name) in self.causes.iter().enumerate() {
+            columns.push(Column::new(format!("{CAUSE}{name}"), rows().map(|row| row.causes[index])));
+        }
         columns
     }
 
@@ -169,6 +192,11 @@ impl CaseTable {
         Ok(Self {
             drawn: drawn.collect(),
             figures: figures.filter(|name| !name.starts_with(SET)).map(str::to_owned).collect(),
+            causes: columns
+                .iter()
+                .filter_map(|column| column.name.strip_prefix(CAUSE))
+                .map(str::to_owned)
+                .collect(),
             rows: Vec::new(),
         })
     }
@@ -209,15 +237,23 @@ impl CaseTable {
         }
         let whole = |name: &str| cells::<u64>(path, batch, name, ColumnType::UInt64).map(Cells::values);
         let number = |name: &str| cells::<f64>(path, batch, name, ColumnType::Float64);
+        let texts = |name: &str| match batch.iter().find(|column| column.name() == name).map(Column::values) {
+            Some(ColumnValues::Utf8(texts)) => Ok(texts),
+            _ => Err(no_column(path, name, ColumnType::Utf8)),
+        };
         let failed = cells::<bool>(path, batch, "has_failed", ColumnType::Boolean)?.values();
-        let rows = whole("case")?.iter().zip(whole("seed")?).zip(failed);
+        let rows = whole("case")?.iter().zip(whole("seed")?).zip(failed).zip(whole("frames")?);
         let mut rows: Vec<CaseRow> = rows
-            .map(|((&case, &seed), &has_failed)| CaseRow {
+            .zip(texts("error")?.iter())
+            .map(|((((&case, &seed), &has_failed), &frames), error)| CaseRow {
                 case,
                 seed,
                 has_failed,
+                error: error.map(str::to_owned),
+                frames,
                 drawn: Vec::with_capacity(self.drawn.len()),
                 figures: Vec::with_capacity(self.figures.len()),
+                causes: Vec::with_capacity(self.causes.len()),
             })
             .collect();
         for (name, is_number) in &self.drawn {
@@ -226,11 +262,7 @@ impl CaseTable {
                 let numbers = number(&name)?.values();
                 rows.iter_mut().zip(numbers).for_each(|(row, &number)| row.drawn.push(Drawn::Number(number)));
             } else {
-                let found = batch.iter().find(|column| *column.name() == name).map(Column::values);
-                let Some(ColumnValues::Utf8(texts)) = found else {
-                    return Err(no_column(path, &name, ColumnType::Utf8));
-                };
-                let texts = texts.iter().map(Option::unwrap_or_default);
+                let texts = texts(&name)?.iter().map(Option::unwrap_or_default);
                 rows.iter_mut()
                     .zip(texts)
                     .for_each(|(row, text)| row.drawn.push(Drawn::Text(text.to_owned())));
@@ -244,13 +276,18 @@ impl CaseTable {
                 row.figures.push(CaseFigure { value, count, of });
             }
         }
+        for name in &self.causes {
+            let name = format!("{CAUSE}{name}");
+            let counts = cells::<u32>(path, batch, &name, ColumnType::UInt32)?.values();
+            rows.iter_mut().zip(counts).for_each(|(row, &count)| row.causes.push(count));
+        }
         self.rows.extend(rows);
         Ok(())
     }
 
     /// A table of the same columns.
     pub fn with_rows(&self, rows: Vec<CaseRow>) -> Self {
-        Self { drawn: self.drawn.clone(), figures: self.figures.clone(), rows }
+        Self { drawn: self.drawn.clone(), figures: self.figures.clone(), causes: self.causes.clone(), rows }
     }
 
     /// The number of each row's draw, from 0 in their order: points of a sweep have the draws of all other values in common, and the seed
@@ -293,6 +330,24 @@ impl CaseTable {
     }
 }
 
+#[cfg(test)]
+impl CaseRow {
+    /// A case of these figures, of which nothing was drawn.
+    pub(super) fn of(case: u64, seed: u64, figures: Vec<CaseFigure>) -> Self {
+        let (drawn, causes) = (Vec::new(), Vec::new());
+        Self { case, seed, has_failed: false, error: None, frames: 1, drawn, figures, causes }
+    }
+}
+
+#[cfg(test)]
+impl CaseTable {
+    /// Cases of these figures, of which nothing was drawn.
+    pub(super) fn of(figures: &[&str], rows: Vec<CaseRow>) -> Self {
+        let figures = figures.iter().map(|name| (*name).to_owned()).collect();
+        Self { drawn: IndexMap::new(), figures, causes: Vec::new(), rows }
+    }
+}
+
 fn no_column(path: &Path, name: &str, column_type: ColumnType) -> FileError {
     FileError::format(path, "Parquet", format!("it has no column `{name}` of the type {column_type}"))
 }
@@ -308,12 +363,16 @@ mod tests {
                 case: 0,
                 seed: 3,
                 has_failed: false,
+                error: None,
+                frames: of,
                 drawn: Vec::new(),
                 figures: vec![CaseFigure { value: None, count, of }],
+                causes: Vec::new(),
             };
             let table = CaseTable {
                 drawn: IndexMap::new(),
                 figures: vec![names::LINE_OF_SIGHT_RATE.to_owned()],
+                causes: Vec::new(),
                 rows: counts.iter().map(row).collect(),
             };
             table.attitude(granted)

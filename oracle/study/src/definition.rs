@@ -71,6 +71,15 @@ pub struct Case {
     pub source: ScenarioSource,
 }
 
+/// What was drawn for a case.
+pub(super) struct DrawnCase {
+    pub(super) number: u64,
+    pub(super) seed: u64,
+    pub(super) drawn: Vec<Drawn>,
+    /// The scenario with it.
+    values: Value,
+}
+
 impl Study {
     /// The attitude that its scenario grants to answers with a centroid alone.
     pub(super) fn granted_attitude(&self) -> Option<&str> {
@@ -302,7 +311,13 @@ impl Study {
 
     /// A table of this study without rows.
     pub fn table(&self) -> CaseTable {
-        CaseTable { drawn: self.drawn_columns(), figures: self.figures(), rows: Vec::new() }
+        let causes = self.scenario().world().causes();
+        CaseTable {
+            drawn: self.drawn_columns(),
+            figures: self.figures(),
+            causes: causes.iter().map(|(verdict, cause)| format!("{verdict}.{cause}")).collect(),
+            rows: Vec::new(),
+        }
     }
 
     /// Names of the figures that are recorded.
@@ -321,6 +336,26 @@ impl Study {
     /// # Errors
     /// A [`Failure`] when the values drawn make no scenario; the place is that of the value in the case's scenario.
     pub fn case(&self, number: u64) -> Result<Case, Failure> {
+        self.case_of(self.draw(number)?)
+    }
+
+    /// The scenario of a case.
+    ///
+    /// # Errors
+    /// As [`Study::case`].
+    pub(super) fn case_of(
+        &self,
+        DrawnCase { number, seed, drawn, values }: DrawnCase,
+    ) -> Result<Case, Failure> {
+        let name = format!("{}, case {number}", self.path.display());
+        Ok(Case { number, seed, drawn, source: self.base.with_values(&values, seed, name)? })
+    }
+
+    /// The values of a case.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a path that leads nowhere.
+    pub(super) fn draw(&self, number: u64) -> Result<DrawnCase, Failure> {
         let cells = self.sweep_points();
         let (mut cell, replicate) = (number % cells, number / cells);
         let mut values = self.base_values.clone();
@@ -357,9 +392,7 @@ impl Study {
         }
         // The same at every point of a sweep. TOML's whole numbers have a sign: one bit less.
         let seed = Seed { seed: self.file.seed, case: replicate }.streams(0, Effect::CaseSeed).word(0) >> 1;
-        let source =
-            self.base.with_values(&values, seed, format!("{}, case {number}", self.path.display()))?;
-        Ok(Case { number, seed, drawn, source })
+        Ok(DrawnCase { number, seed, drawn, values })
     }
 
     fn refuse_path(&self, at: &str, path: &ValuePath, expected: &str) -> Failure {

@@ -81,7 +81,18 @@ mod tests {
     fn row(case: u64) -> CaseRow {
         let figure = CaseFigure { value: Some(0.1 + 0.2), count: 3, of: 10 };
         let drawn = vec![Drawn::Number(1.0 / 3.0), Drawn::Text("a\nb".to_owned())];
-        CaseRow { case, seed: u64::MAX - case, has_failed: case == 1, drawn, figures: vec![figure] }
+        let error = (case == 2).then(|| "no\nscenario".to_owned());
+        let (figures, causes) = (vec![figure], vec![0, 7]);
+        CaseRow {
+            case,
+            seed: u64::MAX - case,
+            has_failed: case == 1,
+            error,
+            frames: 10,
+            drawn,
+            figures,
+            causes,
+        }
     }
 
     #[test]

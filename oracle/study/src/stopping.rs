@@ -94,7 +94,6 @@ fn most_frequent(values: impl Iterator<Item = f64>) -> usize {
 mod tests {
     use super::super::cases::{CaseFigure, CaseRow};
     use super::*;
-    use indexmap::IndexMap;
     use sim::randomness::{Effect, Seed, Stream, normal, uniform};
 
     fn stopped(
@@ -105,14 +104,12 @@ mod tests {
     ) -> (u64, f64) {
         let until = Until { figure: figure.to_owned(), half_width };
         let mut stopping = Stopping::of(Some(&until), points, 4000 * points);
-        let mut table =
-            CaseTable { drawn: IndexMap::new(), figures: vec![figure.to_owned()], rows: Vec::new() };
+        let mut table = CaseTable::of(&[figure], Vec::new());
         for draw in 0..4000 {
             let random = &mut Seed { seed: 5, case: study }.stream(draw, Effect::StudyParameter, 0);
             case(random, &mut |figure| {
                 let case = table.rows.len() as u64;
-                let figures = vec![figure];
-                table.rows.push(CaseRow { case, seed: draw, has_failed: false, drawn: Vec::new(), figures });
+                table.rows.push(CaseRow::of(case, draw, vec![figure]));
             });
             if let Some(cases) = stopping.enough(&table) {
                 assert_eq!(cases, table.rows.len() as u64);
@@ -163,13 +160,9 @@ mod tests {
         let row = |case: u64, others: u64| {
             let count = if case < others { 24 } else { 25 };
             let figures = vec![CaseFigure { value: Some(count as f64 / 25.0), count, of: 25 }];
-            CaseRow { case, seed: case, has_failed: false, drawn: Vec::new(), figures }
+            CaseRow::of(case, case, figures)
         };
-        let table = |others: u64| CaseTable {
-            drawn: IndexMap::new(),
-            figures: vec!["hit_rate".to_owned()],
-            rows: (0..100).map(|case| row(case, others)).collect(),
-        };
+        let table = |others| CaseTable::of(&["hit_rate"], (0..100).map(|case| row(case, others)).collect());
         let after = |others, half_width| waited(&Until { half_width, ..until.clone() }, &table(others), 100);
         assert_eq!(after(3, 0.03), Waited::NearlyConstant);
         assert_eq!(after(7, 0.03), Waited::NearlyConstant);

@@ -24,7 +24,7 @@ use indexmap::IndexMap;
 use pipeline::docking::{DockingConfig, DockingFactory};
 use scenario::run_file::RunFile;
 use scenario::{AttitudeChoice, DOCKING, DockingScenario};
-use score::docking::{DockingContext, DockingScore, DockingScorer, TrueField, names};
+use score::docking::{DockingContext, DockingScore, DockingScorer, Gross, MissCause, TrueField, names};
 use score::{Figure, FigureSpec, UnitTable};
 use serde_json::{Value, json};
 use sim::docking::{CameraConfig, DockingWorkspace, FieldExposure, FieldTruth};
@@ -195,6 +195,11 @@ impl World for DockingMission {
 
     fn figures() -> Vec<FigureSpec> {
         score::docking::figures()
+    }
+
+    fn causes() -> Vec<(&'static str, &'static str)> {
+        let missed = MissCause::CODES.map(|cause| ("missed", cause));
+        missed.into_iter().chain(Gross::ALL.map(|gross| ("wrong", gross.code()))).collect()
     }
 
     fn frame_count(&self) -> u64 {

@@ -23,8 +23,8 @@ use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
 use scenario::run_file::RunFile;
 use scenario::{AttitudeChoice, FarRangeScenario, STARTING_POINT, is_argon};
 use score::{
-    ARGON_TABLE_2, FarRangeJudgement, Figure, FigureSpec, GrantedAttitude, Score, ScoreContext, ScoreError,
-    UnitTable, WithinLimits, names,
+    ARGON_TABLE_2, Cause, FarRangeJudgement, Figure, FigureSpec, GrantedAttitude, Score, ScoreContext,
+    ScoreError, UnitTable, WithinLimits, names,
 };
 use serde_json::{Value, json};
 use sim::catalog::Catalog;
@@ -200,6 +200,11 @@ impl World for FarRangeMission {
 
     fn figures() -> Vec<FigureSpec> {
         score::figures()
+    }
+
+    fn causes() -> Vec<(&'static str, &'static str)> {
+        let of = |verdict| Cause::ALL.map(|cause| (verdict, cause.code()));
+        [of("missed"), of("wrong")].concat()
     }
 
     fn frame_count(&self) -> u64 {
