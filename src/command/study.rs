@@ -183,6 +183,7 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
         refuse_until(&study)?;
         check_dask()?;
     }
+    check_pipeline(&choice, &study)?;
     let shards = arguments.shard.map(|shard| shard.of).or(arguments.shards);
     let campaign = Campaign::open(&study, &choice, &arguments.out, shards)?;
     let jobs = arguments.jobs.map_or_else(default_jobs, usize::from);

@@ -2,6 +2,7 @@
 use std::collections::HashMap;
 
 use comfy_table::{Attribute, Cell};
+use pipeline::external::protocol::harmless;
 use run::figure_called;
 use score::{attitude_note, warm_up_note};
 use study::{CaseFigure, CaseRow, Estimate, Study, Summary, Waited, overall};
@@ -48,6 +49,12 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         let cases = summary.failed_cases;
         text.push_str(&format!("In {cases} of them the pipeline itself failed: it crashed, gave no answer in time, or none that can be read.\n"));
     }
+    if let Some(first) = summary.errors.first() {
+        text.push_str(&format!(
+            "{} cases cannot be run: their values make no scenario (`error` in cases.parquet). The first is case {}: {}\n",
+            summary.error_cases, first.case, harmless(&first.error)
+        ));
+    }
     text.push_str(&finish(table));
     text.push_str(
         "Intervals are of 95 %, over independent draws. All together: rates over all frames (Wilson, by the scatter between draws), other\n\
@@ -58,6 +65,16 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     }
     if let Some(note) = attitude_note(summary.attitude.as_deref()) {
         text.push_str(&format!("{note}\n"));
+    }
+    if !summary.causes.is_empty() {
+        let mut table = plain_table(styled);
+        table.set_header(["misses and wrong answers by cause", "frames", "share of all", "cases"].map(bold));
+        for (name, cause) in &summary.causes {
+            let share = cause.share.as_ref().map_or_else(|| "–".to_owned(), percents);
+            table.add_row([cause_words(name), cause.frames.to_string(), share, cause.cases.to_string()]);
+        }
+        text.push('\n');
+        text.push_str(&finish(table));
     }
     let by = &summary.worst_by;
     let by_label = label(by);
@@ -83,6 +100,19 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
             [c.parameter.clone(), format!("{:+.2}", c.correlation), interval]
         })
         .collect();
+    let is_constant = summary.figures.get(by).is_some_and(|figure| {
+        let values =
+            [figure.p05, figure.median, figure.p95].map(|quantile| quantile.map(|quantile| quantile.value));
+        figure.cases > 0 && values[0] == values[2]
+    });
+    if rows.is_empty() && !summary.worst.is_empty() {
+        let reason = if is_constant {
+            "it is the same in nearly all cases"
+        } else {
+            "there are too few cases, or nothing drawn is a number"
+        };
+        text.push_str(&format!("\n{by_label}: no correlation with what was drawn, as {reason}.\n"));
+    }
     if !rows.is_empty() {
         let mut table = plain_table(styled);
         table.set_header([&format!("{by_label} goes with"), "rank correlation", "95 %"].map(bold));
@@ -163,6 +193,18 @@ fn shown_difference(name: &str, estimate: &Estimate) -> String {
 fn signed(name: &str, value: f64) -> String {
     let sign = if value < 0.0 { "" } else { "+" };
     format!("{sign}{}", number(name, value))
+}
+
+/// A cause as in `missed.cut_by_roi`, in words.
+fn cause_words(name: &str) -> String {
+    name.replacen('.', ": ", 1).replace('_', " ")
+}
+
+/// A share with its interval.
+fn percents(share: &Estimate) -> String {
+    let bounds = share.low.zip(share.high);
+    let bounds = bounds.map(|(low, high)| format!(" ({} %–{} %)", percent(low), percent(high)));
+    format!("{} %{}", percent(share.value), bounds.unwrap_or_default())
 }
 
 /// A figure of the cases so far, in a few words: estimated anew after each twentieth more of them, so that it costs little however many

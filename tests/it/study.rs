@@ -228,6 +228,51 @@ fn a_study_stops_when_its_figure_is_known_well_enough() {
 }
 
 #[test]
+fn a_case_that_makes_no_scenario_is_a_row_with_its_error() {
+    let bench = bench();
+    let choice = |values: &str| {
+        let vary = "\n[[vary]]\npath = \"sensor.read_noise_e\"\nlaw = { kind = \"choice\", values = ";
+        format!("{}{vary}{values} }}\n", STUDY.replace("cases = 6", "cases = 12"))
+    };
+    bench.write("some.toml", choice("[5.0, 5.0, 5.0, -1.0]"));
+    let told = bench.boresight("study run some.toml --out out").done();
+    assert!(
+        told.stdout.contains("cannot be run") && told.stdout.contains("sensor.read_noise_e"),
+        "{}",
+        told.stdout
+    );
+    let summary: Value = serde_json::from_str(&bench.read("out/summary.json")).unwrap();
+    let errors = summary["error_cases"].as_u64().unwrap();
+    assert!((1..12).contains(&errors), "{errors}");
+    assert!(summary["errors"][0]["error"].as_str().unwrap().contains("-1"), "{summary}");
+    assert_eq!(summary["figures"]["hit_rate"]["cases"], 12 - errors);
+    // Nothing is run again.
+    let again = bench.boresight("study merge some.toml --out out --json").done().json();
+    assert_eq!(again, summary);
+    bench.write("none.toml", choice("[-1.0]"));
+    bench.boresight("study run none.toml --out none").refused(&["sensor.read_noise_e", "is -1"]);
+    assert!(!bench.path("none").exists());
+}
+
+/// Frames by cause add up to the rates of misses and wrong answers.
+#[test]
+fn misses_have_their_causes() {
+    let bench = bench();
+    bench.write("study.toml", STUDY);
+    let summary = bench.boresight("study run study.toml --out out --json").done().json();
+    for (verdict, rate) in [("missed.", "miss_rate"), ("wrong.", "wrong_rate")] {
+        let causes = summary["causes"].as_object().unwrap().iter();
+        let shares: f64 = causes
+            .filter(|(name, _)| name.starts_with(verdict))
+            .map(|(_, cause)| cause["share"]["value"].as_f64().unwrap())
+            .sum();
+        let all = summary["figures"][rate]["all"]["value"].as_f64().unwrap();
+        assert!((all - shares).abs() < 1e-12, "{rate}: {all} {shares}");
+    }
+    assert!(!summary["causes"].as_object().unwrap().is_empty());
+}
+
+#[test]
 fn docking_is_studied_too() {
     let bench = Bench::new();
     bench.write(
@@ -289,7 +334,7 @@ fn whole_images_are_drawn_above_a_floor_by_one_word_and_never_looked_at_below() 
         bench.boresight("study check study.toml").refused(parts);
         bench.boresight("study plan study.toml").refused(parts);
         bench.boresight("study run study.toml --out never --no-report").refused(parts);
-        fs::remove_dir_all(bench.path("never")).unwrap();
+        assert!(!bench.path("never").exists());
     };
     refused("low = 0.0165", "low = 0.016", &["thresholds.low", "is 0.016, 65 DN"]);
     refused("values = [67]", "values = [67, 100]", &["thresholds.low", "is 0.0165, 67 DN"]);

@@ -17,13 +17,13 @@ pub struct StandOffCross {
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub half_length_m: f64,
     /// Width of a bar, m.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub width_m: f64,
     /// Thickness of a bar, along y3, m.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub thickness_m: f64,
     /// Width of the post that carries the bars, seen from any side, m.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub post_width_m: f64,
 }
 

@@ -75,6 +75,9 @@ pub fn study_page(study: &StudyResult) -> Page {
         None => format!("{} cases.", summary.cases),
     };
     let mut sections = vec![figures(study)];
+    if !summary.causes.is_empty() {
+        sections.push(causes(summary));
+    }
     if !summary.sweep.is_empty() {
         sections.push(sweep(study));
     }
@@ -208,6 +211,23 @@ fn figures(study: &StudyResult) -> Section {
     let height = 110 + 30 * rates.len() as u32;
     let caption = "Rates over all frames, and how far the cases spread about them.";
     section.chart(Chart::new(caption, height, data, traces, layout)).table(table)
+}
+
+/// Why frames were missed or wrong.
+fn causes(summary: &Summary) -> Section {
+    let mut table = DataTable::new(["cause", "frames", "share of all, %", "cases"])
+        .caption("Frames of all cases that count; shares with 95 % intervals.");
+    let percent = |value: f64| format!("{:.2}", 100.0 * value);
+    for (name, cause) in &summary.causes {
+        let share = cause.share.as_ref().map_or_else(String::new, |share| {
+            let interval = share.low.zip(share.high);
+            let interval = interval.map(|(low, high)| format!(" ({} to {})", percent(low), percent(high)));
+            format!("{}{}", percent(share.value), interval.unwrap_or_default())
+        });
+        let words = name.replacen('.', ": ", 1).replace('_', " ");
+        table.push([words, cause.frames.to_string(), share, cause.cases.to_string()]);
+    }
+    Section::new("causes", "Misses and wrong answers by cause").table(table)
 }
 
 /// Every figure as a curve over the sweep, that of the worst cases first, and what each step of the sweep changes.

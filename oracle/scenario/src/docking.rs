@@ -19,6 +19,7 @@ pub struct DockingScenario {
     /// What it is, in one line.
     pub title: String,
     /// Seed of every random draw.
+    #[schemars(range(max = u64::MAX))]
     pub seed: u64,
     /// The moment of the first field, UTC, as in 2004-01-31T13:13:00Z.
     pub start_utc: String,

@@ -26,6 +26,7 @@ pub struct FarRangeScenario {
     /// What it is, in one line.
     pub title: String,
     /// Seed of every random draw but the detector's fixed pattern.
+    #[schemars(range(max = u64::MAX))]
     pub seed: u64,
     /// Which stars are drawn.
     #[serde(default)]

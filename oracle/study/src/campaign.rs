@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use files::Failure;
 
 use super::cases::{CaseRow, CaseTable};
-use super::definition::Study;
+use super::definition::{MOST_FAILED_CASES, Study};
 use super::engine::{Workers, run_cases};
 use super::evaluate::Evaluated;
 use super::record::StudyRecord;
@@ -23,10 +23,8 @@ pub struct Campaign<'a> {
     starts: Starts,
 }
 
-/// Cases that cannot be run, or in which the pipeline does not start, before it starts in any, that end a study: it would start in none.
-const MOST_FAILED_CASES: u64 = 10;
-
-/// What is known of the pipeline's starts in the cases that were run.
+/// What is known of the pipeline's starts in the cases that were run: where it starts in none of the first
+/// [`MOST_FAILED_CASES`], it would start in none.
 #[derive(Debug, Default)]
 struct Starts {
     has_started: AtomicBool,
@@ -35,16 +33,15 @@ struct Starts {
 
 impl Starts {
     /// Counts a case, and refuses to go on where there were too many without a start.
-    fn add(&self, case: &Evaluated) -> Result<(), Failure> {
+    fn add(&self, case: &Evaluated, cases: u64) -> Result<(), Failure> {
+        // Of a study of fewer cases none can be run: rows of errors alone are no study.
+        let most = if case.row.error.is_some() { MOST_FAILED_CASES.min(cases) } else { MOST_FAILED_CASES };
         if case.has_started || self.has_started.load(Ordering::Relaxed) {
             self.has_started.store(true, Ordering::Relaxed);
-        } else if self.failed_cases.fetch_add(1, Ordering::Relaxed) + 1 >= MOST_FAILED_CASES {
+        } else if self.failed_cases.fetch_add(1, Ordering::Relaxed) + 1 >= most {
             return Err(Failure::Usage(match (&case.row.error, &case.first_failure) {
                 (Some(error), _) => {
-                    format!(
-                        "none of the first {MOST_FAILED_CASES} cases can be run; of case {}: {error}",
-                        case.row.case
-                    )
+                    format!("none of the first {most} cases can be run; of case {}: {error}", case.row.case)
                 }
                 (None, first) => {
                     let reason = first.as_ref().map_or("", |first| &first.reason);
@@ -136,7 +133,7 @@ impl<'a> Campaign<'a> {
         let cases = cases.into_iter().collect();
         rows.extend(run_cases(self.study, cases, self.pipeline, workers, |case| {
             done(Known::Run(case));
-            self.starts.add(case)?;
+            self.starts.add(case, self.study.cases())?;
             // A pipeline that did not start may do so another time.
             if case.has_started { Ok(journal.add(&case.row)?) } else { Ok(()) }
         })?);

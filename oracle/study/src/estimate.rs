@@ -36,12 +36,22 @@ impl Estimate {
 ///
 /// [`CaseTable::draws`]: super::CaseTable::draws
 pub fn overall(name: &str, cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
-    let is_rate = figure_called(name).is_rate();
-    let sums = sums(is_rate, cases, draws);
+    if figure_called(name).is_rate() {
+        return share(cases, draws);
+    }
+    let sums = sums(false, cases, draws);
+    Some(Estimate::new(ratio(&sums)?, cluster_mean_interval(&sums)))
+}
+
+/// A rate over the frames of all cases together.
+pub(super) fn share(cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
+    let sums = sums(true, cases, draws);
+    Some(Estimate::new(ratio(&sums)?, cluster_rate_interval(&sums)))
+}
+
+fn ratio(sums: &[ClusterSum]) -> Option<f64> {
     let (sum, of) = sums.iter().fold((0.0, 0.0), |(sum, of), draw| (sum + draw.sum, of + draw.of));
-    let value = (of > 0.0).then(|| sum / of)?;
-    let interval = if is_rate { cluster_rate_interval(&sums) } else { cluster_mean_interval(&sums) };
-    Some(Estimate::new(value, interval))
+    (of > 0.0).then(|| sum / of)
 }
 
 /// What each draw adds to a figure: of a rate its frames, of another figure the values of its cases.

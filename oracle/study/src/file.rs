@@ -16,6 +16,7 @@ pub struct StudyFile {
     /// A built-in scenario, or the path of a scenario file, starting from the study's folder.
     pub scenario: String,
     /// Seed of all draws of the study; the seed of a case's scenario is made from it and the case's number.
+    #[schemars(range(max = u64::MAX))]
     pub seed: u64,
     /// Frames (docking: fields) of every case, `A..B`: from A up to and without B; absent: all of the scenario.
     pub frames: Option<String>,
@@ -80,7 +81,7 @@ pub struct Until {
     /// Half the width of its 95 % interval, in its own unit, > 0. Looked at after 16 draws (a draw is one case at every point of the
     /// sweep), 32, 48, from 256 on after a sixteenth more each time, and after all, however the study is cut. A figure that is the same in
     /// all but seven draws or fewer is not waited for: its scatter is not known.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e12))]
     pub half_width: f64,
 }
 

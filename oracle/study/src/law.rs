@@ -16,25 +16,31 @@ pub enum Law {
     /// Normal, cut off where limits are given (what is beyond is drawn again, in law).
     Normal {
         /// Mean, before any cutting.
+        #[schemars(range(min = -1e18, max = 1e18))]
         mean: f64,
         /// Standard deviation, before any cutting, > 0.
-        #[schemars(extend("exclusiveMinimum" = 0))]
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e18))]
         sigma: f64,
         /// Lower limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
         min: Option<f64>,
         /// Upper limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
         max: Option<f64>,
     },
     /// Uniform between two limits.
     Uniform {
         /// Lower limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
         min: f64,
         /// Upper limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
         max: f64,
     },
     /// Uniform over the whole numbers from `min` to `max`, both included: for counts and seeds.
     Whole {
         /// Smallest number, from 0.
+        #[schemars(range(max = 1_u64 << 53))]
         min: u64,
         /// Largest number, to 2⁵³.
         #[schemars(range(max = 1_u64 << 53))]
@@ -43,7 +49,7 @@ pub enum Law {
     /// The logarithm is normal.
     LogNormal {
         /// Median, > 0.
-        #[schemars(extend("exclusiveMinimum" = 0))]
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e18))]
         median: f64,
         /// Standard deviation of the natural logarithm, > 0.
         #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 50))]
@@ -52,10 +58,13 @@ pub enum Law {
     /// Triangular.
     Triangular {
         /// Lower limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
         min: f64,
         /// Where the density is highest.
+        #[schemars(range(min = -1e18, max = 1e18))]
         mode: f64,
         /// Upper limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
         max: f64,
     },
     /// One of some values, of any type.
@@ -64,7 +73,7 @@ pub enum Law {
         #[schemars(length(min = 1))]
         values: Vec<Value>,
         /// How often each comes, in proportion; absent: equally often.
-        #[schemars(inner(range(min = 0)))]
+        #[schemars(inner(range(min = 0, max = 1e18)))]
         weights: Option<Vec<f64>>,
     },
     /// An attitude without a preferred direction. The path is a table with `ra_deg`, `dec_deg`, `roll_deg` (a boresight uniform on

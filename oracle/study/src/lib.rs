@@ -68,5 +68,5 @@ pub use sensitivity::{RankCorrelation, SobolIndex};
 
 pub use shard::{Plan, ShardManifest, ShardStore};
 pub use stopping::Waited;
-pub use summary::{FigureSummary, Summary, SweepDifference, SweepPoint, WorstCase};
+pub use summary::{CaseError, CauseSummary, FigureSummary, Summary, SweepDifference, SweepPoint, WorstCase};
 pub use tried::{StudyPipeline, command_line};

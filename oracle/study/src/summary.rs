@@ -12,7 +12,7 @@ use statistics::{
 use super::cases::{CaseFigure, CaseRow, CaseTable, Drawn};
 use super::definition::Study;
 use super::design::DesignKind;
-use super::estimate::{Estimate, RESAMPLES, overall, pick, quantiles, sorted_quantile, stream, sums};
+use super::estimate::{Estimate, RESAMPLES, overall, pick, quantiles, share, sorted_quantile, stream, sums};
 use super::sensitivity::{RankCorrelation, SobolIndex, sobol_index};
 use super::stopping::{Waited, waited};
 use super::tried::StudyPipeline;
@@ -36,6 +36,26 @@ pub struct FigureSummary {
     pub p95: Option<Estimate>,
 }
 
+/// How often a cause kept frames from being right.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CauseSummary {
+    /// Frames of all cases together.
+    pub frames: u64,
+    /// Cases with such a frame.
+    pub cases: u64,
+    /// Share of all frames that count, with the interval of a rate.
+    pub share: Option<Estimate>,
+}
+
+/// A case that cannot be run.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CaseError {
+    /// Its number.
+    pub case: u64,
+    /// Why its values make no scenario.
+    pub error: String,
+}
+
 /// Figures of the cases at one point of the sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepPoint {
@@ -45,6 +65,9 @@ pub struct SweepPoint {
     pub cases: u64,
     /// Figures by name.
     pub figures: IndexMap<String, FigureSummary>,
+    /// Misses and wrong answers by cause, as in `missed.cut_by_roi`; causes that did not occur are left out.
+    #[serde(default)]
+    pub causes: IndexMap<String, CauseSummary>,
 }
 
 /// What one step of the sweep makes of a figure: the difference of two points that have the same draws.
@@ -101,6 +124,12 @@ pub struct Summary {
     pub of: u64,
     /// Cases in which the pipeline itself failed: it crashed, gave no answer in time, or none that can be read.
     pub failed_cases: u64,
+    /// Cases that cannot be run, as their values make no scenario.
+    #[serde(default)]
+    pub error_cases: u64,
+    /// The first of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub errors: Vec<CaseError>,
     /// Independent draws among them: with a sweep, every draw is a case at each of its points.
     #[serde(default)]
     pub draws: u64,
@@ -111,6 +140,9 @@ pub struct Summary {
     pub waited: Option<Waited>,
     /// Figures by name.
     pub figures: IndexMap<String, FigureSummary>,
+    /// Misses and wrong answers by cause, as in `missed.cut_by_roi`; causes that did not occur are left out.
+    #[serde(default)]
+    pub causes: IndexMap<String, CauseSummary>,
     /// The same at each point of the sweep; empty without one.
     pub sweep: Vec<SweepPoint>,
     /// Differences between points of the sweep that differ in one value, each draw compared with itself.
@@ -147,7 +179,10 @@ impl Summary {
             draws: table.draws().into_iter().max().map_or(0, |last| last as u64 + 1),
             is_narrow_enough: waited == Some(Waited::NarrowEnough),
             waited,
+            error_cases: table.rows.iter().filter(|row| row.error.is_some()).count() as u64,
+            errors: errors(table),
             figures: figures(table),
+            causes: causes(table),
             differences: differences(&points),
             sweep: points.into_iter().map(|point| point.summary).collect(),
             correlations: correlations(table),
@@ -177,6 +212,28 @@ fn figure(name: &str, cases: &[CaseFigure], draws: &[usize]) -> FigureSummary {
     FigureSummary { cases: count, all: overall(name, cases, draws), p05, median, p95 }
 }
 
+fn causes(table: &CaseTable) -> IndexMap<String, CauseSummary> {
+    let draws = table.draws();
+    let summary = |(place, name): (usize, &String)| {
+        let count =
+            |row: &CaseRow| CaseFigure { value: None, count: u64::from(row.causes[place]), of: row.frames };
+        let cases: Vec<CaseFigure> = table.rows.iter().map(count).collect();
+        let frames = cases.iter().map(|case| case.count).sum();
+        let share = share(&cases, &draws);
+        let cases = cases.iter().filter(|case| case.count > 0).count() as u64;
+        (frames > 0).then(|| (name.clone(), CauseSummary { frames, cases, share }))
+    };
+    let mut causes: IndexMap<_, _> = table.causes.iter().enumerate().filter_map(summary).collect();
+    causes.sort_by(|_, a, _, b| b.frames.cmp(&a.frames));
+    causes
+}
+
+/// The first cases that cannot be run.
+fn errors(table: &CaseTable) -> Vec<CaseError> {
+    let error = |row: &CaseRow| Some(CaseError { case: row.case, error: row.error.clone()? });
+    table.rows.iter().filter_map(error).take(WORST).collect()
+}
+
 /// A point of the sweep with its cases.
 struct Point {
     summary: SweepPoint,
@@ -198,6 +255,7 @@ fn sweep(study: &Study, table: &CaseTable) -> Vec<Point> {
             at: table.drawn.keys().cloned().zip(at).collect(),
             cases: table.rows.len() as u64,
             figures: figures(&table),
+            causes: causes(&table),
         };
         Point { summary, table }
     };

@@ -16,6 +16,7 @@ pub struct RequirementFile {
     pub title: String,
     /// Seed of the simulations that confirm.
     #[serde(default)]
+    #[schemars(range(max = u64::MAX))]
     pub seed: u64,
     /// The camera.
     pub camera: CameraTable,

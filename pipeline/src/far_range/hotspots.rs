@@ -43,6 +43,12 @@ pub enum HotspotConfig {
     /// Known hotspots; nothing else is one.
     List {
         /// Pixels as (column, row), the first pixel is (0, 0).
+        #[schemars(extend("items" = {
+            "type": "array",
+            "items": { "type": "integer", "minimum": 0, "maximum": 16383 },
+            "minItems": 2,
+            "maxItems": 2,
+        }))]
         pixels: Vec<(u32, u32)>,
     },
 }

@@ -18,6 +18,7 @@ const MAX_NAME: usize = 16;
 #[serde(deny_unknown_fields)]
 pub struct DockingSimulation {
     /// Seed of every random draw.
+    #[schemars(range(max = u64::MAX))]
     pub seed: u64,
     /// The moment of the first field, UTC, as in 2004-01-31T13:13:00Z.
     pub start_utc: String,
@@ -47,7 +48,7 @@ pub struct CameraConfig {
     pub name: String,
     /// Least range at which it is in use, m; decreasing along the list, and 0 for the last.
     #[serde(default)]
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 1e6))]
     pub until_range_m: f64,
     /// Geometry.
     pub camera: Camera,

@@ -21,6 +21,7 @@ pub struct GlintConfig {
     #[schemars(inner(range(min = -100, max = 100)))]
     pub position_m: [f64; 3],
     /// Its normal, target frame, of any length but 0.
+    #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub normal: [f64; 3],
     /// Mirroring area × concentration, m², 0 to 1: a flat mirror of area A and reflectance ρ whose waviness fills the lobe
     /// has ρ A/(8π w²), w in radians.

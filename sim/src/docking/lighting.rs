@@ -57,6 +57,7 @@ pub struct SunConfig {
     pub rate_deg_s: f64,
     /// Axis of the turn, target frame, of any length but 0.
     #[serde(default = "default_axis")]
+    #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub rate_axis: [f64; 3],
     /// Irradiance of a surface that faces the Sun, 1e-6 to 1e6; at π a white surface has the radiance 1.
     #[serde(default = "default_irradiance")]

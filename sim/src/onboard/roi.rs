@@ -5,7 +5,7 @@
 //! keeps its top and loses its bottom. That cuts in y, not in x, and spoils the declination. A scan by columns cuts in x.
 
 use contract::bounds::{self, require};
-use contract::{OutOfRange, Window};
+use contract::{Camera, OutOfRange, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -43,14 +43,16 @@ pub struct RoiConfig {
     #[schemars(range(min = 1, max = 10000))]
     pub count: usize,
     /// Columns of a region, 1 to the columns of the detector.
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = Camera::MAX_SIDE_PX))]
     pub columns: usize,
     /// Rows of a region, 1 to the rows of the detector.
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = Camera::MAX_SIDE_PX))]
     pub rows: usize,
     /// Column of the region in which the first bright pixel of an object lies, from 0, below `columns`.
+    #[schemars(range(max = Camera::MAX_SIDE_PX))]
     pub anchor_column: usize,
     /// Row of the region in which the first bright pixel of an object lies, from 0, below `rows`.
+    #[schemars(range(max = Camera::MAX_SIDE_PX))]
     pub anchor_row: usize,
     /// A pixel is bright when its digital number is above this, 0 to 65535.
     pub threshold_dn: u16,

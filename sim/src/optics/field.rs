@@ -17,6 +17,7 @@ pub struct OpticsConfig {
     pub cos_fourth: Switch,
     /// Mechanical vignetting: v₁, v₂, v₃ of the relative transmission 1 − v₁ρ² − v₂ρ⁴ − v₃ρ⁶, which is above 0 and at most
     /// 1 up to ρ = 1.
+    #[schemars(inner(range(min = -100, max = 100)))]
     pub vignetting: [f64; 3],
     /// Growth a of the point-spread function: at ρ it is 1 + aρ² times as wide as at the principal point; −0.5 to 5.
     #[schemars(range(min = -0.5, max = 5))]

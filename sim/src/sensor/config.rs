@@ -89,8 +89,10 @@ pub enum HotLaw {
 #[serde(deny_unknown_fields)]
 pub struct HotPixelConfig {
     /// How many, at most a tenth of all pixels; 0 for none.
+    #[schemars(range(max = 26_843_545))]
     pub count: usize,
     /// Seed of this piece of hardware; not the seed of the scenario.
+    #[schemars(range(max = u64::MAX))]
     pub seed: u64,
     /// Median of their dark current, electrons a second, 0 to 1e9.
     #[schemars(range(min = 0, max = 1e9))]
@@ -121,7 +123,7 @@ pub struct SensorConfig {
     #[schemars(range(min = 0.05, max = 1e5))]
     pub gain_e_per_dn: f64,
     /// Digital number of a pixel without electrons, 0 to less than 2^bit_depth − 1; fractions are allowed.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 65535))]
     pub bias_dn: f64,
     /// Electrons that a pixel holds, 1 to 1e9; more are lost, or spill along the column with `blooming`.
     #[schemars(range(min = 1, max = 1e9))]

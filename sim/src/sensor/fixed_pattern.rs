@@ -27,6 +27,7 @@ pub enum DarkLaw {
 #[serde(deny_unknown_fields, default)]
 pub struct FixedPatternConfig {
     /// Seed of this piece of hardware; not the seed of the scenario.
+    #[schemars(range(max = u64::MAX))]
     pub seed: u64,
     /// Photo-response non-uniformity (PRNU): standard deviation of the pixels' sensitivity to light as a fraction of its
     /// mean, 0 to 0.3. Normal, cut at 0.
@@ -40,9 +41,11 @@ pub struct FixedPatternConfig {
     /// Standard deviation of the columns' offsets, which are added to every frame, electrons, 0 to 500. Normal.
     #[schemars(range(min = 0, max = 500))]
     pub column_offset_e: f64,
-    /// Number of dead pixels, at most a tenth of all; they collect nothing, neither light nor dark current.
+    /// Number of dead pixels, at most a tenth of all (of the largest detector 26843545); they collect nothing, neither light nor dark current.
+    #[schemars(range(max = 26_843_545))]
     pub dead_pixels: usize,
     /// Number of dead columns, at most a tenth of all.
+    #[schemars(range(max = 1638))]
     pub dead_columns: usize,
 }
 

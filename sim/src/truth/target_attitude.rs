@@ -59,6 +59,7 @@ pub enum TargetAttitudeConfig {
         #[schemars(range(min = -360, max = 360))]
         psi_deg: f64,
         /// The axis in the body frame, of any length but 0.
+        #[schemars(inner(range(min = -1e6, max = 1e6)))]
         axis: [f64; 3],
         /// Rate, by the right-hand rule about the axis, degrees a second, −360 to 360.
         #[schemars(range(min = -360, max = 360))]

@@ -60,7 +60,7 @@ fn numbers_dates_and_names_of_scenarios() {
         ("step_factor = 1.189207115002721", "step_factor = 1.0", &["shutter.step_factor"]),
         ("min_s = 0.001", "min_s = 0.9", &["shutter.min_s", "shutter.max_s"]),
         ("bias_dn = 40.0", "bias_dn = 5000.0", &["sensor.bias_dn"]),
-        ("count = 10\n", "count = 4000000000\n", &["sensor.hot_pixels.count", "a tenth"]),
+        ("count = 10\n", "count = 4000000\n", &["sensor.hot_pixels.count", "a tenth"]),
         ("name = \"first orbit\"", "name = \"\"", &["schedule[0].name", "empty"]),
         ("source = \"hipparcos2\"", "source = \".\"", &["not a regular file"]),
         ("source = \"hipparcos2\"", "source = \"\"", &["catalog.source", "is empty"]),

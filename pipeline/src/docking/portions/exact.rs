@@ -23,12 +23,12 @@ pub struct ExactPortionConfig {
     #[schemars(range(min = 0, max = 1))]
     pub forgetting: f64,
     /// A field is left out when its pose is off the motion by more than this normalised square (chi-square of 6 degrees of
-    /// freedom), greater than 0; where the portion's fields scatter more than they say, by as much more.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    /// freedom), above 0 to 1e12; where the portion's fields scatter more than they say, by as much more.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e12))]
     pub field_gate: f64,
     /// The prior is dropped, and the motion begins anew, when it is off the portion's own motion by more than this normalised
-    /// square (chi-square of 12 degrees of freedom), greater than 0: a manoeuvre, not noise.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    /// square (chi-square of 12 degrees of freedom), above 0 to 1e12: a manoeuvre, not noise.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e12))]
     pub prior_gate: f64,
 }
 

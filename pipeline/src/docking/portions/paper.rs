@@ -14,8 +14,8 @@ use crate::docking::pose::paper_pose::{PaperMeasurement, PaperTarget};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct PaperPortionConfig {
-    /// w1, w2, w3: weights of the squared differences of Xc − Xo, Yc − Yo and R, each greater than 0.
-    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
+    /// w1, w2, w3: weights of the squared differences of Xc − Xo, Yc − Yo and R, each above 0 to 1e12.
+    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0, "maximum": 1e12 }))]
     pub weights: [f64; 3],
     /// q: what is left of the weight of a portion's position one portion later, 0 to 1.
     #[schemars(range(min = 0, max = 1))]

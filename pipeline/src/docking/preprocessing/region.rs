@@ -18,12 +18,16 @@ use crate::docking::pose::geometry::project;
 #[serde(deny_unknown_fields)]
 pub struct Rectangle {
     /// First column, px.
+    #[schemars(range(min = -1e5, max = 1e5))]
     pub first_column: f64,
     /// First row, px.
+    #[schemars(range(min = -1e5, max = 1e5))]
     pub first_row: f64,
     /// Last column, px, not before the first.
+    #[schemars(range(min = -1e5, max = 1e5))]
     pub last_column: f64,
     /// Last row, px, not before the first.
+    #[schemars(range(min = -1e5, max = 1e5))]
     pub last_row: f64,
 }
 

@@ -26,24 +26,25 @@ pub struct BlanketsTable {
     /// Where the figures are from, or `assumed: why`.
     pub source: String,
     /// Seed of the layout: places of seams, width of gaps, reflectances.
+    #[schemars(range(max = u64::MAX))]
     pub seed: u64,
     /// Rings of tiles, 1 to 20.
     #[schemars(range(min = 1, max = 20))]
     pub rings: usize,
     /// Width of a ring, m, positive; all of them fit inside the rim.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub ring_width_m: f64,
     /// Width of a tile along its ring, m, about which they vary; positive.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub tile_width_m: f64,
     /// Mean gap about a tile, m, 0 or more, less than a quarter of a tile.
-    #[schemars(range(min = 0))]
+    #[schemars(range(min = 0, max = 100))]
     pub gap_m: f64,
     /// Share of tiles that are missing, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub missing_fraction: f64,
     /// How far the tiles lie in front of the face, m, positive, less than the docking unit stands out.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub thickness_m: f64,
     /// Least and greatest Lambertian reflectance, 0 to 1.
     #[schemars(inner(range(min = 0, max = 1)))]

@@ -83,7 +83,7 @@ pub enum Body {
         #[schemars(inner(range(min = 1, max = 64)))]
         cells: [usize; 2],
         /// Gap between cells, m, 0 or more, less than a cell.
-        #[schemars(range(min = 0))]
+        #[schemars(range(min = 0, max = 100))]
         gap_m: f64,
         /// Lambertian reflectance, 0 to 1.
         #[schemars(range(min = 0, max = 1))]

@@ -27,16 +27,16 @@ pub struct CrossTable {
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 10))]
     pub half_length_m: f64,
     /// Width of a bar, m, positive.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub width_m: f64,
     /// Thickness of a bar along y3, m, positive.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub thickness_m: f64,
     /// Lambertian reflectance of the bars, 0 to 1.
     #[schemars(range(min = 0, max = 1))]
     pub reflectance: f64,
     /// Radius of the post, m, positive, at most half the width of a bar.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub post_radius_m: f64,
     /// Lambertian reflectance of the post, 0 to 1.
     #[schemars(range(min = 0, max = 1))]

@@ -33,13 +33,13 @@ pub struct DockingUnitTable {
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub outer_radius_m: f64,
     /// Inner radius of the ring, m, more than that of the cone.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub inner_radius_m: f64,
     /// How far the flange between ring and cone lies behind the front of the ring, m, positive.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub recess_m: f64,
     /// Radius of the cone's opening, m, positive.
-    #[schemars(range(min = 0.01))]
+    #[schemars(range(min = 0.01, max = 100))]
     pub cone_radius_m: f64,
     /// How far the floor of the cone lies behind the front of the ring, m, more than the recess.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
@@ -66,7 +66,7 @@ pub struct BlockRing {
     #[schemars(range(min = -360, max = 360))]
     pub first_angle_deg: f64,
     /// Size along the radius, across it and along y3, m, positive; along the radius less than the ring is wide.
-    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0 }))]
+    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0, "maximum": 100 }))]
     pub size_m: [f64; 3],
     /// Lambertian reflectance, 0 to 1.
     #[schemars(range(min = 0, max = 1))]

@@ -52,16 +52,16 @@ pub struct MarksTable {
 #[serde(deny_unknown_fields)]
 pub struct MarkRing {
     /// Radius of the circle through the marks' centres, m, positive.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub circle_radius_m: f64,
     /// How many, 1 to 64.
     #[schemars(range(min = 1, max = 64))]
     pub count: usize,
     /// Length of a mark along the radius, m, positive.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub length_m: f64,
     /// Width of a mark across the radius, m, positive.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub width_m: f64,
     /// Angle of the first mark, degrees from +y1 towards +y2, −360 to 360; the others follow in that sense.
     #[schemars(range(min = -360, max = 360))]
@@ -73,6 +73,7 @@ pub struct MarkRing {
 #[serde(deny_unknown_fields)]
 pub struct MarkQuad {
     /// Corners (y1, y2), m, counter-clockwise seen from the front.
+    #[schemars(inner(inner(range(min = -100, max = 100))))]
     pub corners_m: [[f64; 2]; 4],
 }
 

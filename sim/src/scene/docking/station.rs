@@ -28,13 +28,13 @@ pub struct StationTable {
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub radius_m: f64,
     /// How far the face lies behind the disk's plane, m, more than the docking unit's front does.
-    #[schemars(range(max = 100))]
+    #[schemars(range(min = -100, max = 100))]
     pub depth_m: f64,
     /// How far the module's wall goes on behind the face, m, positive.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub length_m: f64,
     /// Width of the bare rim of the face, m, positive.
-    #[schemars(extend("exclusiveMinimum" = 0))]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
     pub rim_m: f64,
     /// Lambertian reflectance of rim and wall, 0 to 1.
     #[schemars(range(min = 0, max = 1))]

@@ -16,9 +16,11 @@ pub struct PlateConfig {
     #[schemars(inner(range(min = -200, max = 200)))]
     pub centre_m: [f64; 3],
     /// Direction out of its front, body frame, of any length but 0.
+    #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub normal: [f64; 3],
     /// Direction of its height, body frame, of any length but 0, not along the normal; its part along the normal is taken
     /// away.
+    #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub up: [f64; 3],
     /// Extent across `up`, m, above 0, at most 200.
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 200))]
