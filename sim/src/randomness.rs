@@ -66,6 +66,8 @@ pub enum Effect {
     Bootstrap = 63,
     /// Which blocks a gate exchanges between baseline and result (addressed with the number of blocks).
     BlockExchange = 64,
+    /// Which of equally bad cases of a study are named (addressed with the study's seed and the case).
+    WorstCases = 65,
 }
 
 /// The generator behind every draw.

@@ -415,18 +415,45 @@ fn replay(arguments: &ReplayArguments, output: &Output) -> Result<Answer, Failur
 
 fn check(arguments: &CheckArguments, output: &Output) -> Result<Answer, Failure> {
     let study = Study::read(&arguments.study)?;
-    check_pipeline(&arguments.pipeline.choice(&[]), &study)?;
+    let choice = arguments.pipeline.choice(&[]);
+    check_pipeline(&choice, &study)?;
+    let extremes = study.extremes();
+    let progress = output.progress_of(extremes.len() as u64, "cases", &study.name);
+    for case in &extremes {
+        study.case(*case)?.source.prepare(Options::default())?;
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    check_answer(&choice, &study)?;
     let document = serde_json::json!({
         "study": study.name, "title": study.file.title, "cases": study.cases(), "hash": study.hash(),
-        "parameters": study.drawn_columns().keys().collect::<Vec<_>>(), "figures": study.figures(),
+        "parameters": study.drawn_columns().keys().collect::<Vec<_>>(), "figures": study.figures(), "checked_cases": extremes,
     });
     let text = format!(
-        "{}: {} cases of {} parameters, {} figures",
+        "{}: {} cases of {} parameters, {} figures; {} cases at the limits of the design can be run",
         study.name,
         study.cases(),
         study.drawn_columns().len(),
-        study.figures().len()
+        study.figures().len(),
+        extremes.len()
     );
     output.answer(&document, text)?;
     Ok(Answer::Yes)
+}
+
+/// Asks a program for its answer to the first frame of the first case: one that is not there, or does not speak the protocol, is refused.
+fn check_answer(choice: &PipelineChoice, study: &Study) -> Result<(), Failure> {
+    if choice.is_built_in(study.scenario().world().code()) {
+        return Ok(());
+    }
+    let scratch = super::scratch_directory()?;
+    let prepared = study.case(0)?.source.prepare(Options::default())?;
+    let factory = prepared.factory(choice, scratch.path())?;
+    let first = study.frames(prepared.frame_count())?.start;
+    match prepared.score(first..first + 1, &factory)?.first_failure {
+        None => Ok(()),
+        Some(FirstFailure { frame, reason }) => {
+            Err(Failure::Usage(format!("the pipeline failed at frame {frame} of case 0: {reason}")))
+        }
+    }
 }

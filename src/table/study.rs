@@ -149,6 +149,10 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         }
         text.push('\n');
         text.push_str(&finish(table));
+        let more = summary.worst_of.saturating_sub(summary.worst.len() as u64);
+        if more > 0 {
+            text.push_str(&format!("{more} more cases are as bad as the last of these.\n"));
+        }
     }
     text
 }

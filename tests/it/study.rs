@@ -246,12 +246,37 @@ fn a_case_that_makes_no_scenario_is_a_row_with_its_error() {
     assert!((1..12).contains(&errors), "{errors}");
     assert!(summary["errors"][0]["error"].as_str().unwrap().contains("-1"), "{summary}");
     assert_eq!(summary["figures"]["hit_rate"]["cases"], 12 - errors);
+    // The check looks at each value of a choice, whatever case it comes in.
+    bench.boresight("study check some.toml").refused(&["sensor.read_noise_e", "is -1"]);
     // Nothing is run again.
     let again = bench.boresight("study merge some.toml --out out --json").done().json();
     assert_eq!(again, summary);
     bench.write("none.toml", choice("[-1.0]"));
     bench.boresight("study run none.toml --out none").refused(&["sensor.read_noise_e", "is -1"]);
     assert!(!bench.path("none").exists());
+}
+
+#[test]
+fn a_damaged_plan_is_told_as_such() {
+    let bench = bench();
+    bench.write("study.toml", STUDY);
+    bench.boresight("study run study.toml --out out --shard 1/2").done();
+    let plan = bench.read("out/plan.json");
+    for (old, new) in [("\"cases\": 6", "\"cases\": 7"), ("\"shards\": 2", "\"shards\": 3"), ("{", "[")] {
+        assert_ne!(plan.replacen(old, new, 1), plan, "{old}");
+        bench.write("out/plan.json", plan.replacen(old, new, 1));
+        bench.boresight("study run study.toml --out out --shard 2/2").refused(&[
+            "plan.json",
+            "is damaged",
+            "delete it",
+        ]);
+    }
+    // As the message says.
+    fs::remove_file(bench.path("out/plan.json")).unwrap();
+    bench.boresight("study run study.toml --out out --shard 2/2").done();
+    bench.boresight("study merge study.toml --out out").done();
+    let missing = ["study", "check", "study.toml", "--pipeline", "exec:python3 missing.py"];
+    bench.boresight_words(&missing).refused(&["the pipeline failed", "missing.py"]);
 }
 
 /// Frames by cause add up to the rates of misses and wrong answers.

@@ -513,5 +513,10 @@ fn worst(study: &StudyResult) -> Section {
         cells.push(case.replay.clone());
         table.push(cells);
     }
-    section.text(format!("Those whose {} is {way}.", figure_called(&summary.worst_by).words)).table(table)
+    let more = match summary.worst_of.saturating_sub(summary.worst.len() as u64) {
+        0 => String::new(),
+        more => format!(" {more} more cases are as bad as the last of these."),
+    };
+    let words = figure_called(&summary.worst_by).words;
+    section.text(format!("Those whose {words} is {way}.{more}")).table(table)
 }

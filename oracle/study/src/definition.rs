@@ -1,4 +1,5 @@
 //! A study that was read and checked, and the scenarios of its cases.
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -250,6 +251,44 @@ impl Study {
             }
         }
         Ok(())
+    }
+
+    /// Cases at the limits of the design: of every parameter that varies those where it is smallest and largest among all cases (the first
+    /// 100,000 draws), of a choice one of each value, at the first and the last point of the sweep; and every point of the sweep once.
+    /// At most a thousand, in order.
+    pub fn extremes(&self) -> BTreeSet<u64> {
+        const MOST_DRAWS: u64 = 100_000;
+        const MOST_CASES: usize = 1000;
+        let points = self.sweep_points();
+        let draws = (self.cases() / points).min(MOST_DRAWS);
+        let mut found = BTreeSet::from([0]);
+        let mut ends: Vec<Option<[(f64, u64); 2]>> = Vec::new();
+        let mut chosen = BTreeSet::new();
+        for draw in 0..draws {
+            let unit = self.design.point(draw);
+            ends.resize(unit.len(), None);
+            for (end, &u) in ends.iter_mut().zip(&unit) {
+                let [low, high] = end.get_or_insert([(u, draw); 2]);
+                // Values grow with the place in their law, or fall with it: the ends are the same.
+                *low = if u < low.0 { (u, draw) } else { *low };
+                *high = if u > high.0 { (u, draw) } else { *high };
+            }
+            let mut unit = unit.iter().copied();
+            for (place, varied) in self.vary.iter().enumerate() {
+                let u: Vec<f64> = unit
+                    .by_ref()
+                    .take(self.file.vary.get(place).map_or(1, |dispersion| dispersion.law.dimensions()))
+                    .collect();
+                let is_choice = matches!(varied.law, Drawable::Law(Law::Choice { .. }));
+                let value = u.first().filter(|_| is_choice).map(|u| varied.law.value(*u).to_string());
+                if value.is_some_and(|value| chosen.insert((place, value))) {
+                    found.insert(draw);
+                }
+            }
+        }
+        found.extend(ends.into_iter().flatten().flatten().map(|(_, draw)| draw));
+        let at_ends = found.into_iter().flat_map(|draw| [draw * points, draw * points + points - 1]);
+        (0..points).chain(at_ends).take(MOST_CASES).collect()
     }
 
     /// SHA-256 of all that the rows depend on but the pipeline: the study, its scenario, the content of the files that they read; hexadecimal.

@@ -8,6 +8,7 @@ use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use files::sha256::sha256_hex;
 use files::{Checksums, Earlier, Failure, FileError, WholeFile};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -38,6 +39,9 @@ pub struct Plan {
     pub cases: u64,
     /// Number of shards.
     pub shards: u64,
+    /// SHA-256 of all that stands before it: a plan that was damaged is not taken for another study's.
+    #[serde(default)]
+    pub sha256: String,
 }
 
 /// What a shard's file says of itself.
@@ -72,12 +76,31 @@ impl Plan {
                 "--shards is {shards}, expected 1 to the number of cases, {cases}"
             )));
         }
-        Ok(Self {
-            study: study.name.clone(),
-            hash,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            cases,
-            shards,
+        let (study, version) = (study.name.clone(), env!("CARGO_PKG_VERSION").to_owned());
+        let mut plan = Self { study, hash, version, cases, shards, sha256: String::new() };
+        plan.sha256 = plan.own_sha256();
+        Ok(plan)
+    }
+
+    fn own_sha256(&self) -> String {
+        let Self { study, hash, version, cases, shards, sha256: _ } = self;
+        sha256_hex(format!("{study:?} {hash} {version:?} {cases} {shards}"))
+    }
+
+    /// Reads the plan of a folder, if it has one.
+    ///
+    /// # Errors
+    /// [`FileError`] when it cannot be read, and [`Failure::Usage`] when it is damaged: what it says is not what was written.
+    fn read(path: &Path) -> Result<Self, Failure> {
+        let text = sim::regular_file::read_text(path, 1 << 20)
+            .map_err(|source| FileError::io(path, "read", source))?;
+        let plan: Option<Self> = serde_json::from_str(&text).ok();
+        plan.filter(|plan| plan.sha256 == plan.own_sha256()).ok_or_else(|| {
+            Failure::Usage(format!(
+                "{}: is damaged (its checksum `sha256` does not agree); delete it, and with it study.json, cases.parquet, summary.json and \
+                 SHA256SUMS where they are there: `boresight study run` makes them anew, with the shards that are whole",
+                path.display()
+            ))
         })
     }
 
@@ -123,10 +146,7 @@ impl ShardStore {
     }
 
     fn check_plan(&self, path: &Path) -> Result<(), Failure> {
-        let text = sim::regular_file::read_text(path, 1 << 20)
-            .map_err(|source| FileError::io(path, "read", source))?;
-        let found: Plan =
-            serde_json::from_str(&text).map_err(|error| FileError::format(path, "plan", error))?;
+        let found = Plan::read(path)?;
         let (plan, path) = (&self.plan, path.display());
         let other = |field: &str, found: &dyn std::fmt::Display, expected: &dyn std::fmt::Display| {
             Failure::Usage(format!(
@@ -157,8 +177,7 @@ impl ShardStore {
 
     /// The number of shards of the plan that a folder already holds.
     pub fn planned_shards(folder: &Path) -> Option<u64> {
-        let text = sim::regular_file::read_text(&folder.join("plan.json"), 1 << 20).ok()?;
-        serde_json::from_str::<Plan>(&text).ok().map(|plan| plan.shards)
+        Plan::read(&folder.join("plan.json")).ok().map(|plan| plan.shards)
     }
 
     /// Refuses files among the shards that are none of the plan's.

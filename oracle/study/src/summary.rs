@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 use run::figure_called;
 use score::Better;
 use serde::{Deserialize, Serialize};
+use sim::randomness::{Effect, Seed};
 use statistics::{
     ClusterSum, LEAST_CLUSTERS, cluster_rank_correlation, mean_difference_interval, rate_difference_interval,
 };
@@ -154,8 +155,11 @@ pub struct Summary {
     pub indices: Vec<SobolIndex>,
     /// The figure that the worst cases are the worst by.
     pub worst_by: String,
-    /// The worst cases, the worst first.
+    /// The worst cases, the worst first; of equally bad ones some that are spread over the study.
     pub worst: Vec<WorstCase>,
+    /// Cases that are as bad as the last of these, or worse.
+    #[serde(default)]
+    pub worst_of: u64,
 }
 
 impl Summary {
@@ -166,6 +170,7 @@ impl Summary {
         let until = study.file.stop.until.as_ref();
         let waited = until.map(|until| waited(until, table, table.rows.len() as u64));
         let points = sweep(study, table);
+        let (worst, worst_of) = worst(table, &worst_by, seed, |case| pipeline.replay(study, path, case));
         Self {
             study: study.name.clone(),
             title: study.file.title.clone(),
@@ -191,7 +196,8 @@ impl Summary {
             } else {
                 Vec::new()
             },
-            worst: worst(table, &worst_by, |case| pipeline.replay(study, path, case)),
+            worst,
+            worst_of,
             worst_by,
         }
     }
@@ -392,7 +398,9 @@ fn indices(table: &CaseTable, seed: u64) -> Vec<SobolIndex> {
     all
 }
 
-fn worst(table: &CaseTable, by: &str, replay: impl Fn(u64) -> String) -> Vec<WorstCase> {
+/// The worst cases, and how many are as bad as the last of them. Which of equally bad ones is drawn, so that they are not all of the
+/// first draws.
+fn worst(table: &CaseTable, by: &str, seed: u64, replay: impl Fn(u64) -> String) -> (Vec<WorstCase>, u64) {
     let badness = |value: f64| match figure_called(by).sense.better {
         Better::More => -value,
         Better::Less => value,
@@ -401,7 +409,11 @@ fn worst(table: &CaseTable, by: &str, replay: impl Fn(u64) -> String) -> Vec<Wor
     let values = table.figure(by).unwrap_or_default();
     let mut cases: Vec<(&CaseRow, f64)> =
         table.rows.iter().zip(values).filter_map(|(row, figure)| Some((row, figure.value?))).collect();
-    cases.sort_by(|a, b| badness(b.1).total_cmp(&badness(a.1)).then(a.0.case.cmp(&b.0.case)));
+    let lot = |row: &CaseRow| Seed { seed, case: row.case }.streams(0, Effect::WorstCases).word(0);
+    cases.sort_by_cached_key(|(row, _)| (lot(row), row.case));
+    cases.sort_by(|a, b| badness(b.1).total_cmp(&badness(a.1)));
+    let last = cases.get(WORST.min(cases.len()).wrapping_sub(1)).map(|(_, value)| badness(*value));
+    let count = last.map_or(0, |last| cases.iter().filter(|(_, value)| badness(*value) >= last).count());
     cases.truncate(WORST);
     let named = |(row, value): (&CaseRow, f64)| WorstCase {
         case: row.case,
@@ -409,5 +421,5 @@ fn worst(table: &CaseTable, by: &str, replay: impl Fn(u64) -> String) -> Vec<Wor
         drawn: table.drawn.keys().cloned().zip(row.drawn.iter().map(Drawn::shown)).collect(),
         replay: replay(row.case),
     };
-    cases.into_iter().map(named).collect()
+    (cases.into_iter().map(named).collect(), count as u64)
 }
