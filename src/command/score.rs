@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use files::{Checksums, Failure};
-use run::{world_of_run, worlds};
+use files::{Checksums, Failure, refuse_unfinished};
+use run::{NotFlown, world_of_run, worlds};
+use serde_json::{Map, Value};
 
 use super::Answer;
 use super::options::AttitudeOption;
@@ -30,6 +31,7 @@ pub(super) struct ScoreArguments {
 }
 
 pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answer, Failure> {
+    refuse_unfinished(&arguments.directory)?;
     let world = world_of_run(&arguments.directory.join("run.toml"))?;
     let mut evidence = None;
     for (option, name, given) in [
@@ -56,6 +58,21 @@ pub(super) fn score(arguments: &ScoreArguments, output: &Output) -> Result<Answe
     let (directory, attitude) = (&arguments.directory, arguments.attitude.choice);
     let scored = world.score(directory, &arguments.measurements, evidence.as_deref(), attitude)?;
     Checksums::check(&arguments.directory, |_| true)?;
-    output.answer_json(&scored.json()?, score_table(scored.as_ref(), output.is_terminal()))?;
+    let mut document = scored.json()?;
+    // Measurements of a run that was not flown to its end do not look complete.
+    let beside = arguments.measurements.parent().map_or(Ok(None), NotFlown::of_directory)?;
+    if let Some(not_flown) = &beside {
+        output.note(format!("the run is not complete: {not_flown}"));
+        document = with_not_flown(&document, not_flown)?;
+    }
+    output.answer_json(&document, score_table(scored.as_ref(), output.is_terminal()))?;
     Ok(Answer::Yes)
+}
+
+/// The JSON of a score with what was not flown, as `run` writes it.
+fn with_not_flown(score: &str, not_flown: &NotFlown) -> Result<String, Failure> {
+    let unwritable = |error| Failure::Usage(format!("the score cannot be written as JSON: {error}"));
+    let mut document: Map<String, Value> = serde_json::from_str(score).map_err(unwritable)?;
+    document.insert("not_flown".to_owned(), serde_json::to_value(not_flown).map_err(unwritable)?);
+    serde_json::to_string_pretty(&document).map_err(unwritable)
 }

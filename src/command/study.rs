@@ -11,7 +11,8 @@ use run::pipeline_choice::PipelineChoice;
 use run::{Expectation, FirstFailure, Flight, Options};
 use serde::Serialize;
 use study::{
-    Campaign, CaseTable, Evaluated, Known, Plan, ShardManifest, Study, StudyFile, Workers, command_line,
+    Campaign, CaseTable, Evaluated, Known, Plan, RequirementVerdict, ShardManifest, Study, StudyFile,
+    Workers, command_line,
 };
 
 use super::Answer;
@@ -278,7 +279,10 @@ fn finish(
     let text = study_table(&summary, output.is_terminal());
     let folder = campaign.store().folder().display();
     output.answer(&summary, format!("{text}\nrows and summary in {folder}: cases.parquet, summary.json"))?;
-    Ok(Answer::Yes)
+    Ok(match summary.verdict() {
+        None | Some(RequirementVerdict::Met) => Answer::Yes,
+        Some(RequirementVerdict::NotMet | RequirementVerdict::NotDecided) => Answer::No,
+    })
 }
 
 /// The plan of a study, with what makes each shard.

@@ -5,12 +5,17 @@ use comfy_table::{Attribute, Cell};
 use pipeline::external::protocol::harmless;
 use run::figure_called;
 use score::{attitude_note, warm_up_note};
-use study::{CaseFigure, CaseRow, Estimate, Study, Summary, Waited, overall};
+use study::{
+    CaseFigure, CaseRow, Estimate, Limit, RankCorrelation, RequirementResult, RequirementVerdict, Study,
+    Summary, Waited, overall,
+};
 
 use crate::table::far_range::{finish, percent, plain_table};
 
 /// Parameters of the sensitivity table, at most.
 const SHOWN: usize = 12;
+/// Figures that have a column in the tables of sweep and sensitivities, at most.
+const SHOWN_FIGURES: usize = 4;
 
 /// A summary as text: figures, sweep, sensitivities, the worst cases. Ends with a line feed.
 pub fn study_table(summary: &Summary, styled: bool) -> String {
@@ -66,6 +71,7 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     if let Some(note) = attitude_note(summary.attitude.as_deref()) {
         text.push_str(&format!("{note}\n"));
     }
+    text.push_str(&requirements(summary, styled));
     if !summary.causes.is_empty() {
         let mut table = plain_table(styled);
         table.set_header(["misses and wrong answers by cause", "frames", "share of all", "cases"].map(bold));
@@ -78,69 +84,24 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
     }
     let by = &summary.worst_by;
     let by_label = label(by);
+    let figures = shown_figures(summary);
     if let Some(first) = summary.sweep.first() {
         let mut table = plain_table(styled);
+        let labels: Vec<String> = figures.iter().map(|name| label(name)).collect();
         let paths = first.at.keys().map(String::as_str);
-        table.set_header(paths.chain(["cases", &by_label]).map(bold));
+        table.set_header(paths.chain(["cases"]).chain(labels.iter().map(String::as_str)).map(bold));
         for point in &summary.sweep {
-            let figure = point.figures.get(by).and_then(|figure| figure.all.as_ref());
-            let cells = point.at.values().cloned().chain([point.cases.to_string(), shown(by, figure)]);
-            table.add_row(cells);
+            let figure =
+                |name: &&String| shown(name, point.figures.get(*name).and_then(|figure| figure.all.as_ref()));
+            let cells = point.at.values().cloned().chain([point.cases.to_string()]);
+            table.add_row(cells.chain(figures.iter().map(figure)));
         }
         text.push('\n');
         text.push_str(&finish(table));
         text.push_str(&differences(summary, styled));
     }
-    let of_figure = summary.correlations.iter().filter(|c| &c.figure == by).take(SHOWN);
-    let rows: Vec<[String; 3]> = of_figure
-        .map(|c| {
-            let interval = c.low.zip(c.high);
-            let interval =
-                interval.map_or("–".to_owned(), |(low, high)| format!("{low:+.2} to {high:+.2}"));
-            [c.parameter.clone(), format!("{:+.2}", c.correlation), interval]
-        })
-        .collect();
-    let is_constant = summary.figures.get(by).is_some_and(|figure| {
-        let values =
-            [figure.p05, figure.median, figure.p95].map(|quantile| quantile.map(|quantile| quantile.value));
-        figure.cases > 0 && values[0] == values[2]
-    });
-    if rows.is_empty() && !summary.worst.is_empty() {
-        let reason = if is_constant {
-            "it is the same in nearly all cases"
-        } else {
-            "there are too few cases, or nothing drawn is a number"
-        };
-        text.push_str(&format!("\n{by_label}: no correlation with what was drawn, as {reason}.\n"));
-    }
-    if !rows.is_empty() {
-        let mut table = plain_table(styled);
-        table.set_header([&format!("{by_label} goes with"), "rank correlation", "95 %"].map(bold));
-        rows.into_iter().for_each(|row| {
-            table.add_row(row);
-        });
-        text.push('\n');
-        text.push_str(&finish(table));
-    }
-    let indices: Vec<_> = summary.indices.iter().filter(|index| &index.figure == by).collect();
-    if !indices.is_empty() {
-        let mut table = plain_table(styled);
-        table.set_header(
-            [&format!("variance of {by_label} by"), "alone", "95 %", "with others", "95 %"].map(bold),
-        );
-        for index in indices {
-            let interval = |[low, high]: [f64; 2]| format!("{low:.2} to {high:.2}");
-            table.add_row([
-                index.parameter.clone(),
-                format!("{:.2}", index.first),
-                interval(index.first_interval),
-                format!("{:.2}", index.total),
-                interval(index.total_interval),
-            ]);
-        }
-        text.push('\n');
-        text.push_str(&finish(table));
-    }
+    text.push_str(&correlations(summary, &figures, styled));
+    text.push_str(&indices(summary, &figures, styled));
     if !summary.worst.is_empty() {
         let mut table = plain_table(styled);
         table.set_header(["worst cases", &by_label, "again, with its frames"].map(bold));
@@ -153,6 +114,157 @@ pub fn study_table(summary: &Summary, styled: bool) -> String {
         if more > 0 {
             text.push_str(&format!("{more} more cases are as bad as the last of these.\n"));
         }
+    }
+    text
+}
+
+/// The figures that have a column: the one by which cases are good or bad, those required, then the others in their order.
+fn shown_figures(summary: &Summary) -> Vec<&String> {
+    let required = summary.requirements.iter().map(|result| &result.requirement.figure);
+    let recorded = summary.figures.iter().filter(|(_, figure)| figure.cases > 0).map(|(name, _)| name);
+    let mut names: Vec<&String> = Vec::new();
+    for name in [&summary.worst_by].into_iter().chain(required).chain(recorded) {
+        if names.len() < SHOWN_FIGURES && !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// The requirements with their verdicts; empty without any.
+fn requirements(summary: &Summary, styled: bool) -> String {
+    let Some(verdict) = summary.verdict() else { return String::new() };
+    let mut table = plain_table(styled);
+    let has_sweep = !summary.sweep.is_empty();
+    let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
+    let at = has_sweep.then_some("at");
+    table.set_header(["requirement"].into_iter().chain(at).chain(["found", "bounds", "verdict"]).map(bold));
+    for result in &summary.requirements {
+        let name = &result.requirement.figure;
+        let bound = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
+        let at = result.at.iter().map(|(path, value)| format!("{path} = {value}")).collect::<Vec<_>>();
+        table.add_row(
+            [required(result)]
+                .into_iter()
+                .chain(has_sweep.then(|| at.join(", ")))
+                .chain([bound(result.value), format!("{} to {}", bound(result.low), bound(result.high))])
+                .chain([verdict_words(result)]),
+        );
+    }
+    let together = match verdict {
+        RequirementVerdict::Met => "All requirements are met.",
+        RequirementVerdict::NotMet => "Not all requirements are met.",
+        RequirementVerdict::NotDecided => {
+            "Not all requirements are decided: more cases are needed, or a limit further away."
+        }
+    };
+    format!("\n{}{together}\n", finish(table))
+}
+
+/// A requirement in words, as in `5 % quantile of correct rate ≥ 95.00 % (confidence 95 %)`.
+fn required(result: &RequirementResult) -> String {
+    let requirement = &result.requirement;
+    let name = &requirement.figure;
+    let limit = match requirement.limit() {
+        Ok(Limit::AtLeast(limit)) => format!(" ≥ {}", number(name, limit)),
+        Ok(Limit::AtMost(limit)) => format!(" ≤ {}", number(name, limit)),
+        Err(_) => String::new(),
+    };
+    let confidence = 100.0 * requirement.confidence;
+    format!("{}{}{limit} (confidence {confidence} %)", requirement.of.words(), label(name))
+}
+
+fn verdict_words(result: &RequirementResult) -> String {
+    let mut words = match (result.verdict, result.cases_needed) {
+        (RequirementVerdict::Met, _) => "met".to_owned(),
+        (RequirementVerdict::NotMet, _) => "NOT MET".to_owned(),
+        (RequirementVerdict::NotDecided, Some(cases)) => {
+            format!("not decided: about {cases} cases needed, {} known", result.cases)
+        }
+        (RequirementVerdict::NotDecided, None) => "not decided".to_owned(),
+    };
+    if result.without_value > 0 {
+        words.push_str(&format!(" ({} of {} cases without a value)", result.without_value, result.cases));
+    }
+    words
+}
+
+/// How the figures go with what was drawn.
+fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String {
+    let (varied, constant): (Vec<&String>, Vec<&String>) =
+        figures.iter().copied().partition(|name| of_figure(summary, name).next().is_some());
+    let mut text = String::new();
+    if !varied.is_empty() {
+        let mut parameters: Vec<&String> = Vec::new();
+        for correlation in varied.iter().flat_map(|name| of_figure(summary, name)) {
+            if parameters.len() < SHOWN && !parameters.contains(&&correlation.parameter) {
+                parameters.push(&correlation.parameter);
+            }
+        }
+        let mut table = plain_table(styled);
+        let labels: Vec<String> = varied.iter().map(|name| label(name)).collect();
+        let header = ["rank correlation with"].into_iter().chain(labels.iter().map(String::as_str));
+        table.set_header(header.map(|text| Cell::new(text).add_attribute(Attribute::Bold)));
+        for parameter in parameters {
+            let cell = |name: &&String| {
+                of_figure(summary, name).find(|c| &c.parameter == parameter).map_or_else(
+                    || "–".to_owned(),
+                    |c| {
+                        let interval = c.low.zip(c.high);
+                        let interval = interval.map(|(low, high)| format!(" ({low:+.2} to {high:+.2})"));
+                        format!("{:+.2}{}", c.correlation, interval.unwrap_or_default())
+                    },
+                )
+            };
+            table.add_row([parameter.clone()].into_iter().chain(varied.iter().map(cell)));
+        }
+        text.push_str(&format!("\n{}", finish(table)));
+    }
+    if summary.worst.is_empty() {
+        return text;
+    }
+    for name in constant {
+        let values = summary
+            .figures
+            .get(name)
+            .map(|figure| [figure.p05, figure.p95].map(|quantile| quantile.map(|quantile| quantile.value)));
+        let reason = if values.is_some_and(|[low, high]| low.is_some() && low == high) {
+            "it is the same in nearly all cases"
+        } else {
+            "there are too few cases, or nothing drawn is a number"
+        };
+        text.push_str(&format!("\n{}: no correlation with what was drawn, as {reason}.\n", label(name)));
+    }
+    text
+}
+
+fn of_figure<'a>(summary: &'a Summary, figure: &'a str) -> impl Iterator<Item = &'a RankCorrelation> {
+    summary.correlations.iter().filter(move |correlation| correlation.figure == figure)
+}
+
+/// Sobol indices of the figures.
+fn indices(summary: &Summary, figures: &[&String], styled: bool) -> String {
+    let mut text = String::new();
+    let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
+    for name in figures {
+        let indices: Vec<_> = summary.indices.iter().filter(|index| &&index.figure == name).collect();
+        if indices.is_empty() {
+            continue;
+        }
+        let mut table = plain_table(styled);
+        let by = format!("variance of {} by", label(name));
+        table.set_header([&by, "alone", "95 %", "with others", "95 %"].map(bold));
+        for index in indices {
+            let interval = |[low, high]: [f64; 2]| format!("{low:.2} to {high:.2}");
+            table.add_row([
+                index.parameter.clone(),
+                format!("{:.2}", index.first),
+                interval(index.first_interval),
+                format!("{:.2}", index.total),
+                interval(index.total_interval),
+            ]);
+        }
+        text.push_str(&format!("\n{}", finish(table)));
     }
     text
 }

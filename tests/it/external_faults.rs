@@ -289,7 +289,9 @@ fn a_program_that_never_greets_ends_a_run_in_both_worlds() {
             assert_eq!((&score["frames"], &score["not_flown"]["frames"]), (&3.into(), &7.into()));
             assert!(score["not_flown"]["reason"].as_str().unwrap().contains(reason), "{score}");
             // What there is of it is a run like any other.
-            bench.boresight("score run run/measurements.csv").done();
+            let again = bench.boresight("score run run/measurements.csv --json").done();
+            assert!(again.stderr.contains("7 were not flown"), "{}", again.stderr);
+            assert_eq!(again.json()["not_flown"], score["not_flown"]);
             bench.boresight("report run -o report.html").done();
             assert!(
                 bench.read("report.html").contains("The run is not complete: the pipeline did not start")

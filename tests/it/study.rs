@@ -411,3 +411,45 @@ fn a_study_that_is_wrong_says_where() {
     refused("mean = 0.8, sigma = 0.1", "mean = -3.0, sigma = 0.1", &["case 0", "psf.sigma_px"]);
     bench.boresight("study check nothing.toml").refused(&["nothing.toml", "no study"]);
 }
+
+/// Requirements are decided at each point of the sweep; they change no row, so that the study is the same one with others.
+#[test]
+fn requirements_are_decided_with_their_confidence() {
+    let bench = bench();
+    let with = |required: &str| bench.write("study.toml", format!("{STUDY}\n{required}"));
+    with(
+        "[[require]]\nfigure = \"hit_rate\"\nat_least = 0.0\n[[require]]\nfigure = \"hit_rate\"\nat_most = 1.0\n",
+    );
+    let met = bench.boresight("study run study.toml --out out --json").done().json();
+    let verdicts = |summary: &Value| -> Vec<String> {
+        let results = summary["requirements"].as_array().unwrap();
+        results.iter().map(|result| result["verdict"].as_str().unwrap().to_owned()).collect()
+    };
+    assert!(!verdicts(&met).is_empty());
+    assert!(verdicts(&met).iter().all(|verdict| verdict == "met"), "{met}");
+    // The same rows, asked for more: none is run again.
+    with("[[require]]\nfigure = \"hit_rate\"\nat_least = 0.999999\nconfidence = 0.99\n");
+    let open = bench.boresight("study merge study.toml --out out --json");
+    assert_eq!(open.status, Some(1), "{}", open.stderr);
+    assert_eq!(open.json()["hash"], met["hash"]);
+    assert!(verdicts(&open.json()).iter().any(|verdict| verdict != "met"), "{:?}", open.json());
+    let shown = bench.boresight("study merge study.toml --out out");
+    assert!(shown.stdout.contains("Not all requirements are"), "{}", shown.stdout);
+    let page = bench.read("out/report.html");
+    assert!(page.contains("Requirements") && page.contains("confidence 99"), "no requirements in the report");
+    for (required, words) in [
+        ("[[require]]\nfigure = \"hit_rate\"", ["require[0].figure", "at_least or at_most"]),
+        (
+            "[[require]]\nfigure = \"hit_rate\"\nat_least = 0.5\nat_most = 0.9",
+            ["require[0].at_most", "one of the two"],
+        ),
+        (
+            "[[require]]\nfigure = \"hit_rat\"\nat_least = 0.5",
+            ["require[0].figure", "did you mean `hit_rate`"],
+        ),
+        ("[[require]]\nfigure = \"hit_rate\"\nat_least = 0.5\nconfidence = 1.0", ["confidence", "0.9999"]),
+    ] {
+        with(required);
+        bench.boresight("study check study.toml").refused(&words);
+    }
+}

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::{Checksums, FileError, ImageFormat, WholeFile};
+use super::{Checksums, Failure, FileError, ImageFormat, WholeFile};
 
 /// The files of a run that have checksums.
 const SEALED: [&str; 13] = [
@@ -220,6 +220,21 @@ impl RunDirectory {
 /// Whether a directory holds the beginning of a run: its tables get their names when they are complete, that of the telemetry last.
 fn is_unfinished(path: &Path) -> bool {
     path.join(UNFINISHED).is_file()
+}
+
+/// Refuses a directory that holds the beginning of a run.
+///
+/// # Errors
+/// [`Failure::Usage`] with what to do.
+pub fn refuse_unfinished(path: &Path) -> Result<(), Failure> {
+    if !is_unfinished(path) {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "{}: holds a run that was killed, failed, or still goes on ({UNFINISHED} is there), expected a finished one: remove it when \
+         nothing runs, and run its command again",
+        path.display()
+    )))
 }
 
 /// The largest number that `NAME-…` has in the parent; 0 when there is none.

@@ -70,7 +70,7 @@ pub use clusters::FrameCluster;
 pub use column::read_column;
 pub use dataset::{CameraFile, Dataset, DatasetFrame};
 pub use declared::Declared;
-pub use directory::RunDirectory;
+pub use directory::{RunDirectory, refuse_unfinished};
 pub use error::open_regular;
 pub use error::{FileError, Place};
 pub use failure::Failure;

@@ -87,11 +87,13 @@ pub fn read_measurements(path: &Path, camera: &Camera) -> Result<Vec<(u64, Outco
 /// Why a row has no target; `None` of a detection.
 fn reason(row: &CsvRow<'_>) -> Result<Option<NoSolution>, FileError> {
     let status = row.text("status");
-    if status.trim() == DETECTED {
+    // Spaces beside a comma are allowed, line feeds and other control characters are not.
+    if status.trim_matches(' ') == DETECTED {
         return Ok(None);
     }
     // What stands behind `failed: ` is kept to the letter.
-    let reason = NoSolution::parse(status.trim_start()).ok_or_else(|| row.error("status", STATUS))?;
+    let reason =
+        NoSolution::parse(status.trim_start_matches(' ')).ok_or_else(|| row.error("status", STATUS))?;
     row.check_empty(POSITION.into_iter().chain(LINE_OF_SIGHT))?;
     Ok(Some(reason))
 }

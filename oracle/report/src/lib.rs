@@ -60,12 +60,11 @@ pub use read::ResultKind;
 pub use study::{StudyResult, study_page};
 pub use visibility::{read_visibility, visibility_page};
 
-use self::read::{is_far_range_run, read_json};
+use self::read::is_far_range_run;
 use self::run_page::run_page;
 use self::worlds::report_of_world;
-use files::{Checksums, Earlier, Failure, WholeFile};
+use files::{Checksums, Earlier, Failure, WholeFile, refuse_unfinished};
 use run::{AnyJudgement, NotFlown, world_of_run};
-use serde::Deserialize;
 
 /// The report of a directory of results, with the error budget that is kept there.
 ///
@@ -83,20 +82,13 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
 
 /// The page of a run by its world, which says what of it was not flown.
 fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
+    refuse_unfinished(directory)?;
     let world = world_of_run(&directory.join("run.toml"))?;
     let mut page = match report_of_world(world.code()) {
         Some(of_world) => (of_world.page)(directory, scored)?,
         None => run_page(directory)?,
     };
-    /// The part of `score.json` that tells it.
-    #[derive(Deserialize)]
-    struct Rest {
-        not_flown: Option<NotFlown>,
-    }
-    let score = directory.join("score.json");
-    if score.is_file()
-        && let Some(not_flown) = read_json::<Rest>(&score, "score")?.not_flown
-    {
+    if let Some(not_flown) = NotFlown::of_directory(directory)? {
         page.warnings.push(format!("The run is not complete: {not_flown}."));
     }
     Ok(page)

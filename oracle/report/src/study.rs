@@ -7,7 +7,7 @@ use files::{Failure, FileError};
 use indexmap::IndexMap;
 use run::figure_called;
 use score::{Better, attitude_note, warm_up_note};
-use study::{CaseTable, Estimate, FigureSummary, Summary, Waited};
+use study::{CaseTable, Estimate, FigureSummary, Limit, RequirementVerdict, Summary, Waited};
 
 use super::chart::{
     BESIDE, Chart, MEASURED, REFERENCE, TRUTH, WRONG, axes, cloud, intervals, intervals_across, plain,
@@ -75,6 +75,9 @@ pub fn study_page(study: &StudyResult) -> Page {
         None => format!("{} cases.", summary.cases),
     };
     let mut sections = vec![figures(study)];
+    if !summary.requirements.is_empty() {
+        sections.insert(0, requirements(summary));
+    }
     if !summary.causes.is_empty() {
         sections.push(causes(summary));
     }
@@ -211,6 +214,47 @@ fn figures(study: &StudyResult) -> Section {
     let height = 110 + 30 * rates.len() as u32;
     let caption = "Rates over all frames, and how far the cases spread about them.";
     section.chart(Chart::new(caption, height, data, traces, layout)).table(table)
+}
+
+/// The requirements with their verdicts.
+fn requirements(summary: &Summary) -> Section {
+    let mut table = DataTable::new(["requirement", "at", "found", "lower bound", "upper bound", "verdict"]).caption(
+        "Each bound holds alone with the confidence of its requirement. Met: the bound towards the limit keeps to it; not met: the other \
+         bound is beyond it.",
+    );
+    for result in &summary.requirements {
+        let requirement = &result.requirement;
+        let name = &requirement.figure;
+        let cell = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
+        let limit = match requirement.limit() {
+            Ok(Limit::AtLeast(limit)) => format!(" ≥ {}", number(name, limit)),
+            Ok(Limit::AtMost(limit)) => format!(" ≤ {}", number(name, limit)),
+            Err(_) => String::new(),
+        };
+        let at: Vec<String> = result.at.iter().map(|(path, value)| format!("{path} = {value}")).collect();
+        let verdict = match (result.verdict, result.cases_needed) {
+            (RequirementVerdict::Met, _) => "met".to_owned(),
+            (RequirementVerdict::NotMet, _) => "not met".to_owned(),
+            (RequirementVerdict::NotDecided, None) => "not decided".to_owned(),
+            (RequirementVerdict::NotDecided, Some(cases)) => {
+                format!("not decided: about {cases} cases needed, {} known", result.cases)
+            }
+        };
+        let without = match result.without_value {
+            0 => String::new(),
+            count => format!(" ({count} of {} cases without a value)", result.cases),
+        };
+        let confidence = 100.0 * requirement.confidence;
+        table.push([
+            format!("{}{}{limit}, confidence {confidence}\u{a0}%", requirement.of.words(), label(name)),
+            if at.is_empty() { "–".to_owned() } else { at.join(", ") },
+            cell(result.value),
+            cell(result.low),
+            cell(result.high),
+            format!("{verdict}{without}"),
+        ]);
+    }
+    Section::new("requirements", "Requirements").table(table)
 }
 
 /// Why frames were missed or wrong.

@@ -1,9 +1,14 @@
 //! What a run gave.
 
 use std::fmt;
+use std::path::Path;
 
 use contract::{FailedStarts, Interface};
+use files::{Failure, FileError};
 use serde::{Deserialize, Serialize};
+
+/// Bytes of a score's file that are read, at most.
+const LONGEST_JSON: u64 = 1 << 28;
 
 /// What a run gave.
 #[derive(Debug)]
@@ -32,6 +37,27 @@ impl NotFlown {
     pub(crate) fn of(images: u64, FailedStarts { count, reason }: &FailedStarts) -> Self {
         let frames = images.saturating_sub(u64::from(*count));
         Self { frames, failed_starts: *count, reason: reason.clone() }
+    }
+
+    /// What was not flown of the run in a directory, as its `score.json` tells; `None` of a complete run, and without that file.
+    ///
+    /// # Errors
+    /// A [`Failure`] that names the file when it cannot be read.
+    pub fn of_directory(directory: &Path) -> Result<Option<Self>, Failure> {
+        /// The part of `score.json` that tells it.
+        #[derive(Deserialize)]
+        struct Rest {
+            not_flown: Option<NotFlown>,
+        }
+        let path = directory.join("score.json");
+        if !path.is_file() {
+            return Ok(None);
+        }
+        let text = sim::regular_file::read_text(&path, LONGEST_JSON)
+            .map_err(|source| FileError::io(&path, "read", source))?;
+        let rest: Rest =
+            serde_json::from_str(&text).map_err(|error| FileError::format(&path, "score", error))?;
+        Ok(rest.not_flown)
     }
 }
 

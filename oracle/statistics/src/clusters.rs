@@ -5,7 +5,7 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::{Interval, Z_95, wilson};
+use super::{Interval, Z_95, normal_quantile, wilson};
 
 /// Fewer clusters than this have no interval.
 pub const LEAST_CLUSTERS: usize = 5;
@@ -23,7 +23,7 @@ pub struct ClusterSum {
 
 /// A ratio with the residual of each of its clusters.
 pub(super) struct Ratio {
-    value: f64,
+    pub(super) value: f64,
     residuals: Vec<f64>,
 }
 
@@ -37,7 +37,7 @@ impl Ratio {
         Some(Self { value, residuals: clusters.iter().map(residual).collect() })
     }
 
-    fn variance(&self) -> f64 {
+    pub(super) fn variance(&self) -> f64 {
         variance_of_mean(&self.residuals)
     }
 }
@@ -50,7 +50,12 @@ fn variance_of_mean(residuals: &[f64]) -> f64 {
 
 /// The 97.5 % quantile of Student's t for so many clusters, of which there are two or more.
 pub(super) fn t_95(clusters: usize) -> f64 {
-    StudentsT::new(0.0, 1.0, clusters as f64 - 1.0).map_or(Z_95, |t| t.inverse_cdf(1.0 - 0.5 * OUTSIDE))
+    t_quantile(clusters as f64, 1.0 - 0.5 * OUTSIDE)
+}
+
+/// The quantile `p` of Student's t for so many clusters, more than one.
+pub(super) fn t_quantile(clusters: f64, p: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, clusters - 1.0).map_or_else(|_| normal_quantile(p), |t| t.inverse_cdf(p))
 }
 
 /// The interval of a mean over clusters, Σ sum / Σ of ± t s. Clusters without a value are left out. `None` below

@@ -22,6 +22,7 @@
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod autocorrelation;
+mod bound;
 mod clopper_pearson;
 #[allow(
     clippy::indexing_slicing,
@@ -49,6 +50,7 @@ mod quantile;
 mod rank_correlation;
 
 pub use autocorrelation::effective_size;
+pub use bound::{Bounds, cluster_mean_bounds, cluster_quantile_bounds, cluster_rate_bounds};
 pub use clopper_pearson::{binomial_at_least, clopper_pearson};
 pub use clusters::{
     ClusterSum, LEAST_CLUSTERS, cluster_mean_interval, cluster_rate_interval, mean_difference_interval,

@@ -33,7 +33,7 @@ pub fn cluster_quantile_interval(sorted: &[Clustered], p: f64) -> Option<Interva
 }
 
 /// How many independent values scatter about the quantile `p` as these do.
-fn independent_values(sorted: &[Clustered], p: f64) -> Option<f64> {
+pub(super) fn independent_values(sorted: &[Clustered], p: f64) -> Option<f64> {
     let count = sorted.len();
     let clusters = sorted.iter().map(|(cluster, _)| cluster + 1).max()?;
     let below = ((p * count as f64).round() as usize).clamp(1, count.saturating_sub(1).max(1));

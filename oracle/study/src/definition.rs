@@ -168,6 +168,12 @@ impl Study {
         };
         let cases = file.stop.cases;
         bounds::check(&file.stop, "stop").map_err(|error| toml_file::out_of_range(path, &text, &error))?;
+        for (i, requirement) in file.require.iter().enumerate() {
+            let at = format!("require[{i}]");
+            bounds::check(requirement, &at).map_err(|error| toml_file::out_of_range(path, &text, &error))?;
+            let has_limit = requirement.limit();
+            has_limit.map_err(|(field, message)| refuse(&format!("{at}.{field}"), message.to_owned()))?;
+        }
         if !cases.is_multiple_of(cells) {
             let expected = format!("is {cases}, expected a multiple of the sweep's {cells}");
             return Err(refuse("stop.cases", expected));
@@ -476,12 +482,18 @@ impl Study {
         if let Some(until) = &self.file.stop.until {
             check("stop.until.figure", &until.figure)?;
         }
-        let is_recorded = |name: &str| self.figures().iter().any(|figure| figure == name);
-        for (at, name) in [("record.worst_by", Some(self.worst_by()))]
-            .into_iter()
-            .chain([("stop.until.figure", self.file.stop.until.as_ref().map(|until| until.figure.clone()))])
-        {
-            if let Some(name) = name.filter(|name| !is_recorded(name)) {
+        let required = self.file.require.iter().enumerate();
+        let required: Vec<(String, &str)> =
+            required.map(|(i, r)| (format!("require[{i}].figure"), r.figure.as_str())).collect();
+        for (at, name) in &required {
+            check(at, name)?;
+        }
+        let recorded = self.figures();
+        let worst_by = self.worst_by();
+        let until = self.file.stop.until.iter().map(|until| ("stop.until.figure", until.figure.as_str()));
+        let named = [("record.worst_by", worst_by.as_str())].into_iter().chain(until);
+        for (at, name) in named.chain(required.iter().map(|(at, name)| (at.as_str(), *name))) {
+            if !recorded.iter().any(|figure| figure == name) {
                 return Err(self.refuse(at, format!("is `{name}`, expected one of record.figures")));
             }
         }
@@ -500,6 +512,7 @@ impl Study {
 /// [`Study::identity`] of a file. Files that its values name are noted in `base`, so that a case refuses one that changed.
 fn identity(file: &StudyFile, folder: &Path, base: &mut ScenarioSource) -> Result<StudyFile, Failure> {
     let mut identity = file.clone();
+    identity.require.clear();
     if scenario::BUILT_IN.iter().all(|built_in| built_in.name != file.scenario) {
         identity.scenario.clear();
     }

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::design::DesignKind;
 use super::law::Law;
+use super::requirement::StudyRequirement;
 
 /// A study, as a TOML file holds it. Unknown keys are errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,6 +40,9 @@ pub struct StudyFile {
     /// What is recorded.
     #[serde(default)]
     pub record: Record,
+    /// What the figures must reach.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub require: Vec<StudyRequirement>,
 }
 
 /// A parameter that varies.

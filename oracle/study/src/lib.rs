@@ -39,6 +39,7 @@ mod journal;
 mod law;
 mod overlay;
 mod record;
+mod requirement;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
@@ -64,6 +65,7 @@ pub use file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};
 pub use law::Law;
 pub use overlay::{value_at, with_overlay};
 pub use record::StudyRecord;
+pub use requirement::{Limit, RequiredOf, RequirementResult, RequirementVerdict, StudyRequirement};
 pub use sensitivity::{RankCorrelation, SobolIndex};
 
 pub use shard::{Plan, ShardManifest, ShardStore};

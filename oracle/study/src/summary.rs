@@ -14,6 +14,7 @@ use super::cases::{CaseFigure, CaseRow, CaseTable, Drawn};
 use super::definition::Study;
 use super::design::DesignKind;
 use super::estimate::{Estimate, RESAMPLES, overall, pick, quantiles, share, sorted_quantile, stream, sums};
+use super::requirement::{RequirementResult, RequirementVerdict, decide};
 use super::sensitivity::{RankCorrelation, SobolIndex, sobol_index};
 use super::stopping::{Waited, waited};
 use super::tried::StudyPipeline;
@@ -139,6 +140,9 @@ pub struct Summary {
     /// What is known of the figure of the stopping rule; absent without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub waited: Option<Waited>,
+    /// What is required, with its verdicts: at each point of the sweep, point by point.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub requirements: Vec<RequirementResult>,
     /// Figures by name.
     pub figures: IndexMap<String, FigureSummary>,
     /// Misses and wrong answers by cause, as in `missed.cut_by_roi`; causes that did not occur are left out.
@@ -163,6 +167,19 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// The verdict on all requirements together: not met when one is not met at a point of the sweep, met when all are met everywhere.
+    /// `None` without requirements.
+    pub fn verdict(&self) -> Option<RequirementVerdict> {
+        let has = |verdict| self.requirements.iter().any(|result| result.verdict == verdict);
+        if has(RequirementVerdict::NotMet) {
+            Some(RequirementVerdict::NotMet)
+        } else if has(RequirementVerdict::NotDecided) {
+            Some(RequirementVerdict::NotDecided)
+        } else {
+            (!self.requirements.is_empty()).then_some(RequirementVerdict::Met)
+        }
+    }
+
     /// The summary of some cases of a study by a pipeline; `path` is the study's file, for the commands.
     pub fn new(study: &Study, pipeline: &dyn StudyPipeline, path: &Path, table: &CaseTable) -> Self {
         let seed = study.file.seed;
@@ -186,6 +203,7 @@ impl Summary {
             waited,
             error_cases: table.rows.iter().filter(|row| row.error.is_some()).count() as u64,
             errors: errors(table),
+            requirements: requirements(study, table, &points),
             figures: figures(table),
             causes: causes(table),
             differences: differences(&points),
@@ -232,6 +250,14 @@ fn causes(table: &CaseTable) -> IndexMap<String, CauseSummary> {
     let mut causes: IndexMap<_, _> = table.causes.iter().enumerate().filter_map(summary).collect();
     causes.sort_by(|_, a, _, b| b.frames.cmp(&a.frames));
     causes
+}
+
+fn requirements(study: &Study, table: &CaseTable, points: &[Point]) -> Vec<RequirementResult> {
+    let required = &study.file.require;
+    if points.is_empty() {
+        return decide(required, table, &IndexMap::new());
+    }
+    points.iter().flat_map(|point| decide(required, &point.table, &point.summary.at)).collect()
 }
 
 /// The first cases that cannot be run.

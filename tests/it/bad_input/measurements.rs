@@ -35,6 +35,7 @@ fn a_cell_that_is_none_is_named() {
     check(&["20,,1,1"], &["line 2", "`status`"]);
     check(&["20,detcted,1,1"], &["line 2", "`status` is `detcted`", "`detected`"]);
     check(&["20,no_target,,", "21,ok,,"], &["line 3", "`status` is `ok`", "`no_target`"]);
+    check(&["20,no_target,,", "21,\"detected\n\",3,4"], &["line 3", "`status` is `detected"]);
     check(&["20,detected,4000,4"], &["line 2", "`x_px` is `4000`", "752 × 580"]);
     check(&["20,no_target,1,1"], &["line 2", "`x_px` is `1`", "`no_target`"]);
     check(&["twenty,detected,1,1"], &["line 2", "`frame` is `twenty`"]);

@@ -253,6 +253,9 @@ fn an_interrupted_command_says_what_it_kept() {
         assert!(told.contains(&format!("interrupted: {out} holds an unfinished run")), "{told}");
         assert!(unfinished(out) && bench.read(&format!("{out}/UNFINISHED.txt")).contains("is not continued"));
         bench.boresight(&format!("{words} {out}")).refused(&[out, "killed, failed, or still goes on"]);
+        for reader in [format!("report {out}"), format!("score {out} {out}/measurements.csv")] {
+            bench.boresight(&reader).refused(&[out, "UNFINISHED.txt is there"]);
+        }
     }
 
     // Of a shard of 32 cases or more, those that are finished are not made again.
@@ -285,6 +288,6 @@ fn an_unfinished_run_says_that_it_is_one() {
     bench.boresight(words).refused(&["out", reason, "--out"]);
     bench.boresight("process out").refused(&["out/telemetry.csv"]);
     bench.write("mine.csv", "frame,status,x_px,y_px\n0,no_target,,\n");
-    bench.boresight("score out mine.csv").refused(&["out/truth/objects.parquet"]);
-    bench.boresight("report out").refused(&["out/"]);
+    bench.boresight("score out mine.csv").refused(&["out", "UNFINISHED.txt is there"]);
+    bench.boresight("report out").refused(&["out", "UNFINISHED.txt is there"]);
 }

@@ -1,0 +1,152 @@
+//! One-sided bounds of rates, means and quantiles of values in clusters: what a requirement is decided by.
+//!
+//! Each bound is asked at a size: 1 for the clusters that are known, more for the bound that so many times as many clusters of the same
+//! kind would give.
+
+use statrs::function::beta::beta_reg;
+
+use super::clusters::{ClusterSum, LEAST_CLUSTERS, Ratio, counted, independent_trials, t_quantile};
+use super::quantile::{Clustered, independent_values};
+
+/// Two one-sided bounds: the value is at least `low` with the confidence that was asked for, and at most `high` with the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Lower bound; absent where too few clusters are known.
+    pub low: Option<f64>,
+    /// Upper bound.
+    pub high: Option<f64>,
+}
+
+/// Bounds of a rate over clusters: those of Clopper & Pearson (1934) for the number of independent trials that would scatter as the
+/// clusters do (Korn & Graubard 1998, Survey Methodology 24, 193–201). They hold with the confidence at least. `None` where nothing is
+/// counted.
+pub fn cluster_rate_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
+    let counted = counted(clusters);
+    let ratio = Ratio::new(&counted)?;
+    let n = independent_trials(&counted, &ratio) * size;
+    let count = ratio.value * n;
+    let low = if count <= 0.0 { 0.0 } else { beta_quantile(count, n - count + 1.0, 1.0 - confidence) };
+    let high = if count >= n { 1.0 } else { beta_quantile(count + 1.0, n - count, confidence) };
+    Some(Bounds { low: Some(low), high: Some(high) })
+}
+
+/// Bounds of a mean over clusters, Σ sum / Σ of, by Student's t. `None` below [`LEAST_CLUSTERS`].
+pub fn cluster_mean_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
+    let counted = counted(clusters);
+    if counted.len() < LEAST_CLUSTERS {
+        return None;
+    }
+    let ratio = Ratio::new(&counted)?;
+    let half = t_quantile(counted.len() as f64 * size, confidence) * (ratio.variance() / size).sqrt();
+    Some(Bounds { low: Some(ratio.value - half), high: Some(ratio.value + half) })
+}
+
+/// Bounds of the quantile `p` of values in clusters, sorted by value: order statistics of as many independent values as scatter about
+/// the quantile like the clusters, the next one outwards. Values that do not exist may stand at the ends as infinities. A bound that would
+/// lie beyond the smallest or the largest value is absent; at a `size` above 1 it is then that value.
+pub fn cluster_quantile_bounds(sorted: &[Clustered], p: f64, confidence: f64, size: f64) -> Option<Bounds> {
+    let count = sorted.len();
+    let n = (independent_values(sorted, p)? * size).floor();
+    // The largest rank that P(at least that many are below the quantile) allows, and the smallest.
+    let at_least = |rank: f64| if rank <= 0.0 { 1.0 } else { beta_reg(rank, n - rank + 1.0, p) };
+    let first_below = |limit: f64| {
+        let (mut low, mut high) = (0.0, n + 1.0);
+        while high - low > 1.0 {
+            let middle = (0.5 * (low + high)).floor();
+            let chance = if middle > n { 0.0 } else { at_least(middle) };
+            if chance >= limit { low = middle } else { high = middle }
+        }
+        high
+    };
+    let (low, high) = (first_below(confidence) - 1.0, first_below(1.0 - confidence));
+    let at = |rank: f64| {
+        let exists = (1.0..=n).contains(&rank);
+        let place = (rank * (count as f64 + 1.0) / (n + 1.0)).round().clamp(1.0, count as f64);
+        exists.then(|| sorted.get(place as usize - 1).map(|(_, value)| *value)).flatten()
+    };
+    Some(Bounds { low: at(low), high: at(high) })
+}
+
+/// The number below which a value of the beta distribution falls with the probability `p`.
+fn beta_quantile(a: f64, b: f64, p: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if beta_reg(a, b, middle) < p { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sim::randomness::{Effect, Seed, Stream, normal, uniform};
+
+    /// scipy 1.17: beta.ppf(0.05, k, n − k + 1) and beta.ppf(0.95, k + 1, n − k), as for trials without clusters.
+    #[test]
+    fn rates_of_single_trials_have_the_exact_bounds() {
+        for (count, n, low, high) in [
+            (93, 100, 0.872_541_984_417_029_7, 0.966_688_084_382_368),
+            (279, 300, 0.900_760_739_009_910_7, 0.952_617_729_530_771_1),
+            (0, 50, 0.0, 0.058_155_079_116_972_25),
+        ] {
+            let trials: Vec<ClusterSum> =
+                (0..n).map(|i| ClusterSum { sum: f64::from(u8::from(i < count)), of: 1.0 }).collect();
+            let got = cluster_rate_bounds(&trials, 0.95, 1.0).unwrap();
+            assert!((got.low.unwrap() - low).abs() < 1e-9, "{count} of {n}: {got:?}");
+            assert!((got.high.unwrap() - high).abs() < 1e-9, "{count} of {n}: {got:?}");
+        }
+    }
+
+    /// The textbook's 59 runs for the 95 % quantile with a confidence of 95 %: 0.95⁵⁹ = 0.0485, 0.95⁵⁸ = 0.0510.
+    #[test]
+    fn the_bound_of_a_quantile_exists_from_59_values_on() {
+        let values = |n: usize| -> Vec<Clustered> { (0..n).map(|i| (i, i as f64)).collect() };
+        let of = |n, p, size| cluster_quantile_bounds(&values(n), p, 0.95, size).unwrap();
+        assert_eq!(of(58, 0.95, 1.0).high, None);
+        assert_eq!(of(59, 0.95, 1.0).high, Some(58.0));
+        assert_eq!(of(58, 0.05, 1.0).low, None);
+        assert_eq!(of(59, 0.05, 1.0).low, Some(0.0));
+        assert_eq!(of(30, 0.95, 2.0).high, Some(29.0));
+        // scipy 1.17: binom.cdf(k − 1, 93, 0.95): the second largest of 93 (0.9508), not of 92 (0.9483).
+        assert_eq!(of(93, 0.95, 1.0).high, Some(91.0));
+        assert_eq!(of(92, 0.95, 1.0).high, Some(91.0));
+    }
+
+    /// How often a bound at 95 % is on the wrong side of the truth, of 2,000 studies: [low above it, high below it].
+    fn wrong(truth: f64, bounds: impl Fn(&mut Stream) -> Option<Bounds>) -> [f64; 2] {
+        let mut wrong = [0.0; 2];
+        for study in 0..2000 {
+            let random = &mut Seed { seed: 23, case: study }.stream(0, Effect::StudyParameter, 0);
+            let got = bounds(random).unwrap();
+            wrong[0] += f64::from(u8::from(got.low.is_some_and(|low| low > truth))) / 2000.0;
+            wrong[1] += f64::from(u8::from(got.high.is_some_and(|high| high < truth))) / 2000.0;
+        }
+        wrong
+    }
+
+    /// 5 % are allowed; a count of 2,000 scatters by 0.5 %.
+    #[test]
+    fn bounds_are_wrong_as_seldom_as_they_say() {
+        let rate = wrong(0.95, |random| {
+            let mut draw = || {
+                let of_draw = 0.9 + 0.1 * uniform(random);
+                ClusterSum { sum: (0..50).filter(|_| uniform(random) < of_draw).count() as f64, of: 50.0 }
+            };
+            cluster_rate_bounds(&(0..40).map(|_| draw()).collect::<Vec<_>>(), 0.95, 1.0)
+        });
+        let mean = wrong(0.0, |random| {
+            let sums: Vec<_> = (0..12).map(|_| ClusterSum { sum: normal(random), of: 1.0 }).collect();
+            cluster_mean_bounds(&sums, 0.95, 1.0)
+        });
+        let quantile = wrong(1.644_853_626_951_472_2, |random| {
+            let mut values: Vec<Clustered> = (0..100).map(|i| (i, normal(random))).collect();
+            values.sort_by(|a, b| a.1.total_cmp(&b.1));
+            cluster_quantile_bounds(&values, 0.95, 0.95, 1.0)
+        });
+        for (name, wrong) in [("rate", rate), ("mean", mean), ("quantile", quantile)] {
+            assert!(wrong.iter().all(|&wrong| wrong <= 0.065), "{name}: {wrong:?}");
+            assert!(wrong.iter().any(|&wrong| wrong > 0.01), "{name}: {wrong:?}");
+        }
+    }
+}
