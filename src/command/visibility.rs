@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use files::Failure;
 use pipeline::external::protocol::harmless;
-use visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, Status, assess, write_report};
+use visibility::{BUILT_IN_REQUIREMENTS, RequirementFile, Requirements, assess, write_report};
 
 use super::Answer;
 use super::options::place;
@@ -85,6 +85,6 @@ pub(super) fn visibility(arguments: &VisibilityArguments, output: &Output) -> Re
         text.push_str(&format!("\nwritten to {}\n", folder.display()));
     }
     output.answer(&report, text.trim_end())?;
-    let all_met = report.requirements.iter().all(|verdict| verdict.status == Status::Met);
+    let all_met = report.requirements.iter().all(|verdict| verdict.status.is_met());
     Ok(if all_met { Answer::Yes } else { Answer::No })
 }

@@ -207,8 +207,10 @@ fn remarks(report: &VisibilityReport) -> Vec<String> {
     let count = |status| report.requirements.iter().filter(|verdict| verdict.status == status).count();
     if !report.requirements.is_empty() {
         lines.push(format!(
-            "{} met, {} not met, {} impossible. Simulated rates with one-sided bounds; of stars with two-sided limits of 95 %.",
-            count(Status::Met),
+            "{} met (simulated), {} met (law), {} not decided, {} not met, {} impossible. Simulated rates with one-sided bounds; of stars with two-sided limits of 95 %.",
+            count(Status::MetSimulated),
+            count(Status::MetLaw),
+            count(Status::NotDecided),
             count(Status::NotMet),
             count(Status::Impossible)
         ));

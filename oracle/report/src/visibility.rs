@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use files::Failure;
-use visibility::{Simulated, Status, VisibilityReport, read_sky};
+use visibility::{Simulated, VisibilityReport, read_sky};
 
 use super::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, axes, dashed, intervals, line, log_axis, rounded,
@@ -30,7 +30,7 @@ pub fn read_visibility(directory: &Path) -> Result<VisibilityReport, Failure> {
 /// The page of an answer to requirements.
 pub fn visibility_page(report: &VisibilityReport) -> Page {
     let camera = &report.camera;
-    let met = report.requirements.iter().filter(|verdict| verdict.status == Status::Met).count();
+    let met = report.requirements.iter().filter(|verdict| verdict.status.is_met()).count();
     let sections = vec![
         requirements(report),
         detection(report),

@@ -14,7 +14,7 @@ use super::confirm::{Bench, StarFrame};
 use super::curves;
 use super::definition::Requirements;
 use super::design::{Design, Reached, design_with};
-use super::inverse::{FoundValue, Search, resolvable, search};
+use super::inverse::{FoundValue, Search, search};
 use super::report::{Found, Simulated, Status, Verdict, VisibilityReport};
 use super::requirement::{Demand, Find, Over, Parameter, Requirement, Want};
 use super::sky::Pointing;
@@ -99,6 +99,45 @@ fn told(simulated: Option<&Simulated>, law: f64) -> String {
     )
 }
 
+/// What binds where the law says met and the frames do not.
+const REFUTED: &str = "simulation: fewer frames meet it than the analytic law says";
+/// Frames at which it is given up to say how many would decide.
+const MOST_FRAMES: u64 = 10_000;
+
+/// What law and simulation say together: simulation may refute or confirm the law within its confidence.
+fn status(asked: f64, reached: f64, simulated: Option<&Simulated>) -> Status {
+    match simulated {
+        _ if reached < asked => Status::NotMet,
+        None => Status::MetLaw,
+        Some(s) if s.high < asked => Status::NotMet,
+        Some(s) if s.low >= asked => Status::MetSimulated,
+        Some(s) if cannot_show(asked, s) => Status::MetLaw,
+        Some(_) => Status::NotDecided,
+    }
+}
+
+/// Even if all of so few frames met it, their lower bound would be below what is asked for.
+fn cannot_show(asked: f64, simulated: &Simulated) -> bool {
+    clopper_pearson(simulated.of, simulated.of, simulated.confidence).0 < asked
+}
+
+/// How many frames would show what these did not; empty where these are enough.
+fn frames_in_words(status: Status, asked: f64, reached: f64, simulated: Option<&Simulated>) -> String {
+    let Some(s) = simulated else { return String::new() };
+    if !(status == Status::NotDecided || status == Status::MetLaw) {
+        return String::new();
+    }
+    let shows = |frames: u64| {
+        let count = (reached * frames as f64).floor() as u64;
+        clopper_pearson(count, frames, s.confidence).0 >= asked
+    };
+    let enough = std::iter::successors(Some(s.of.max(1)), |frames| Some(frames + frames.div_ceil(10)))
+        .take_while(|frames| *frames <= MOST_FRAMES)
+        .find(|frames| shows(*frames));
+    let too_few = "too few frames to show it";
+    enough.map_or_else(|| format!(", {too_few}"), |frames| format!(", {too_few}: about {frames} would"))
+}
+
 impl<'a> Assessment<'a> {
     fn new(requirements: &'a Requirements, design: &'a Design<'a>) -> Self {
         Self { requirements, design, frames: RefCell::default() }
@@ -111,29 +150,28 @@ impl<'a> Assessment<'a> {
         let asked = demand.probability(file.probability);
         let reached = self.design.reached(demand, None)?;
         let simulated = self.simulate(demand, &reached, None)?;
-        // Simulation may refute, within its confidence; where it agrees, the law decides.
-        let refuted = simulated.is_some_and(|s| s.high < asked);
-        let is_met = reached.probability >= asked && !refuted;
-        let binds = if is_met {
-            None
-        } else if reached.probability >= asked {
-            Some("simulation: fewer frames meet it than the analytic law says".to_owned())
-        } else {
-            Some(binding_of(self.design, self.requirements, demand, None, asked)?)
+        let status = status(asked, reached.probability, simulated.as_ref());
+        let binds = match status {
+            Status::NotMet if reached.probability < asked => {
+                Some(binding_of(self.design, self.requirements, demand, None, asked)?)
+            }
+            Status::NotMet => Some(REFUTED.to_owned()),
+            _ => None,
         };
         let (margin, margin_unit) = self.margin(demand, &reached, asked)?;
         Ok(Verdict {
             id: requirement.id.clone(),
             text: requirement.text.clone(),
-            status: if is_met { Status::Met } else { Status::NotMet },
+            status,
             asked,
             reached: reached.probability,
             margin,
             margin_unit: margin_unit.into(),
             evidence: format!(
-                "{}; {}",
+                "{}; {}{}",
                 self.reached_in_words(demand, &reached, asked),
-                told(simulated.as_ref(), reached.probability)
+                told(simulated.as_ref(), reached.probability),
+                frames_in_words(status, asked, reached.probability, simulated.as_ref())
             ),
             simulated,
             found: None,
@@ -160,7 +198,7 @@ impl<'a> Assessment<'a> {
             found: None,
             binds: None,
         };
-        let FoundValue { value, threshold_value, failing_value, is_monotone } =
+        let FoundValue { value, goal, threshold_value, failing_value, is_monotone } =
             match search(self.requirements, self.design, demand, find)? {
                 Search::Impossible { best_value, best_probability, binds } => {
                     return Ok(Verdict {
@@ -187,19 +225,25 @@ impl<'a> Assessment<'a> {
             }
             None => (None, None),
         };
-        let confirmed = simulated.is_none_or(|s| s.low >= asked);
-        let shown = resolvable(asked, file.confirm.frames, file.confirm.confidence).0.is_some();
-        let is_met = reached.probability >= asked && (confirmed || !shown);
+        let status = status(asked, reached.probability, simulated.as_ref());
         let own = match find.parameter {
             Parameter::ExposureS => Some(file.exposure.nominal_s),
             other => self.requirements.camera.value(other),
         };
         let mut evidence = format!(
-            "{parameter} {} {unit}: {:.1} %, {}",
+            "{parameter} {} {unit}: {:.1} %, {}{}",
             digits(value),
             100.0 * reached.probability,
-            told(simulated.as_ref(), reached.probability)
+            told(simulated.as_ref(), reached.probability),
+            frames_in_words(status, asked, reached.probability, simulated.as_ref())
         );
+        if goal > asked {
+            let (goal, asked) = (100.0 * goal, 100.0 * asked);
+            let frames = file.confirm.frames;
+            evidence.push_str(&format!(
+                "; aimed at {goal:.1} %, so that {frames} frames show the {asked:.1} % asked"
+            ));
+        }
         if let (Some(value), Some(probability)) = (failing_value, failing) {
             let told = told(failing_simulated.as_ref(), probability);
             evidence.push_str(&format!("; {} {unit}: {:.1} %, {told}", digits(value), 100.0 * probability));
@@ -207,23 +251,20 @@ impl<'a> Assessment<'a> {
         if !is_monotone {
             evidence.push_str("; beyond, not everywhere met");
         }
-        if !shown && file.confirm.frames > 0 {
-            evidence.push_str("; too few frames to show it");
-        }
         Ok(Verdict {
-            status: if is_met { Status::Met } else { Status::NotMet },
+            status,
             reached: reached.probability,
             // Room of the camera as it is.
             margin: own.map(|own| if find.want == Want::Largest { value - own } else { own - value }),
             evidence,
             simulated,
-            binds: (!is_met)
-                .then(|| "simulation: fewer frames meet it than the analytic law says".to_owned()),
+            binds: (status == Status::NotMet).then(|| REFUTED.to_owned()),
             found: Some(Found {
                 parameter: parameter.into(),
                 unit: unit.into(),
                 value,
                 probability: reached.probability,
+                aimed: goal,
                 threshold_value,
                 simulated,
                 failing_value,
@@ -434,4 +475,35 @@ fn digests(requirements: &Requirements) -> Result<FileDigests, Failure> {
         digests.extend(file_sha256(Path::new(path))?.map(|sha256| (role.to_owned(), sha256)));
     }
     Ok(digests)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn simulated(count: u64, of: u64) -> Simulated {
+        let confidence = 0.95;
+        let (low, high) = clopper_pearson(count, of, confidence);
+        Simulated { count, of, low, high, confidence }
+    }
+
+    #[test]
+    fn law_and_simulation_are_told_apart() {
+        let of = |reached, count, frames| status(0.9, reached, Some(&simulated(count, frames)));
+        assert_eq!(status(0.9, 0.95, None), Status::MetLaw);
+        assert_eq!(status(0.9, 0.85, None), Status::NotMet);
+        // 0.9^28 = 0.052, 0.9^29 = 0.047.
+        assert_eq!(of(0.95, 28, 28), Status::MetLaw);
+        assert_eq!(of(0.95, 29, 29), Status::MetSimulated);
+        assert_eq!(of(0.95, 27, 29), Status::NotDecided);
+        assert_eq!(of(0.95, 15, 29), Status::NotMet);
+        assert_eq!(of(0.85, 29, 29), Status::NotMet);
+    }
+
+    #[test]
+    fn the_frames_that_would_decide_are_named() {
+        let words = |reached| frames_in_words(Status::NotDecided, 0.9, reached, Some(&simulated(27, 29)));
+        assert!(words(1.0).contains("about 29 would"), "{}", words(1.0));
+        assert_eq!(words(0.9), ", too few frames to show it");
+    }
 }

@@ -356,19 +356,12 @@ fn local_orbital() -> Guidance {
     Guidance::LocalOrbital { phi_deg: 0.0, theta_deg: 0.0, psi_deg: 0.0 }
 }
 
-/// A guidance that gives the attitude of a pointing: roll is the turn from the image with north up.
+/// A guidance that gives the attitude of a pointing.
 fn inertial(pointing: &Pointing) -> Guidance {
-    let (ra, dec) = (pointing.boresight.ra(), pointing.boresight.dec());
-    let (sin_ra, cos_ra) = libm::sincos(ra.radians());
-    let east = Vector3::new(-sin_ra, cos_ra, 0.0);
-    let x = pointing.camera_from_icrs.inverse().rotate(&Vector3::x());
-    // At roll 0 columns run against the east; a roll turns them towards the rows.
-    let down = -pointing.boresight.vector().cross(&east);
-    let roll = libm::atan2(x.dot(&down), x.dot(&-east));
     Guidance::Inertial {
-        ra_deg: ra.degrees(),
-        dec_deg: dec.degrees(),
-        roll_deg: contract::Angle::from_radians(roll).degrees(),
+        ra_deg: pointing.boresight.ra().degrees(),
+        dec_deg: pointing.boresight.dec().degrees(),
+        roll_deg: pointing.roll().degrees(),
     }
 }
 

@@ -133,6 +133,7 @@ pub(super) fn sky(requirements: &Requirements, design: &Design<'_>) -> Result<Sk
         map.push(PointingStars {
             ra_deg: pointing.boresight.ra().degrees(),
             dec_deg: pointing.boresight.dec().degrees(),
+            roll_deg: pointing.roll().degrees(),
             time_utc: files::format_utc(pointing.time),
             excluded: pointing.excluded.map(|why| why.code().into()),
             background_e_per_s: field.background_e_per_s,

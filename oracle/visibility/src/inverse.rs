@@ -40,6 +40,8 @@ pub enum Search {
 pub struct FoundValue {
     /// Meets it with so much room that the simulated frames can show it.
     pub value: f64,
+    /// The probability aimed at: what is asked for, or what the simulated frames need to show it.
+    pub goal: f64,
     /// Where the analytic probability is just what is asked for.
     pub threshold_value: f64,
     /// Beyond the threshold, so far that the simulated frames can show that it does not; `None` when the whole bracket meets it.
@@ -84,7 +86,7 @@ pub fn search(
     let file = &requirements.file;
     let asked = demand.probability(file.probability);
     let (above, below) = resolvable(asked, file.confirm.frames, file.confirm.confidence);
-    let goal = above.unwrap_or(asked);
+    let mut goal = above.unwrap_or(asked);
     let pointings = SEARCH_POINTINGS.min(file.sky.pointings as usize);
     let fixed = match find.parameter {
         Parameter::ExposureS if own.covers(find.to) => Some(own.thinned(pointings)?),
@@ -99,6 +101,10 @@ pub fn search(
     // From here on the wanted end is the first.
     if find.want == Want::Largest {
         grid.reverse();
+    }
+    if grid.iter().all(|(_, probability)| *probability < goal) {
+        // What the frames could show is nowhere reached: then what is asked for, by the law alone.
+        goal = asked;
     }
     let Some(met) = grid.iter().position(|(_, probability)| *probability >= goal) else {
         let best = grid.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -128,7 +134,7 @@ pub fn search(
         None => None,
     };
     let is_monotone = grid[met..].iter().all(|(_, probability)| *probability >= asked);
-    Ok(Search::Found(FoundValue { value, threshold_value, failing_value, is_monotone }))
+    Ok(Search::Found(FoundValue { value, goal, threshold_value, failing_value, is_monotone }))
 }
 
 /// A thousandth beyond a crossing, towards the value of the grid that fails.

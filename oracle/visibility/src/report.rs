@@ -64,20 +64,31 @@ pub struct CameraFigures {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// It is.
-    Met,
-    /// It is not.
+    /// The analytic law says so, and the lower bound of the simulated rate too.
+    MetSimulated,
+    /// The analytic law says so alone: nothing was simulated, or too few frames to show it even if all of them met it.
+    MetLaw,
+    /// The law or the upper bound of the simulated rate says that it is not.
     NotMet,
+    /// The law says so, and the bounds of the simulated rate are on either side of what is asked for.
+    NotDecided,
     /// No value that was to be looked at meets it.
     Impossible,
 }
 
 impl Status {
+    /// Whether it is met, by the law at least.
+    pub fn is_met(self) -> bool {
+        matches!(self, Self::MetSimulated | Self::MetLaw)
+    }
+
     /// In words.
     pub fn words(self) -> &'static str {
         match self {
-            Self::Met => "met",
+            Self::MetSimulated => "met (simulated)",
+            Self::MetLaw => "met (law)",
             Self::NotMet => "not met",
+            Self::NotDecided => "not decided",
             Self::Impossible => "impossible",
         }
     }
@@ -136,6 +147,8 @@ pub struct Found {
     pub value: f64,
     /// Probability by the analytic law there.
     pub probability: f64,
+    /// The probability that the search aimed at: what is asked for, or as much more as the simulated frames need to show that.
+    pub aimed: f64,
     /// Where the analytic probability is just what is asked for.
     pub threshold_value: f64,
     /// What was simulated at the value.
@@ -224,6 +237,8 @@ pub struct PointingStars {
     pub ra_deg: f64,
     /// Declination, degrees.
     pub dec_deg: f64,
+    /// Roll, −180 to 180 degrees: the turn from the image with north up, as in a scenario's inertial guidance.
+    pub roll_deg: f64,
     /// When.
     pub time_utc: String,
     /// What excludes it; `None` when it counts.

@@ -1,6 +1,6 @@
 //! Boresights over the whole sky, and the stars that the camera has in its field at each.
 
-use contract::{CameraFrame, Direction, Icrs, OutOfRange, Rotation};
+use contract::{Angle, CameraFrame, Direction, Icrs, OutOfRange, Rotation};
 use hifitime::{Epoch, Unit};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -102,6 +102,16 @@ impl Pointing {
         let observer = pointing.observer(motion)?;
         pointing.excluded = pointing.exclusion(&observer, sky);
         Ok(pointing)
+    }
+
+    /// The turn from the image with north up.
+    pub fn roll(&self) -> Angle {
+        let (sin_ra, cos_ra) = libm::sincos(self.boresight.ra().radians());
+        let east = Vector3::new(-sin_ra, cos_ra, 0.0);
+        let x = self.camera_from_icrs.inverse().rotate(&Vector3::x());
+        // At roll 0 columns run against the east; a roll turns them towards the rows.
+        let down = -self.boresight.vector().cross(&east);
+        Angle::from_radians(libm::atan2(x.dot(&down), x.dot(&-east)))
     }
 
     /// Whoever looks from there.
@@ -261,7 +271,7 @@ mod tests {
             [(0.0, 0.0, 20.0), (77.0, 90.0, 15.0), (200.0, -60.0, 30.0), (10.0, 45.0, 8.0)]
         {
             let centre: Direction<Icrs> =
-                Direction::from_ra_dec(contract::Angle::from_degrees(ra), contract::Angle::from_degrees(dec));
+                Direction::from_ra_dec(Angle::from_degrees(ra), Angle::from_degrees(dec));
             let inside =
                 pointings.iter().filter(|p| p.boresight.separation(&centre).degrees() < radius).count();
             let expected = 5_000.0 * (1.0 - libm::cos(f64::to_radians(radius)));

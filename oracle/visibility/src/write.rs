@@ -103,7 +103,7 @@ fn sky(report: &VisibilityReport) -> String {
     let lines = report.sky.map.iter().map(|p| {
         format!(
             "{},{},{},{},{},{}",
-            cells(&[Some(p.ra_deg), Some(p.dec_deg)]),
+            cells(&[Some(p.ra_deg), Some(p.dec_deg), Some(p.roll_deg)]),
             p.time_utc,
             p.excluded.as_deref().unwrap_or(""),
             cell(Some(p.background_e_per_s)),
@@ -111,7 +111,7 @@ fn sky(report: &VisibilityReport) -> String {
             cells(&[Some(p.stars), Some(p.probability)])
         )
     });
-    table("ra_deg,dec_deg,time_utc,excluded,background_e_per_s,in_field,stars,probability", lines)
+    table("ra_deg,dec_deg,roll_deg,time_utc,excluded,background_e_per_s,in_field,stars,probability", lines)
 }
 
 /// Reads `sky.csv`.
