@@ -4,10 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use files::{Failure, WholeFile};
-use gate::{
-    Baseline, CompareOptions, FigureVerdict, GateReport, Replace, compare, junit, junit_of_failure,
-    read_result,
-};
+use gate::{Baseline, CompareOptions, GateReport, Replace, compare, junit, junit_of_failure, read_result};
 use scenario::AttitudeChoice;
 
 use super::Answer;
@@ -47,6 +44,12 @@ struct CompareArguments {
     /// rates nothing
     #[arg(long, value_name = "FIGURE=SIZE")]
     tolerance: Vec<Tolerance>,
+    /// Let figures with a best value change (a bias, a NEES): for a reason, which the report repeats
+    #[arg(long, requires = "reason")]
+    accept_changed: bool,
+    /// Why they may change
+    #[arg(long, value_name = "TEXT", requires = "accept_changed", value_parser = clap::builder::NonEmptyStringValueParser::new())]
+    reason: Option<String>,
     /// Write the report as JUnit XML too, or why nothing could be compared; a new file
     #[arg(long, value_name = "FILE", value_parser = place())]
     junit: Option<PathBuf>,
@@ -142,13 +145,18 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
         write_gate(&report, &arguments.result, path)?;
     }
     output.answer(&report, gate_table(&report, output.is_terminal()))?;
-    Ok(if report.verdict == FigureVerdict::Worse { Answer::No } else { Answer::Yes })
+    Ok(if report.is_shut() { Answer::No } else { Answer::Yes })
 }
 
 fn compared(arguments: &CompareArguments) -> Result<GateReport, Failure> {
     let baseline = Baseline::read(&arguments.baseline)?;
     let result = read_result(&arguments.result, arguments.attitude)?;
     let tolerances = arguments.tolerance.iter().map(|told| (told.figure.clone(), told.size)).collect();
-    let options = CompareOptions { alpha: arguments.alpha, figures: arguments.figures.clone(), tolerances };
+    let options = CompareOptions {
+        alpha: arguments.alpha,
+        figures: arguments.figures.clone(),
+        tolerances,
+        accept_changed: arguments.reason.clone(),
+    };
     compare(&baseline, &result, &options)
 }

@@ -1,6 +1,7 @@
 //! What a person reads of a gate.
 use comfy_table::{Attribute, Cell};
 use gate::{Baseline, FigureReport, FigureVerdict, Flip, GateReport, Pairing};
+use pipeline::external::protocol::harmless;
 use run::figure_called;
 
 use crate::table::far_range::{finish, percent, plain_table};
@@ -34,8 +35,15 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
         ]);
     }
     let worse: Vec<String> = report.worse().map(|name| figure_called(name).words).collect();
-    let verdict =
-        if worse.is_empty() { "no worse".to_owned() } else { format!("WORSE: {}", worse.join(", ")) };
+    let differing: Vec<String> = report.changed().map(|name| figure_called(name).words).collect();
+    let verdict = match (worse.is_empty(), differing.is_empty(), &report.accepted) {
+        (false, _, _) => format!("WORSE: {}", worse.join(", ")),
+        (true, true, _) => "no worse".to_owned(),
+        (true, false, None) => format!("CHANGED: {}", differing.join(", ")),
+        (true, false, Some(reason)) => {
+            format!("changed, accepted ({}): {}", harmless(reason), differing.join(", "))
+        }
+    };
     let paired = match report.pairing {
         Pairing::Frames => format!("the same {}", report.units),
         Pairing::Blocks => format!(
@@ -47,6 +55,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
     text.push_str(&finish(table));
     text.push_str(&format!(
         "{} {} in {} blocks; {paired}. Worse: adjusted for all figures, p at most {}, and by more than the tolerance.\n\
+         Changed: of a figure with a best value (a bias), differs from the baseline as surely, and is no farther from that value.\n\
          Visible: the worsening that is seen with a probability of 95 % or more. Rates in percent.\n\
          Baseline: {}\n",
         report.count, report.units, report.blocks, report.alpha, report.reason,

@@ -210,6 +210,49 @@ fn the_same_run_is_no_worse_and_a_worse_one_shuts_the_gate() {
 }
 
 /// The errors of centroids by the true attitude, 2″, had been held against those of a pipeline's own lines of sight, 50″.
+/// A shift of all centroids shuts the gate whichever side it points to, and names what it changed; for a reason it passes.
+#[test]
+fn a_shift_of_half_a_pixel_is_no_improvement() {
+    let bench = bench();
+    // Of five blocks with an answer no two-sided test has a p below 1/16.
+    let words =
+        ["gate", "baseline", "run", "--out", "fine", "--reason", "more blocks", "--block-length", "3"];
+    bench.boresight_words(&words).done();
+    for (name, shift_px) in [("up", -0.5), ("down", 0.5)] {
+        bench.boresight(&format!("run argon --frames 0..60 --out {name}")).done();
+        let file = format!("{name}/measurements.csv");
+        let rows = bench.read(&file);
+        let place = rows.lines().next().unwrap().split(',').position(|column| column == "y_px").unwrap();
+        let shifted = rows.lines().map(|line| {
+            let cells = line.split(',').enumerate().map(|(i, cell)| match cell.parse::<f64>() {
+                Ok(y) if i == place => (y + shift_px).to_string(),
+                _ => cell.to_owned(),
+            });
+            cells.collect::<Vec<_>>().join(",")
+        });
+        let text = shifted.collect::<Vec<_>>().join("\n") + "\n";
+        bench.unseal(name);
+        bench.write(&file, text);
+        let answer = bench.boresight(&format!("gate fine {name} --figures centroid_y_mean_px --json"));
+        assert_eq!(answer.status, Some(1), "{}", answer.stdout);
+        let verdict = answer.json()["verdict"].as_str().unwrap().to_owned();
+        assert!(["worse", "changed"].contains(&verdict.as_str()), "{verdict}");
+        let accepted = [
+            "gate",
+            "fine",
+            name,
+            "--figures",
+            "centroid_y_mean_px",
+            "--accept-changed",
+            "--reason",
+            "new centroider",
+        ];
+        let passes = bench.boresight_words(&accepted).status == Some(0);
+        assert_eq!(passes, verdict == "changed", "{name}: {verdict}");
+    }
+    bench.boresight("gate fine up --accept-changed").refused(&["--reason"]);
+}
+
 #[test]
 fn figures_that_count_other_things_are_not_compared() {
     let bench = bench();

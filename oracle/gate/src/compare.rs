@@ -3,7 +3,7 @@ use files::{Failure, toml_file};
 use indexmap::IndexMap;
 use run::figure_called;
 use score::{Better, FigureTerms, Kind, Sense, UnitVerdict, attitude_note};
-use statistics::{BlockEffects, Exchanges, JointTest, joint_test, normal_quantile};
+use statistics::{BlockEffects, Exchanges, JointTest, Tested, joint_test, normal_quantile};
 
 use super::baseline::Baseline;
 use super::effects::{FigureEffect, interval, neighbour_correlation};
@@ -28,11 +28,13 @@ pub struct CompareOptions {
     pub figures: Vec<String>,
     /// By how much figures may be worse and pass, in their units, where it is not the default.
     pub tolerances: IndexMap<String, f64>,
+    /// Why figures with a best value may change; absent: a change shuts the gate.
+    pub accept_changed: Option<String>,
 }
 
 impl Default for CompareOptions {
     fn default() -> Self {
-        Self { alpha: 0.05, figures: Vec::new(), tolerances: IndexMap::new() }
+        Self { alpha: 0.05, figures: Vec::new(), tolerances: IndexMap::new(), accept_changed: None }
     }
 }
 
@@ -66,14 +68,26 @@ pub fn compare(
             FigureEffect::of_runs(figure_called(&before.name).sense, before, after, blocks, tolerance)
         })
         .collect();
-    let worse: Vec<BlockEffects> = effects.iter().map(|effect| effect.worse.clone()).collect();
-    let better: Vec<BlockEffects> = effects.iter().map(FigureEffect::better).collect();
+    // What shuts the gate is tested together: every worsening, and of figures with a best value the change to the other side too.
+    let with_best_value: Vec<usize> = (0..effects.len()).filter(|i| effects[*i].has_best_value()).collect();
+    let other_side = with_best_value.iter().map(|i| effects[*i].better());
+    let worse: Vec<BlockEffects> =
+        effects.iter().map(|effect| effect.worse.clone()).chain(other_side).collect();
+    let for_the_better = |effect: &FigureEffect| {
+        let mut better = effect.better();
+        if effect.has_best_value() {
+            better.effects.fill(0.0);
+        }
+        better
+    };
+    let better: Vec<BlockEffects> = effects.iter().map(for_the_better).collect();
     let (worse, better) = (joint_test(&worse, &exchanges, alpha), joint_test(&better, &exchanges, alpha));
 
     let mut figures = IndexMap::new();
     let mut correlation: f64 = 0.0;
     for (index, ((before, after), effect)) in pairs.iter().zip(&effects).enumerate() {
-        let judge = Judge { effect, worse: &worse, better: &better, index, alpha, figures: pairs.len() };
+        let other_side = with_best_value.iter().position(|i| *i == index).map(|place| effects.len() + place);
+        let judge = Judge { effect, worse: &worse, better: &better, index, other_side, alpha };
         let interval = interval(before, after, blocks, &exchanges);
         correlation = correlation.max(neighbour_correlation(&effect.worse.effects));
         figures.insert(before.name.clone(), judge.report(interval.map(|i| (i.low, i.high))));
@@ -85,9 +99,16 @@ pub fn compare(
             blocks.count()
         )));
     }
-    let is_worse = figures.values().any(|figure| figure.verdict.is_worse());
+    let any = |is: fn(FigureVerdict) -> bool| figures.values().any(|figure| is(figure.verdict));
     Ok(GateReport {
-        verdict: if is_worse { FigureVerdict::Worse } else { FigureVerdict::NoWorse },
+        verdict: if any(FigureVerdict::is_worse) {
+            FigureVerdict::Worse
+        } else if any(|verdict| verdict == FigureVerdict::Changed) {
+            FigureVerdict::Changed
+        } else {
+            FigureVerdict::NoWorse
+        },
+        accepted: options.accept_changed.clone(),
         name: identity.name.clone(),
         world: identity.world.clone(),
         reason: baseline.header.reason.clone(),
@@ -247,15 +268,16 @@ struct Judge<'a> {
     worse: &'a JointTest,
     better: &'a JointTest,
     index: usize,
+    /// Of a figure with a best value, where the change towards less was tested.
+    other_side: Option<usize>,
     alpha: f64,
-    figures: usize,
 }
 
 impl Judge<'_> {
     fn report(&self, interval: Option<(f64, f64)>) -> FigureReport {
         let effect = self.effect;
         let difference = effect.result.zip(effect.baseline).map(|(result, baseline)| result - baseline);
-        let tested = self.worse.figures[self.index];
+        let tested = self.tested();
         FigureReport {
             verdict: self.verdict(),
             better: match effect.sense.better {
@@ -281,21 +303,32 @@ impl Judge<'_> {
         }
     }
 
+    /// What was found for the worse; of a figure with a best value on the side of the change, its own p for both sides.
+    fn tested(&self) -> Tested {
+        let up = self.worse.figures[self.index];
+        let Some(down) = self.other_side.map(|place| self.worse.figures[place]) else { return up };
+        let nearer = if up.p <= down.p { up } else { down };
+        Tested { p: (2.0 * nearer.p).min(1.0), ..nearer }
+    }
+
     fn verdict(&self) -> FigureVerdict {
         let effect = self.effect;
         if effect.baseline.is_some() && effect.result.is_none() {
-            let by_chance = self.figures as f64 * libm::exp2(-(effect.blocks as f64));
+            let by_chance = self.better.figures.len() as f64 * libm::exp2(-(effect.blocks as f64));
             return if by_chance <= GONE_BY_CHANCE {
                 FigureVerdict::Gone
             } else {
                 FigureVerdict::TooLittleData
             };
         }
-        let Some(worsening) = effect.worsening() else { return FigureVerdict::TooLittleData };
+        let (Some(worsening), Some(change)) = (effect.worsening(), effect.change()) else {
+            return FigureVerdict::TooLittleData;
+        };
         if !self.can_be_seen() {
             FigureVerdict::TooLittleData
-        } else if self.worse.figures[self.index].adjusted_p <= self.alpha && worsening > effect.tolerance {
-            FigureVerdict::Worse
+        } else if self.tested().adjusted_p <= self.alpha && change > effect.tolerance {
+            // Farther from the best value by what counts is worse; nearer to it, or across it, is another result.
+            if worsening > effect.tolerance { FigureVerdict::Worse } else { FigureVerdict::Changed }
         } else if self.better.figures[self.index].adjusted_p <= self.alpha && -worsening > effect.tolerance {
             FigureVerdict::Better
         } else {
@@ -318,7 +351,7 @@ impl Judge<'_> {
             return None;
         }
         let Sense { kind, .. } = effect.sense;
-        let bonferroni = normal_quantile(1.0 - self.alpha / self.figures as f64);
+        let bonferroni = normal_quantile(1.0 - self.alpha / self.worse.figures.len() as f64);
         let z = self.worse.critical.max(bonferroni) + Z_POWER;
         let by_noise = match kind {
             Kind::Amount => z * effect.standard_error,
@@ -383,6 +416,36 @@ mod tests {
         let report = compared(hits(&AFTER), &hits(&BEFORE));
         assert_eq!(report.verdict, FigureVerdict::NoWorse);
         assert_eq!(report.figures["hit_rate"].verdict, FigureVerdict::Better);
+    }
+
+    /// A bias of −1 that becomes one of −0.5, of +0.9 or of −1.5: the first two are nearer to nought and no improvement.
+    #[test]
+    fn a_bias_that_points_to_nought_has_changed_and_shuts_the_gate() {
+        let bias = |bias: f64| {
+            let values: Vec<_> = (0..12).map(|i| Some(bias + 0.01 * f64::from(i % 3))).collect();
+            sample(vec![figure("ra_mean_deg", Reduction::Mean, &values), rate("hit_rate", &BEFORE)])
+        };
+        for (after, verdict) in [
+            (-0.5, FigureVerdict::Changed),
+            (0.9, FigureVerdict::Changed),
+            (-1.5, FigureVerdict::Worse),
+            (-1.001, FigureVerdict::NoWorse),
+        ] {
+            let report = compared(bias(-1.0), &bias(after));
+            assert_eq!(
+                (report.verdict, report.figures["ra_mean_deg"].verdict),
+                (verdict, verdict),
+                "{after}"
+            );
+            assert_eq!(report.is_shut(), verdict != FigureVerdict::NoWorse);
+            let accepting = CompareOptions {
+                accept_changed: Some("a new centroider".to_owned()),
+                ..CompareOptions::default()
+            };
+            let report = compare(&baseline(bias(-1.0)), &bias(after), &accepting).unwrap();
+            assert_eq!(report.verdict, verdict);
+            assert_eq!(report.is_shut(), verdict == FigureVerdict::Worse);
+        }
     }
 
     #[test]
@@ -625,7 +688,7 @@ mod tests {
             baseline_of: 100,
             result_of: 50,
             blocks: 10,
-            worse: BlockEffects { effects: Vec::new(), most: f64::INFINITY },
+            worse: BlockEffects { effects: Vec::new() },
             standard_error: 0.25,
             tolerance: 0.5,
         }
@@ -641,10 +704,10 @@ mod tests {
     ) -> FigureReport {
         let test = |adjusted_p| {
             let tested = Tested { statistic: 1.0, p: 0.5 * adjusted_p, adjusted_p };
-            JointTest { figures: vec![tested], critical }
+            JointTest { figures: vec![tested; figures], critical }
         };
         let (worse, better) = (&test(worse), &test(better));
-        Judge { effect, worse, better, index: 0, alpha: 0.05, figures }.report(Some((0.25, 0.75)))
+        Judge { effect, worse, better, index: 0, other_side: None, alpha: 0.05 }.report(Some((0.25, 0.75)))
     }
 
     #[test]

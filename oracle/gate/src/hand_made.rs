@@ -69,6 +69,7 @@ pub(super) fn report(figures: &[(&str, FigureVerdict)]) -> GateReport {
     };
     GateReport {
         verdict: FigureVerdict::Worse,
+        accepted: None,
         name: identity().name,
         world: identity().world,
         reason: "a test".to_owned(),

@@ -4,7 +4,7 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use super::report::{FigureReport, FigureVerdict, GateReport};
 
-/// The report as a JUnit document: figures that are worse or gone are failures, those with too little data are skipped.
+/// The report as a JUnit document: figures that are worse or gone are failures, as are those that changed unless that was accepted, those with too little data are skipped.
 ///
 /// # Errors
 /// [`Failure::Usage`] when it cannot be written as XML.
@@ -13,7 +13,8 @@ pub fn junit(report: &GateReport) -> Result<String, Failure> {
     for (name, figure) in &report.figures {
         let mut status = match figure.verdict {
             FigureVerdict::NoWorse | FigureVerdict::Better => TestCaseStatus::success(),
-            FigureVerdict::Worse | FigureVerdict::Gone => {
+            FigureVerdict::Changed if report.accepted.is_some() => TestCaseStatus::success(),
+            FigureVerdict::Worse | FigureVerdict::Gone | FigureVerdict::Changed => {
                 TestCaseStatus::non_success(NonSuccessKind::Failure)
             }
             FigureVerdict::TooLittleData => TestCaseStatus::skipped(),

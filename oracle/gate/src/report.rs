@@ -18,6 +18,9 @@ pub enum FigureVerdict {
     NoWorse,
     /// It is better, beyond chance and beyond its tolerance.
     Better,
+    /// A figure with a best value differs from the baseline, beyond chance and beyond its tolerance, and is no farther from that value: a bias
+    /// has another size or side.
+    Changed,
     /// It has values in too few blocks to show anything, whatever they are.
     TooLittleData,
 }
@@ -35,6 +38,7 @@ impl FigureVerdict {
             Self::Gone => "gone",
             Self::NoWorse => "no worse",
             Self::Better => "better",
+            Self::Changed => "changed",
             Self::TooLittleData => "too little data",
         }
     }
@@ -80,8 +84,11 @@ pub struct FigureReport {
 /// What a gate found: the document of `--json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GateReport {
-    /// `worse` when any figure is, otherwise `no_worse`.
+    /// `worse` when any figure is, otherwise `changed` when any figure is, otherwise `no_worse`.
     pub verdict: FigureVerdict,
+    /// Why a change passes, where it was accepted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accepted: Option<String>,
     /// Name of the scenario or study.
     pub name: String,
     /// `far_range` or `docking`.
@@ -119,6 +126,20 @@ pub struct GateReport {
 }
 
 impl GateReport {
+    /// Whether the gate is shut: a figure is worse, or one with a best value changed and that was not accepted.
+    pub fn is_shut(&self) -> bool {
+        match self.verdict {
+            FigureVerdict::Changed => self.accepted.is_none(),
+            verdict => verdict.is_worse(),
+        }
+    }
+
+    /// Names of the figures that changed.
+    pub fn changed(&self) -> impl Iterator<Item = &str> {
+        let changed = self.figures.iter().filter(|(_, figure)| figure.verdict == FigureVerdict::Changed);
+        changed.map(|(name, _)| name.as_str())
+    }
+
     /// Names of the figures that are worse.
     pub fn worse(&self) -> impl Iterator<Item = &str> {
         self.figures.iter().filter(|(_, figure)| figure.verdict.is_worse()).map(|(name, _)| name.as_str())
@@ -137,12 +158,18 @@ mod tests {
             (FigureVerdict::Gone, "gone", true),
             (FigureVerdict::NoWorse, "no worse", false),
             (FigureVerdict::Better, "better", false),
+            (FigureVerdict::Changed, "changed", false),
             (FigureVerdict::TooLittleData, "too little data", false),
         ];
         for (verdict, words, is_worse) in all {
             assert_eq!((verdict.words(), verdict.is_worse()), (words, is_worse));
         }
-        let report = report(&all.map(|(verdict, name, _)| (name, verdict)));
+        let mut report = report(&all.map(|(verdict, name, _)| (name, verdict)));
+        assert!(report.is_shut());
+        report.verdict = FigureVerdict::Changed;
+        assert!(report.is_shut() && report.changed().eq(["changed"]));
+        report.accepted = Some("a new centroider".to_owned());
+        assert!(!report.is_shut());
         assert_eq!(report.worse().collect::<Vec<_>>(), ["worse", "gone"]);
     }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use files::Failure;
 use gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
 
-use super::chart::{Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
+use super::chart::{BESIDE, Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
 use super::data_table::DataTable;
 use super::figures::{cell, significant};
 use super::page::{Page, Section};
@@ -90,7 +90,15 @@ fn change(flip: &Flip) -> String {
 /// The page of a gate.
 pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
     let worse: Vec<String> = report.worse().map(|name| figure_called(name).words).collect();
-    let lead = if worse.is_empty() {
+    let names: Vec<String> = report.changed().map(|name| figure_called(name).words).collect();
+    let lead = if worse.is_empty() && !names.is_empty() {
+        let accepted = report.accepted.as_ref().map(|reason| format!(" Accepted: {reason}"));
+        format!(
+            "Changed against the baseline, and no farther from the best value: {}.{}",
+            names.join(", "),
+            accepted.unwrap_or_default()
+        )
+    } else if worse.is_empty() {
         format!("No figure is worse than in the baseline, of {} compared.", report.figures.len())
     } else {
         format!("Worse than in the baseline: {}.", worse.join(", "))
@@ -223,7 +231,14 @@ fn differences(shown: &[Compared<'_>], unit: fn(&FigureReport) -> f64, axis: &st
         limit(-1.0, "−tolerance"),
         of(&|verdict| verdict.is_worse(), "worse", WRONG),
         of(&|verdict| verdict == FigureVerdict::Better, "better", super::chart::TRUTH),
-        of(&|verdict| !verdict.is_worse() && verdict != FigureVerdict::Better, "no worse", MEASURED),
+        of(&|verdict| verdict == FigureVerdict::Changed, "changed", BESIDE),
+        of(
+            &|verdict| {
+                !(verdict.is_worse() || matches!(verdict, FigureVerdict::Better | FigureVerdict::Changed))
+            },
+            "no worse",
+            MEASURED,
+        ),
     ];
     (traces, axes("", axis))
 }

@@ -72,17 +72,14 @@ impl Set<'_> {
 pub struct BlockEffects {
     /// One number a block; their sum is the effect.
     pub effects: Vec<f64>,
-    /// The most that the effect can be: where better is nearer to a value, two runs that lie on both sides of it differ by less in their
-    /// distances from it than in their values. Infinite elsewhere; 0 or more.
-    pub most: f64,
 }
 
 impl BlockEffects {
     /// Of the effect that some exchange gives: it over the root of the sum of squares, which no exchange changes. Of hits and misses it
     /// is the statistic of McNemar's test for blocks (Yang, Sun & Hardin 2010, Biometrical Journal 52, 638–652). 0 where no block
     /// differs.
-    fn statistic(&self, effect: f64, root_of_squares: f64) -> f64 {
-        if root_of_squares > 0.0 { effect.clamp(-self.most, self.most) / root_of_squares } else { 0.0 }
+    fn statistic(effect: f64, root_of_squares: f64) -> f64 {
+        if root_of_squares > 0.0 { effect / root_of_squares } else { 0.0 }
     }
 
     fn root_of_squares(&self) -> f64 {
@@ -129,8 +126,8 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
             let sign = if set.has(block) { -1.0 } else { 1.0 };
             into.iter_mut().zip(row).for_each(|(sum, effect)| *sum += sign * effect);
         }
-        for ((value, figure), root) in into.iter_mut().zip(figures).zip(&roots) {
-            *value = figure.statistic(*value, *root);
+        for (value, root) in into.iter_mut().zip(&roots) {
+            *value = BlockEffects::statistic(*value, *root);
         }
     };
     let mut observed = vec![0.0; figures.len()];
@@ -211,7 +208,7 @@ mod tests {
     use super::*;
 
     fn effects(effects: &[f64]) -> BlockEffects {
-        BlockEffects { effects: effects.to_vec(), most: f64::INFINITY }
+        BlockEffects { effects: effects.to_vec() }
     }
 
     fn test_of(figures: &[BlockEffects], alpha: f64) -> JointTest {
@@ -383,15 +380,6 @@ mod tests {
             assert!(alarms <= 71, "{name}: {alarms} of 1000");
         }
         assert!(false_alarms(8, correlated) >= 29, "the test is not asleep");
-    }
-
-    /// An effect that cannot exceed `most` keeps its sign and no more.
-    #[test]
-    fn an_effect_that_is_bounded_is_cut() {
-        let cut = BlockEffects { effects: vec![1.0; 8], most: 2.0 };
-        let test = test_of(std::slice::from_ref(&cut), 0.05);
-        assert!((test.figures[0].statistic - 2.0 / 8f64.sqrt()).abs() < 1e-12);
-        assert!(test.figures[0].p > 0.1);
     }
 
     /// 95 % nominal for the mean of as few as eight blocks; the share of 1000 scatters by 0.7 %.

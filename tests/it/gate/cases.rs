@@ -1,8 +1,6 @@
 //! Runs for the gate to judge: made up, and real; with faults of a stated size.
 
-use boresight::gate::{
-    Baseline, CompareOptions, FigureVerdict, Identity, Pairing, Sample, SourceKind, compare,
-};
+use boresight::gate::{Baseline, CompareOptions, Identity, Pairing, Sample, SourceKind, compare};
 use boresight::score::{
     AnswerError, AttitudeUsed, Cause, FrameVerdict, LineOfSightError, Taken, UnitTable, Verdict, WithinLimits,
 };
@@ -204,5 +202,5 @@ pub(crate) fn baseline_of(sample: Sample) -> Baseline {
 pub(crate) fn rejects(baseline: &Baseline, result: &Sample, pairing: Pairing) -> bool {
     let report = compare(baseline, result, &CompareOptions::default()).unwrap();
     assert_eq!(report.pairing, pairing);
-    report.verdict == FigureVerdict::Worse
+    report.is_shut()
 }
