@@ -6,8 +6,7 @@ use pipeline::external::protocol::harmless;
 use run::figure_called;
 use score::{attitude_note, warm_up_note};
 use study::{
-    CaseFigure, CaseRow, Estimate, Limit, RankCorrelation, RequirementResult, RequirementVerdict, Study,
-    Summary, Waited, overall,
+    CaseFigure, CaseRow, Estimate, RankCorrelation, RequirementVerdict, Study, Summary, Waited, overall,
 };
 
 use crate::table::far_range::{finish, percent, plain_table};
@@ -142,13 +141,12 @@ fn requirements(summary: &Summary, styled: bool) -> String {
     for result in &summary.requirements {
         let name = &result.requirement.figure;
         let bound = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
-        let at = result.at.iter().map(|(path, value)| format!("{path} = {value}")).collect::<Vec<_>>();
         table.add_row(
-            [required(result)]
+            [result.requirement_words(&label(name), |value| number(name, value))]
                 .into_iter()
-                .chain(has_sweep.then(|| at.join(", ")))
+                .chain(has_sweep.then(|| result.at_words()))
                 .chain([bound(result.value), format!("{} to {}", bound(result.low), bound(result.high))])
-                .chain([verdict_words(result)]),
+                .chain([result.verdict_words()]),
         );
     }
     let together = match verdict {
@@ -159,34 +157,6 @@ fn requirements(summary: &Summary, styled: bool) -> String {
         }
     };
     format!("\n{}{together}\n", finish(table))
-}
-
-/// A requirement in words, as in `5 % quantile of correct rate ≥ 95.00 % (confidence 95 %)`.
-fn required(result: &RequirementResult) -> String {
-    let requirement = &result.requirement;
-    let name = &requirement.figure;
-    let limit = match requirement.limit() {
-        Ok(Limit::AtLeast(limit)) => format!(" ≥ {}", number(name, limit)),
-        Ok(Limit::AtMost(limit)) => format!(" ≤ {}", number(name, limit)),
-        Err(_) => String::new(),
-    };
-    let confidence = 100.0 * requirement.confidence;
-    format!("{}{}{limit} (confidence {confidence} %)", requirement.of.words(), label(name))
-}
-
-fn verdict_words(result: &RequirementResult) -> String {
-    let mut words = match (result.verdict, result.cases_needed) {
-        (RequirementVerdict::Met, _) => "met".to_owned(),
-        (RequirementVerdict::NotMet, _) => "NOT MET".to_owned(),
-        (RequirementVerdict::NotDecided, Some(cases)) => {
-            format!("not decided: about {cases} cases needed, {} known", result.cases)
-        }
-        (RequirementVerdict::NotDecided, None) => "not decided".to_owned(),
-    };
-    if result.without_value > 0 {
-        words.push_str(&format!(" ({} of {} cases without a value)", result.without_value, result.cases));
-    }
-    words
 }
 
 /// How the figures go with what was drawn.

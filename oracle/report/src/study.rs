@@ -7,7 +7,7 @@ use files::{Failure, FileError};
 use indexmap::IndexMap;
 use run::figure_called;
 use score::{Better, attitude_note, warm_up_note};
-use study::{CaseTable, Estimate, FigureSummary, Limit, RequirementVerdict, Summary, Waited};
+use study::{CaseTable, Estimate, FigureSummary, Summary, Waited};
 
 use super::chart::{
     BESIDE, Chart, MEASURED, REFERENCE, TRUTH, WRONG, axes, cloud, intervals, intervals_across, plain,
@@ -223,35 +223,15 @@ fn requirements(summary: &Summary) -> Section {
          bound is beyond it.",
     );
     for result in &summary.requirements {
-        let requirement = &result.requirement;
-        let name = &requirement.figure;
+        let name = &result.requirement.figure;
         let cell = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| number(name, value));
-        let limit = match requirement.limit() {
-            Ok(Limit::AtLeast(limit)) => format!(" ≥ {}", number(name, limit)),
-            Ok(Limit::AtMost(limit)) => format!(" ≤ {}", number(name, limit)),
-            Err(_) => String::new(),
-        };
-        let at: Vec<String> = result.at.iter().map(|(path, value)| format!("{path} = {value}")).collect();
-        let verdict = match (result.verdict, result.cases_needed) {
-            (RequirementVerdict::Met, _) => "met".to_owned(),
-            (RequirementVerdict::NotMet, _) => "not met".to_owned(),
-            (RequirementVerdict::NotDecided, None) => "not decided".to_owned(),
-            (RequirementVerdict::NotDecided, Some(cases)) => {
-                format!("not decided: about {cases} cases needed, {} known", result.cases)
-            }
-        };
-        let without = match result.without_value {
-            0 => String::new(),
-            count => format!(" ({count} of {} cases without a value)", result.cases),
-        };
-        let confidence = 100.0 * requirement.confidence;
         table.push([
-            format!("{}{}{limit}, confidence {confidence}\u{a0}%", requirement.of.words(), label(name)),
-            if at.is_empty() { "–".to_owned() } else { at.join(", ") },
+            result.requirement_words(&label(name), |value| number(name, value)),
+            if result.at.is_empty() { "–".to_owned() } else { result.at_words() },
             cell(result.value),
             cell(result.low),
             cell(result.high),
-            format!("{verdict}{without}"),
+            result.verdict_words(),
         ]);
     }
     Section::new("requirements", "Requirements").table(table)

@@ -49,7 +49,7 @@ pub(super) fn share(cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
     Some(Estimate::new(ratio(&sums)?, cluster_rate_interval(&sums)))
 }
 
-fn ratio(sums: &[ClusterSum]) -> Option<f64> {
+pub(super) fn ratio(sums: &[ClusterSum]) -> Option<f64> {
     let (sum, of) = sums.iter().fold((0.0, 0.0), |(sum, of), draw| (sum + draw.sum, of + draw.of));
     (of > 0.0).then(|| sum / of)
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use statistics::{Bounds, Clustered, cluster_mean_bounds, cluster_quantile_bounds, cluster_rate_bounds};
 
 use super::cases::{CaseFigure, CaseTable};
-use super::estimate::{sorted_quantile, sums};
+use super::estimate::{ratio, sorted_quantile, sums};
 
 /// Cases at which it is given up to say how many would decide.
 const MOST_CASES: f64 = 1e9;
@@ -139,6 +139,42 @@ pub struct RequirementResult {
     pub cases_needed: Option<u64>,
 }
 
+impl RequirementResult {
+    /// The requirement in words, as in `5 % quantile of correct rate, % ≥ 95.0 % (confidence 95 %)`; `label` is the figure's name,
+    /// `number` writes a value of it.
+    pub fn requirement_words(&self, label: &str, number: impl Fn(f64) -> String) -> String {
+        let StudyRequirement { at_least, at_most, of, confidence, .. } = &self.requirement;
+        let limits = [("≥", at_least), ("≤", at_most)];
+        let limits: String = limits
+            .iter()
+            .filter_map(|(sign, limit)| limit.map(|limit| format!(" {sign} {}", number(limit))))
+            .collect();
+        format!("{}{label}{limits} (confidence {} %)", of.words(), 100.0 * confidence)
+    }
+
+    /// The swept values where it was decided, as in `sensor.read_noise_e = 5`; empty without a sweep.
+    pub fn at_words(&self) -> String {
+        let at: Vec<String> = self.at.iter().map(|(path, value)| format!("{path} = {value}")).collect();
+        at.join(", ")
+    }
+
+    /// The verdict in words, with the cases that are needed and those without a value.
+    pub fn verdict_words(&self) -> String {
+        let mut words = match (self.verdict, self.cases_needed) {
+            (RequirementVerdict::Met, _) => "met".to_owned(),
+            (RequirementVerdict::NotMet, _) => "not met".to_owned(),
+            (RequirementVerdict::NotDecided, Some(cases)) => {
+                format!("not decided: about {cases} cases needed, {} known", self.cases)
+            }
+            (RequirementVerdict::NotDecided, None) => "not decided".to_owned(),
+        };
+        if self.without_value > 0 {
+            words.push_str(&format!(" ({} of {} cases without a value)", self.without_value, self.cases));
+        }
+        words
+    }
+}
+
 /// The requirements over the cases of a table, at a point of the sweep.
 pub(super) fn decide(
     requirements: &[StudyRequirement],
@@ -220,10 +256,7 @@ impl Sample {
 
     fn value(&self) -> Option<f64> {
         match self {
-            Self::Rate(sums) | Self::Mean(sums) => {
-                let (sum, of) = sums.iter().fold((0.0, 0.0), |(sum, of), c| (sum + c.sum, of + c.of));
-                (of > 0.0).then(|| sum / of)
-            }
+            Self::Rate(sums) | Self::Mean(sums) => ratio(sums),
             Self::Quantile { sorted, p } => {
                 let values: Vec<f64> = sorted.iter().map(|(_, value)| *value).collect();
                 (!values.is_empty()).then(|| sorted_quantile(&values, *p))
