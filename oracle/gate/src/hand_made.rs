@@ -3,7 +3,10 @@ use indexmap::IndexMap;
 use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 use toml::Table;
 
+use super::baseline::Baseline;
+use super::compare::compare;
 use super::identity::{Identity, Pairing, SourceKind};
+use super::options::CompareOptions;
 use super::report::{FigureReport, FigureVerdict, GateReport};
 use super::sample::Sample;
 
@@ -92,3 +95,28 @@ pub(super) fn report(figures: &[(&str, FigureVerdict)]) -> GateReport {
         flips: None,
     }
 }
+
+pub(super) fn rate(name: &str, bits: &[u8]) -> FigureTerms {
+    figure(name, Reduction::Rate, &bits.iter().map(|bit| Some(f64::from(*bit))).collect::<Vec<_>>())
+}
+
+pub(super) fn hits(bits: &[u8]) -> Sample {
+    sample(vec![rate("hit_rate", bits)])
+}
+
+/// A baseline of which each frame is a block.
+pub(super) fn baseline(sample: Sample) -> Baseline {
+    Baseline::new(sample, "a test", Some(1)).unwrap()
+}
+
+pub(super) fn compared(before: Sample, after: &Sample) -> GateReport {
+    compare(&baseline(before), after, &CompareOptions::default()).unwrap()
+}
+
+pub(super) fn refusal(before: Sample, after: &Sample, options: &CompareOptions) -> String {
+    compare(&baseline(before), after, options).unwrap_err().to_string()
+}
+
+/// Twelve frames, eight of them lost and one won.
+pub(super) const BEFORE: [u8; 12] = [1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 0];
+pub(super) const AFTER: [u8; 12] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 0];

@@ -30,6 +30,7 @@ mod blocks;
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
+mod comparable;
 mod compare;
 #[allow(
     clippy::indexing_slicing,
@@ -41,7 +42,13 @@ mod flips;
 mod hand_made;
 mod identity;
 mod influence;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod judge;
 mod junit;
+mod options;
 mod read;
 mod report;
 mod rows;
@@ -49,10 +56,11 @@ mod sample;
 
 pub use baseline::{Baseline, BaselineFigure, BaselineHeader, BlockRule, Replace};
 pub use blocks::{Blocks, LEAST_BLOCKS};
-pub use compare::{CompareOptions, compare};
+pub use compare::compare;
 pub use flips::{Flip, FlipKind, Flips};
 pub use identity::{Identity, Pairing, SourceKind};
 pub use junit::{junit, junit_of_failure};
+pub use options::CompareOptions;
 pub use read::read_result;
 pub use report::{FigureReport, FigureVerdict, GateReport};
 pub use sample::Sample;
