@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use files::{Failure, WholeFile};
 use gate::{Baseline, CompareOptions, GateReport, Replace, compare, junit, junit_of_failure, read_result};
+use indexmap::IndexMap;
 use scenario::AttitudeChoice;
 
 use super::Answer;
@@ -40,8 +41,7 @@ struct CompareArguments {
     /// Only these figures, with commas between them; default: all of the baseline
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     figures: Vec<String>,
-    /// By how much a figure may be worse and pass, in its own unit; may be given for several. Default: 1 % of an amount's size, of
-    /// rates nothing
+    /// By how much a figure may be worse and pass, in its own unit; may be given for several. Default: what the baseline says
     #[arg(long, value_name = "FIGURE=SIZE")]
     tolerance: Vec<Tolerance>,
     /// Let figures with a best value change (a bias, a NEES): for a reason, which the report repeats
@@ -79,6 +79,10 @@ struct BaselineArguments {
     /// fewer than twenty blocks, at least thirty
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     block_length: Option<u64>,
+    /// By how much a figure may be worse and pass, in its own unit; may be given for several. Default: 1 % of an amount's size, 0.1 % of
+    /// a rate
+    #[arg(long, value_name = "FIGURE=SIZE")]
+    tolerance: Vec<Tolerance>,
     #[command(flatten)]
     attitude: AttitudeOption,
 }
@@ -104,6 +108,10 @@ impl std::str::FromStr for Tolerance {
     }
 }
 
+fn sizes(tolerances: &[Tolerance]) -> IndexMap<String, f64> {
+    tolerances.iter().map(|tolerance| (tolerance.figure.clone(), tolerance.size)).collect()
+}
+
 pub(super) fn gate(arguments: &GateArguments, output: &Output) -> Result<Answer, Failure> {
     match (&arguments.command, &arguments.compare) {
         (Some(GateCommand::Baseline(arguments)), _) => make_baseline(arguments, output),
@@ -115,7 +123,8 @@ pub(super) fn gate(arguments: &GateArguments, output: &Output) -> Result<Answer,
 
 fn make_baseline(arguments: &BaselineArguments, output: &Output) -> Result<Answer, Failure> {
     let sample = read_result(&arguments.result, arguments.attitude.choice)?;
-    let mut baseline = Baseline::new(sample, &arguments.reason, arguments.block_length)?;
+    let baseline = Baseline::new(sample, &arguments.reason, arguments.block_length)?;
+    let mut baseline = baseline.with_tolerances(&sizes(&arguments.tolerance))?;
     let replace = if arguments.replace { Replace::Allow } else { Replace::Refuse };
     baseline.write(&arguments.out, replace)?;
     let text = format!("{}baseline in {}", baseline_text(&baseline), arguments.out.display());
@@ -151,11 +160,10 @@ fn run_gate(arguments: &CompareArguments, output: &Output) -> Result<Answer, Fai
 fn compared(arguments: &CompareArguments) -> Result<GateReport, Failure> {
     let baseline = Baseline::read(&arguments.baseline)?;
     let result = read_result(&arguments.result, arguments.attitude)?;
-    let tolerances = arguments.tolerance.iter().map(|told| (told.figure.clone(), told.size)).collect();
     let options = CompareOptions {
         alpha: arguments.alpha,
         figures: arguments.figures.clone(),
-        tolerances,
+        tolerances: sizes(&arguments.tolerance),
         accept_changed: arguments.reason.clone(),
     };
     compare(&baseline, &result, &options)

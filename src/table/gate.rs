@@ -54,7 +54,8 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
     let mut text = format!("{}: {verdict}\n", report.name);
     text.push_str(&finish(table));
     text.push_str(&format!(
-        "{} {} in {} blocks; {paired}. Worse: adjusted for all figures, p at most {}, and by more than the tolerance.\n\
+        "{} {} in {} blocks; {paired}. Worse: adjusted for all figures, p at most {}, and by more than the tolerance; or, of a rate on the same\n\
+         frames, lost in a row or so one-sidedly that it is no chance.\n\
          Changed: of a figure with a best value (a bias), differs from the baseline as surely, and is no farther from that value.\n\
          Visible: the worsening that is seen with a probability of 95 % or more. Rates in percent.\n\
          Baseline: {}\n",

@@ -4,7 +4,7 @@ mod cases;
 mod real;
 
 use boresight::gate::{CompareOptions, FigureVerdict, Pairing, compare};
-use cases::{FAULTS, Fault, Synthetic, baseline_of, harmless, rejects, sample_of};
+use cases::{FAULTS, Fault, Synthetic, baseline_of, harmless, harmless_in_episodes, rejects, sample_of};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -35,6 +35,17 @@ fn null_control_a_harmless_change_on_the_same_frames_is_rejected_as_often_as_alp
         rejects(&baseline_of(a), &b, Pairing::Frames)
     });
     println!("made-up runs with a harmless change: {count} of 400 rejected");
+    assert!(count <= MOST_OF_400, "{count} of 400");
+}
+
+#[test]
+fn null_control_a_harmless_change_in_episodes_is_rejected_as_often_as_alpha_says() {
+    let count = rejected(400, |trial| {
+        let frames = Synthetic { stretches: 30, frames: 30 }.run(trial);
+        let [a, b] = [0, 1].map(|pipeline| sample_of(trial, &harmless_in_episodes(&frames, trial, pipeline)));
+        rejects(&baseline_of(a), &b, Pairing::Frames)
+    });
+    println!("made-up runs with a harmless change in episodes: {count} of 400 rejected");
     assert!(count <= MOST_OF_400, "{count} of 400");
 }
 
@@ -378,7 +389,7 @@ fn damaged_and_foreign_files_are_told_by_name() {
     bench.write("base/rows.parquet", &rows);
 
     for (old, new, parts) in [
-        ("format = 1", "format = 2", ["baseline.toml:1", "is 2, expected 1"]),
+        ("format = 2", "format = 3", ["baseline.toml:1", "is 3, expected 2"]),
         ("by = \"median\"", "by = \"middle\"", ["middle", "rate, mean, rms, median"]),
         ("[figures.hit_rate]", "[figures.hat_rate]", ["rows.parquet", "hat_rate"]),
         ("units = ", "unit = ", ["baseline.toml", "unit"]),

@@ -13,14 +13,16 @@ use indexmap::IndexMap;
 use score::{FigureTerms, Reduction};
 use serde::{Deserialize, Serialize};
 
-use super::blocks::{Blocks, LEAST_BLOCKS, Memory, length_for, memory};
+use super::blocks::{Blocks, LEAST_BLOCKS, length_for, length_for_other_frames};
 use super::effects::value;
 use super::identity::Identity;
+use super::memory::{Memory, memory};
 use super::rows;
 use super::sample::Sample;
+use super::tolerance::default_tolerance;
 
 /// Version of the form of these files.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// Largest `rows.parquet` that is read, bytes.
 const MOST_BYTES: u64 = 1 << 28;
 
@@ -71,6 +73,8 @@ pub struct BlockRule {
     pub count: u64,
     /// Units of a block, about; blocks do not cross gaps, and are shorter where a sequence is.
     pub length: u64,
+    /// Whether `--block-length` gave it: then it holds for results of other frames too, which have longer blocks otherwise.
+    pub is_given: bool,
     /// The longest autocorrelation time of the figures, units.
     pub memory: f64,
     /// The figure that has it; empty when none remembers anything.
@@ -88,6 +92,8 @@ pub struct BaselineFigure {
     pub value: Option<f64>,
     /// How many values it is counted over.
     pub of: u64,
+    /// By how much a result may be worse and pass, in the unit of the figure.
+    pub tolerance: f64,
     /// Of a rate of errors "within" something: the limit, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit_deg: Option<f64>,
@@ -123,10 +129,8 @@ impl Baseline {
         let Identity { kind, world, .. } = &sample.identity;
         let (kind, units) = (*kind, sample.table.units.len());
         let Memory { units: remembered, figure } = memory(kind, world, &sample.table);
-        let length = length.map_or_else(
-            || length_for(&Memory { units: remembered, figure: String::new() }, units),
-            |length| length as usize,
-        );
+        let is_given = length.is_some();
+        let length = length.map_or_else(|| length_for(remembered, units), |length| length as usize);
         let blocks = Blocks::cut(kind, world, &sample.table, length);
         if blocks.count() < LEAST_BLOCKS {
             return Err(Failure::Usage(format!(
@@ -144,6 +148,7 @@ impl Baseline {
             blocks: BlockRule {
                 count: blocks.count() as u64,
                 length: length as u64,
+                is_given,
                 memory: (remembered * 10.0).round() / 10.0,
                 memory_of: figure,
             },
@@ -151,6 +156,31 @@ impl Baseline {
             run: sample.identity.clone(),
         };
         Ok(Self { header, sample, blocks })
+    }
+
+    /// The same with tolerances of its own for some figures, in their units.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a figure that it does not have.
+    pub fn with_tolerances(mut self, tolerances: &IndexMap<String, f64>) -> Result<Self, Failure> {
+        for (name, tolerance) in tolerances {
+            match self.header.figures.get_mut(name) {
+                Some(figure) => figure.tolerance = *tolerance,
+                None => return Err(unknown_figure("--tolerance", name, self.header.figures.keys())),
+            }
+        }
+        Ok(self)
+    }
+
+    /// The blocks for a result of other frames.
+    pub(super) fn blocks_for_other_frames(&self) -> Blocks {
+        let BlockRule { memory, is_given, .. } = self.header.blocks;
+        if is_given {
+            return self.blocks.clone();
+        }
+        let Sample { identity, table } = &self.sample;
+        let length = length_for_other_frames(memory, table.units.len());
+        Blocks::cut(identity.kind, &identity.world, table, length)
     }
 
     /// Writes the files into a folder, which is made when it is not there. Each gets its name when both are complete.
@@ -246,8 +276,13 @@ impl Baseline {
             return Err(refuse("blocks.count", format!("is {told}, expected {expected}")));
         }
         for figure in &table.figures {
-            let (told, known) = (header.figures.get(&figure.name), told_of(figure));
-            if told != Some(&known) {
+            let Some(told) = header.figures.get(&figure.name) else { continue };
+            let known = BaselineFigure { tolerance: told.tolerance, ..told_of(figure) };
+            if !(told.tolerance.is_finite() && told.tolerance >= 0.0) {
+                let message = format!("is {}, expected a size of 0 or more", told.tolerance);
+                return Err(refuse(&format!("figures.{}.tolerance", figure.name), message));
+            }
+            if told != &known {
                 let value = known.value.map_or_else(|| "none".to_owned(), |value| value.to_string());
                 return Err(refuse(
                     &format!("figures.{}", figure.name),
@@ -261,12 +296,26 @@ impl Baseline {
     }
 }
 
+/// The error of an option that names no figure of a baseline.
+pub(super) fn unknown_figure<'a>(
+    option: &str,
+    name: &str,
+    known: impl Iterator<Item = &'a String> + Clone,
+) -> Failure {
+    let hint = toml_file::nearest(name, known.clone().map(String::as_str)).map_or_else(
+        || known.map(String::as_str).collect::<Vec<_>>().join(", "),
+        |name| format!("did you mean `{name}`?"),
+    );
+    Failure::Usage(format!("{option} names `{name}`, expected a figure of the baseline; {hint}"))
+}
+
 /// What is told of a figure.
 fn told_of(figure: &FigureTerms) -> BaselineFigure {
     BaselineFigure {
         by: figure.reduction.code().to_owned(),
         value: value(figure.reduction, &figure.terms),
         of: figure.terms.iter().map(|term| u64::from(term.of)).sum(),
+        tolerance: default_tolerance(figure),
         limit_deg: figure.limit_deg,
         attitude: figure.attitude.clone(),
     }
@@ -410,12 +459,13 @@ mod tests {
     fn the_header_tells_how_the_run_is_cut_and_what_came_of_it() {
         let (baseline, _) = written(8);
         let header = &baseline.header;
-        assert_eq!((header.format, header.units, header.reason.as_str()), (1, 8, "a test"));
+        assert_eq!((header.format, header.units, header.reason.as_str()), (2, 8, "a test"));
         assert_eq!((header.blocks.count, header.blocks.length), (8, 1));
         let told = |by: &str, value, of| BaselineFigure {
             by: by.to_owned(),
             value,
             of,
+            tolerance: if by == "rate" { 0.001 } else { 0.022 },
             limit_deg: None,
             attitude: None,
         };
@@ -431,6 +481,25 @@ mod tests {
         assert_eq!(of_days.header.blocks.memory_of, "ra_median_deg");
         let memory = of_days.header.blocks.memory;
         assert!(memory > 10.0 && memory * 10.0 == (memory * 10.0).round(), "{memory}");
+    }
+
+    #[test]
+    fn a_baseline_keeps_the_tolerances_that_it_is_given() {
+        let with = |name: &str| {
+            let baseline = Baseline::new(run(8), "a test", Some(1)).unwrap();
+            baseline.with_tolerances(&IndexMap::from([(name.to_owned(), 0.25)]))
+        };
+        let mut baseline = with("hit_rate").unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        let told = Baseline::read(folder.path()).unwrap();
+        let tolerance = |name: &str| told.header.figures[name].tolerance;
+        assert_eq!((tolerance("hit_rate"), tolerance("ra_median_deg")), (0.25, 0.022));
+        let message = with("hit_rat").unwrap_err().to_string();
+        assert!(
+            message.contains("--tolerance names `hit_rat`") && message.contains("`hit_rate`?"),
+            "{message}"
+        );
     }
 
     #[test]
@@ -468,7 +537,7 @@ mod tests {
             let message = Baseline::read(folder.path()).unwrap_err().to_string();
             assert!(parts.iter().all(|part| message.contains(part)), "{old}: {message}");
         };
-        refused("format = 1", "format = 2", &["baseline.toml:1:10: format", "is 2, expected 1"]);
+        refused("format = 2", "format = 3", &["baseline.toml:1:10: format", "is 3, expected 2"]);
         refused("units = 6", "units = 7", &["units", "is 7, expected 6, the rows of"]);
         refused("count = 6", "count = 7", &["blocks.count", "is 7, expected the blocks of", "(6)"]);
         refused(
@@ -478,6 +547,12 @@ mod tests {
         );
         // 0.5, 1 … 2.5.
         refused("value = 1.5", "value = 1.25", &["figures.ra_median_deg", "expected 1.5 of 5"]);
+        refused(
+            "tolerance = 0.001",
+            "tolerance = -0.001",
+            &["figures.hit_rate.tolerance", "is -0.001, expected a size of 0"],
+        );
+        refused("tolerance = 0.001", "tolerance = inf", &["figures.hit_rate.tolerance", "is inf"]);
         refused("of = 5", "of = 4", &["figures.ra_median_deg", "expected 1.5 of 5"]);
         refused(&baseline.header.rows_sha256, "00", &["rows_sha256", "one of the two files was changed"]);
         // What nothing in the rows can contradict, the checksums do.

@@ -1,10 +1,10 @@
 //! Blocks: stretches of a sequence that are long enough to be independent of one another.
+use std::ops::Range;
+
 use run::world_called;
-use score::UnitTable;
-use statistics::effective_size;
+use score::{UnitTable, UnitVerdict};
 
 use super::identity::SourceKind;
-use super::influence::influence;
 
 /// Fewer blocks than this cannot show anything at a level of 5 %: 2⁻⁵ = 3 %.
 pub const LEAST_BLOCKS: usize = 5;
@@ -15,21 +15,14 @@ const SHORTEST_BLOCK: usize = 30;
 const MEMORIES_A_BLOCK: f64 = 10.0;
 /// Blocks are not made so long that there are fewer than these, if the sequence has a way to give them.
 const ENOUGH_BLOCKS: usize = 20;
+/// The same where frames are others.
+const ENOUGH_OF_OTHER_FRAMES: usize = 8;
 
 /// Which block each unit belongs to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Blocks {
     of_units: Vec<usize>,
     count: usize,
-}
-
-/// How long the figures of a run remember.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Memory {
-    /// The longest autocorrelation time of its figures, units.
-    pub(super) units: f64,
-    /// The figure that has it.
-    pub(super) figure: String,
 }
 
 impl Blocks {
@@ -44,8 +37,8 @@ impl Blocks {
         let sequences = sequences(kind, world, table);
         let mut of_units = Vec::with_capacity(table.units.len());
         let mut count = 0;
-        for ends in sequences.windows(2) {
-            let units = ends[1] - ends[0];
+        for sequence in sequences {
+            let units = sequence.len();
             let pieces = match kind {
                 SourceKind::Study => 1,
                 SourceKind::Run => ((units as f64 / length as f64).round() as usize).clamp(1, units),
@@ -79,68 +72,46 @@ impl Blocks {
     }
 }
 
-/// Where sequences of neighbouring units begin, and where the last one ends. Far range: where a group (day) or a gap begins. Docking: an
-/// approach is one sequence, but for gaps; its groups are ranges. A study: the cases of a draw.
-fn sequences(kind: SourceKind, world: &str, table: &UnitTable) -> Vec<usize> {
-    let units = &table.units;
+/// The sequences of neighbouring units. Far range: a group (day) or a gap begins one. Docking: an approach is one sequence, but for gaps;
+/// its groups are ranges. A study: the cases of a draw.
+pub(super) fn sequences(kind: SourceKind, world: &str, table: &UnitTable) -> Vec<Range<usize>> {
     let are_groups_apart = world_called(world).is_ok_and(|world| world.are_groups_apart());
-    let mut begins = vec![0];
-    for unit in 1..units.len() {
-        let (before, this) = (&units[unit - 1], &units[unit]);
-        let is_other_group = before.group != this.group;
-        let is_apart = match kind {
-            SourceKind::Study => is_other_group,
-            SourceKind::Run => before.number + 1 != this.number || (are_groups_apart && is_other_group),
-        };
-        if is_apart {
-            begins.push(unit);
+    let go_together = |before: &UnitVerdict, this: &UnitVerdict| {
+        let is_same_group = before.group == this.group;
+        match kind {
+            SourceKind::Study => is_same_group,
+            SourceKind::Run => before.number + 1 == this.number && (!are_groups_apart || is_same_group),
         }
-    }
-    if !units.is_empty() {
-        begins.push(units.len());
-    }
-    begins
-}
-
-/// The longest autocorrelation time of the figures of a run.
-pub(super) fn memory(kind: SourceKind, world: &str, table: &UnitTable) -> Memory {
-    let sequences = sequences(kind, world, table);
-    let memory_of = |series: &[f64]| {
-        let cut: Vec<Vec<f64>> = sequences.windows(2).map(|ends| series[ends[0]..ends[1]].to_vec()).collect();
-        // Without any unit 0/0, which is longer than nothing.
-        series.len() as f64 / effective_size(&cut)
     };
-    let of_figures = table.figures.iter().map(|figure| (memory_of(&influence(figure)), &figure.name));
-    of_figures.fold(Memory { units: 1.0, figure: String::new() }, |longest, (units, figure)| {
-        if units > longest.units { Memory { units, figure: figure.clone() } } else { longest }
-    })
+    let mut begin = 0;
+    let mut next = |sequence: &[UnitVerdict]| {
+        begin += sequence.len();
+        begin - sequence.len()..begin
+    };
+    table.units.chunk_by(go_together).map(&mut next).collect()
 }
 
-/// A length of blocks for a run of this memory, units: ten times that, or shorter where that would leave fewer than twenty, but at least
-/// thirty.
-pub(super) fn length_for(memory: &Memory, units: usize) -> usize {
-    let wanted = (MEMORIES_A_BLOCK * memory.units).ceil() as usize;
-    wanted.min(units / ENOUGH_BLOCKS).max(SHORTEST_BLOCK)
+/// A length of blocks for a run of this memory, units: ten times that, or shorter where that would leave fewer than so many, but at
+/// least thirty.
+fn length_leaving(least: usize, memory: f64, units: usize) -> usize {
+    let wanted = (MEMORIES_A_BLOCK * memory).ceil() as usize;
+    wanted.min(units / least).max(SHORTEST_BLOCK)
+}
+
+/// A length of blocks for a run of this memory, units: it leaves twenty blocks.
+pub(super) fn length_for(memory: f64, units: usize) -> usize {
+    length_leaving(ENOUGH_BLOCKS, memory, units)
+}
+
+/// The same for runs of other frames, where what slowly varies is in the difference: it leaves eight blocks.
+pub(super) fn length_for_other_frames(memory: f64, units: usize) -> usize {
+    length_leaving(ENOUGH_OF_OTHER_FRAMES, memory, units)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::hand_made::days as table;
     use super::*;
-    use score::{FigureTerms, Reduction, Term, UnitVerdict};
-    use sim::randomness::{Effect, Seed, normal};
-
-    fn table(groups: &[(&str, u64)]) -> UnitTable {
-        let mut number = 0;
-        let mut units = Vec::new();
-        for (group, count) in groups {
-            for _ in 0..*count {
-                let (verdict, group) = ("correct".to_owned(), (*group).to_owned());
-                units.push(UnitVerdict { number, group, verdict, cause: None });
-                number += 1;
-            }
-        }
-        UnitTable { units, figures: Vec::new() }
-    }
 
     #[test]
     fn blocks_never_cross_a_day_and_are_about_as_long_as_asked() {
@@ -155,35 +126,14 @@ mod tests {
     }
 
     #[test]
-    fn the_memory_is_that_of_the_figure_that_remembers_longest() {
-        let random = &mut Seed { seed: 8, case: 0 }.stream(0, Effect::PixelNoise, 0);
-        let mut table = table(&[("day 1", 20_000)]);
-        let mut slow = 0.0;
-        let mut figure = |name: &str, rho: f64| {
-            let mut term = || {
-                slow = rho * slow + (1.0 - rho * rho).sqrt() * normal(random);
-                Term { sum: slow, of: 1 }
-            };
-            let terms = (0..20_000).map(|_| term()).collect();
-            FigureTerms::counted(name, Reduction::Mean, terms)
-        };
-        table.figures = vec![figure("white", 0.0), figure("slow", 0.9)];
-        let memory = memory(SourceKind::Run, "far_range", &table);
-        // (1 + ρ)/(1 − ρ) = 19; its estimate scatters by some 5 %.
-        assert!(memory.figure == "slow" && (15.0..24.0).contains(&memory.units), "{memory:?}");
-        assert!((150..240).contains(&length_for(&memory, 20_000)));
-        assert_eq!((length_for(&memory, 1000), length_for(&memory, 100)), (50, 30));
-    }
-
-    #[test]
     fn a_gap_and_in_far_range_a_day_part_sequences() {
         let mut table = table(&[("day 1", 3), ("day 2", 2), ("day 3", 2)]);
         // A frame is missing between days 2 and 3.
         table.units[5..].iter_mut().for_each(|unit| unit.number += 1);
-        assert_eq!(sequences(SourceKind::Run, "far_range", &table), [0, 3, 5, 7]);
-        assert_eq!(sequences(SourceKind::Run, "docking", &table), [0, 5, 7]);
-        assert_eq!(sequences(SourceKind::Study, "docking", &table), [0, 3, 5, 7]);
-        assert_eq!(sequences(SourceKind::Run, "far_range", &UnitTable::default()), [0]);
+        assert_eq!(sequences(SourceKind::Run, "far_range", &table), [0..3, 3..5, 5..7]);
+        assert_eq!(sequences(SourceKind::Run, "docking", &table), [0..5, 5..7]);
+        assert_eq!(sequences(SourceKind::Study, "docking", &table), [0..3, 3..5, 5..7]);
+        assert_eq!(sequences(SourceKind::Run, "far_range", &UnitTable::default()), []);
     }
 
     /// 7 units in two pieces are 4 and 3, 5 in two 3 and 2, and none is without a unit.
@@ -201,26 +151,11 @@ mod tests {
         assert_eq!(Blocks::from_numbers(vec![]), none);
     }
 
-    /// Values that alternate are worth as much as independent ones, and so are those that never vary.
-    #[test]
-    fn of_figures_that_remember_nothing_none_has_the_memory() {
-        let mut table = table(&[("day 1", 100)]);
-        let figure = |name: &str, value: fn(u8) -> f64| {
-            let terms = (0..100).map(|i| Term { sum: value(i), of: 1 }).collect();
-            FigureTerms::counted(name, Reduction::Mean, terms)
-        };
-        table.figures = vec![figure("constant", |_| 0.3), figure("alternating", |i| f64::from(i % 2))];
-        let memory = memory(SourceKind::Run, "far_range", &table);
-        assert_eq!(memory, Memory { units: 1.0, figure: String::new() });
-        assert_eq!(super::memory(SourceKind::Run, "far_range", &UnitTable::default()), memory);
-    }
-
     #[test]
     fn blocks_are_ten_memories_long_but_leave_twenty_and_are_not_shorter_than_thirty() {
-        let length = |memory: f64, units| length_for(&Memory { units: memory, figure: String::new() }, units);
-        assert_eq!(length(4.01, 100_000), 41);
-        assert_eq!(length(4.01, 790), 39);
-        assert_eq!(length(1.0, 100_000), 30);
-        assert_eq!(length(40.0, 100), 30);
+        assert_eq!(length_for(4.01, 100_000), 41);
+        assert_eq!(length_for(4.01, 790), 39);
+        assert_eq!(length_for(1.0, 100_000), 30);
+        assert_eq!(length_for(40.0, 100), 30);
     }
 }

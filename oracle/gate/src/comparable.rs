@@ -1,8 +1,8 @@
 //! Whether a result can be held against a baseline: the same units, and figures that count the same thing.
-use files::{Failure, toml_file};
+use files::Failure;
 use score::{FigureTerms, UnitVerdict};
 
-use super::baseline::Baseline;
+use super::baseline::{Baseline, unknown_figure};
 use super::options::CompareOptions;
 use super::sample::Sample;
 
@@ -51,10 +51,7 @@ pub(super) fn pairs<'a>(
         if known.iter().any(|figure| &figure.name == name) {
             return Ok(());
         }
-        let names = || known.iter().map(|figure| figure.name.as_str());
-        let hint = toml_file::nearest(name, names())
-            .map_or_else(|| names().collect::<Vec<_>>().join(", "), |name| format!("did you mean `{name}`?"));
-        Err(Failure::Usage(format!("{option} names `{name}`, expected a figure of the baseline; {hint}")))
+        Err(unknown_figure(option, name, known.iter().map(|figure| &figure.name)))
     };
     options.figures.iter().try_for_each(|name| check("--figures", name))?;
     options.tolerances.keys().try_for_each(|name| check("--tolerance", name))?;

@@ -2,17 +2,20 @@
 use files::Failure;
 use indexmap::IndexMap;
 use run::figure_called;
-use score::attitude_note;
-use statistics::{BlockEffects, Exchanges, joint_test, normal_quantile};
+use statistics::{BlockEffects, Exchanges, joint_test};
 
 use super::baseline::Baseline;
+use super::blocks::sequences;
 use super::comparable::{check_reported, check_units, pairs};
 use super::effects::{FigureEffect, interval, neighbour_correlation};
 use super::flips::Flips;
-use super::identity::Pairing;
-use super::judge::Judge;
+use super::identity::{Pairing, SourceKind};
+use super::judge::{ALPHA_OF_RUNS, Judge};
+use super::memory::Thirds;
+use super::notes::{Noted, notes};
 use super::options::CompareOptions;
 use super::report::{FigureVerdict, GateReport};
+use super::runs::loss_runs;
 use super::sample::Sample;
 
 /// Compares a result with a baseline.
@@ -36,13 +39,26 @@ pub fn compare(
     check_reported(baseline, result, &units)?;
     let pairs = pairs(baseline, result, options)?;
 
-    let blocks = &baseline.blocks;
+    let blocks = &match pairing {
+        Pairing::Frames => baseline.blocks.clone(),
+        Pairing::Blocks => baseline.blocks_for_other_frames(),
+    };
     let exchanges = Exchanges::new(blocks.count());
+    let thirds = Thirds::of(identity.kind, &identity.world, &baseline.sample.table, blocks);
     let effects: Vec<FigureEffect> = pairs
         .iter()
         .map(|(before, after)| {
-            let tolerance = options.tolerances.get(&before.name).copied();
-            FigureEffect::of_runs(figure_called(&before.name).sense, before, after, blocks, tolerance)
+            let of_baseline =
+                baseline.header.figures.get(&before.name).map_or(0.0, |figure| figure.tolerance);
+            let tolerance = options.tolerances.get(&before.name).copied().unwrap_or(of_baseline);
+            let sense = figure_called(&before.name).sense;
+            let effect = FigureEffect::of_runs(sense, before, after, blocks, tolerance);
+            // On the same frames what slowly varies is in both runs; with others it is in the difference.
+            match pairing {
+                Pairing::Frames => effect,
+                Pairing::Blocks if thirds.are_remembered(before, after) => effect.beyond_blocks(),
+                Pairing::Blocks => effect,
+            }
         })
         .collect();
     // What shuts the gate is tested together: every worsening, and of figures with a best value the change to the other side too.
@@ -60,11 +76,22 @@ pub fn compare(
     let better: Vec<BlockEffects> = effects.iter().map(for_the_better).collect();
     let (worse, better) = (joint_test(&worse, &exchanges, alpha), joint_test(&better, &exchanges, alpha));
 
+    // The draws of a study are independent of one another, and none of their order is an event.
+    let have_runs = pairing == Pairing::Frames && identity.kind == SourceKind::Run;
+    let units_of_baseline = &baseline.sample.table.units;
+    let loss_runs = if have_runs {
+        let sequences = sequences(identity.kind, &identity.world, &baseline.sample.table);
+        loss_runs(&pairs, units_of_baseline, &sequences, ALPHA_OF_RUNS * alpha)
+    } else {
+        vec![None; pairs.len()]
+    };
+
     let mut figures = IndexMap::new();
     let mut correlation: f64 = 0.0;
     for (index, ((before, after), effect)) in pairs.iter().zip(&effects).enumerate() {
         let other_side = with_best_value.iter().position(|i| *i == index).map(|place| effects.len() + place);
-        let judge = Judge { effect, worse: &worse, better: &better, index, other_side, alpha };
+        let loss_run = loss_runs[index].as_ref();
+        let judge = Judge { effect, worse: &worse, better: &better, index, other_side, alpha, loss_run };
         let interval = interval(before, after, blocks, &exchanges);
         correlation = correlation.max(neighbour_correlation(&effect.worse.effects));
         figures.insert(before.name.clone(), judge.report(interval.map(|i| (i.low, i.high))));
@@ -76,6 +103,12 @@ pub fn compare(
             blocks.count()
         )));
     }
+    let beyond_blocks: Vec<&str> = pairs
+        .iter()
+        .zip(&effects)
+        .filter(|(_, effect)| effect.is_beyond_blocks)
+        .map(|((before, _), _)| before.name.as_str())
+        .collect();
     let any = |is: fn(FigureVerdict) -> bool| figures.values().any(|figure| is(figure.verdict));
     Ok(GateReport {
         verdict: if any(FigureVerdict::is_worse) {
@@ -100,39 +133,20 @@ pub fn compare(
         blocks: blocks.count() as u64,
         block_length: blocks.mean_length(),
         neighbour_correlation: correlation,
-        notes: notes(baseline, result, pairing, (correlation, pairs.len())),
+        notes: notes(&Noted {
+            baseline,
+            result,
+            pairing,
+            alpha,
+            figures: &figures,
+            beyond_blocks: &beyond_blocks,
+            correlation,
+            blocks: blocks.count(),
+        }),
         figures,
         flips: (pairing == Pairing::Frames)
             .then(|| Flips::of(&baseline.sample.table.units, &result.table.units)),
     })
-}
-
-/// What a reader must know. `correlation` is the largest of neighbouring blocks, and of how many figures it is that.
-fn notes(
-    baseline: &Baseline,
-    result: &Sample,
-    pairing: Pairing,
-    (correlation, figures): (f64, usize),
-) -> Vec<String> {
-    let mut notes = Vec::new();
-    let attitude = result.table.figures.iter().find_map(|figure| figure.attitude.as_deref());
-    notes.extend(attitude_note(attitude));
-    let (before, after) = (&baseline.sample.identity, &result.identity);
-    if pairing == Pairing::Blocks && before.seed == after.seed {
-        notes.push(format!(
-            "The seed is the same and the frames are not: the simulator has changed (version {} then, {} now). Compared as with another seed.",
-            before.version, after.version
-        ));
-    }
-    // What the largest of so many independent correlations exceeds in one comparison of twenty.
-    let by_chance = normal_quantile(1.0 - 0.05 / figures as f64) / (baseline.blocks.count() as f64).sqrt();
-    if correlation > by_chance {
-        notes.push(format!(
-            "Neighbouring blocks go together (correlation {correlation:.2}, by chance at most {by_chance:.2}): they are too short, and \
-             probabilities too small. A baseline with a longer --block-length cures it, as long as blocks are many."
-        ));
-    }
-    notes
 }
 
 #[cfg(test)]
@@ -157,7 +171,7 @@ mod tests {
         assert_eq!((found.baseline_of, found.result_of, found.blocks), (12, 12, 12));
         assert!((found.worse_by.unwrap() - 7.0 / 12.0).abs() < 1e-12, "{found:?}");
         assert!((found.difference.unwrap() + 7.0 / 12.0).abs() < 1e-12, "{found:?}");
-        assert_eq!((found.better.as_str(), found.tolerance), ("more", 0.0));
+        assert_eq!((found.better.as_str(), found.tolerance), ("more", 0.001));
         assert_eq!(report.worse().collect::<Vec<_>>(), ["hit_rate"]);
 
         let report = compared(hits(&AFTER), &hits(&BEFORE));
@@ -254,6 +268,40 @@ mod tests {
         }
     }
 
+    /// Forty of 400 frames are lost: two or three blocks of twenty have it.
+    #[test]
+    fn what_is_lost_in_a_row_on_the_same_frames_is_worse_however_few_blocks_have_it() {
+        let bits = |lost: std::ops::Range<usize>| -> Vec<u8> {
+            (0..400).map(|frame| u8::from(frame % 40 != 0 && !lost.contains(&frame))).collect()
+        };
+        let baseline = Baseline::new(hits(&bits(0..0)), "a test", Some(20)).unwrap();
+        for lost in [0..40, 180..220, 360..400, 10..30] {
+            let report = compare(&baseline, &hits(&bits(lost.clone())), &CompareOptions::default()).unwrap();
+            let run = report.figures["hit_rate"].loss_run.clone().unwrap();
+            let frames = lost.len() as u64 - if lost.start == 10 { 0 } else { 1 };
+            assert_eq!((run.lost, run.won, run.longest), (frames, 0, frames));
+            assert_eq!((run.episode, run.smallest_visible), (3.0, 30));
+            let is_seen = frames >= 30;
+            assert_eq!(report.is_shut(), is_seen, "{lost:?}: {run:?}");
+            let is_noted = report.notes.iter().any(|note| note.contains("of them in a row"));
+            assert_eq!(is_noted, is_seen, "{:?}", report.notes);
+        }
+        let report = compare(&baseline, &hits(&bits(180..220)), &CompareOptions::default()).unwrap();
+        let expected = "hit rate: 39 frames were lost and 0 won, 39 of them in a row (numbers 180 to 219).";
+        assert!(report.notes[0].to_lowercase().starts_with(expected), "{}", report.notes[0]);
+        // What was won instead is no loss, and with another seed no frame is the same.
+        let better = compare(
+            &Baseline::new(hits(&bits(0..40)), "a test", Some(20)).unwrap(),
+            &hits(&bits(0..0)),
+            &CompareOptions::default(),
+        );
+        assert!(!better.unwrap().is_shut());
+        let mut other = hits(&bits(0..40));
+        other.identity.seed = 2;
+        let report = compare(&baseline, &other, &CompareOptions::default()).unwrap();
+        assert_eq!((report.is_shut(), report.figures["hit_rate"].loss_run.clone()), (false, None));
+    }
+
     /// Of five blocks no exchange has a probability below 1/32: at 5 % they can be found different, at 3 % not.
     #[test]
     fn a_gate_that_cannot_shut_is_an_error() {
@@ -276,31 +324,5 @@ mod tests {
         };
         assert_eq!(with(7.01 / 12.0), FigureVerdict::NoWorse);
         assert_eq!(with(6.99 / 12.0), FigureVerdict::Worse);
-    }
-
-    #[test]
-    fn another_simulator_is_noted_where_the_seed_is_the_same() {
-        let note = |seed: u64, frames: &str| {
-            let mut after = hits(&BEFORE);
-            after.identity.seed = seed;
-            after.identity.frames_sha256 = frames.to_owned();
-            compared(hits(&BEFORE), &after).notes
-        };
-        let [changed] = &note(1, "g")[..] else { panic!("one note") };
-        assert!(changed.contains("the simulator has changed (version 0.1.0 then, 0.1.0 now)"), "{changed}");
-        assert_eq!(note(1, "f"), Vec::<String>::new());
-        assert_eq!(note(2, "g"), Vec::<String>::new());
-    }
-
-    /// Of two figures in 25 blocks the 97.5 % quantile over 5, 0.392.
-    #[test]
-    fn blocks_that_go_together_more_than_by_chance_are_noted() {
-        let baseline = baseline(hits(&[1; 25]));
-        let notes = |correlation: f64| notes(&baseline, &baseline.sample, Pairing::Frames, (correlation, 2));
-        let [short] = &notes(0.3921)[..] else { panic!("one note") };
-        assert!(short.contains("(correlation 0.39, by chance at most 0.39): they are too short"), "{short}");
-        for correlation in [0.3919, 0.0, -0.5, normal_quantile(0.975) / 5.0] {
-            assert!(notes(correlation).is_empty(), "{correlation}");
-        }
     }
 }

@@ -4,15 +4,11 @@
 //! s, n adds s − r₀ n to it, and the difference of two runs is, exactly, Σ [(s − r₀ n) of the result − the same of the baseline] / N with N
 //! the harmonic mean of their counts. Exchanging a block of the two changes the sign of its term and nothing else. A root mean square is
 //! the root of the mean square, and a median counts on which side of the median of both runs together values lie.
-use score::{Better, FigureTerms, Kind, Reduction, Sense, Term};
+use score::{Better, FigureTerms, Reduction, Sense, Term};
 use statistics::{BlockEffects, Interval, median};
 
 use super::blocks::Blocks;
 use super::influence::{Sums, values};
-
-/// Share of an amount's own size by which it may differ and be as good: what a change of the last digits or of a compiler does is
-/// no worsening, however surely it is seen.
-const TOLERANCE: f64 = 0.01;
 
 /// One figure of two runs, by blocks.
 #[derive(Debug, Clone)]
@@ -33,6 +29,8 @@ pub(super) struct FigureEffect {
     pub(super) standard_error: f64,
     /// By how much the result may be worse and no worse be said.
     pub(super) tolerance: f64,
+    /// Whether the difference is remembered for longer than blocks allow: nothing is said of such a figure.
+    pub(super) is_beyond_blocks: bool,
 }
 
 /// The value of a figure over some terms.
@@ -47,13 +45,13 @@ pub(super) fn value(reduction: Reduction, terms: &[Term]) -> Option<f64> {
 }
 
 impl FigureEffect {
-    /// Of a figure of two runs whose units go together one by one; `tolerance` replaces the default one.
+    /// Of a figure of two runs whose units go together one by one.
     pub(super) fn of_runs(
         sense: Sense,
         baseline: &FigureTerms,
         result: &FigureTerms,
         blocks: &Blocks,
-        tolerance: Option<f64>,
+        tolerance: f64,
     ) -> Self {
         let reduction = baseline.reduction;
         let pooled = [values(&baseline.terms), values(&result.terms)];
@@ -83,15 +81,6 @@ impl FigureEffect {
         if sense.better == Better::More {
             effects.iter_mut().for_each(|effect| *effect = -*effect);
         }
-        let by_default = match sense.kind {
-            Kind::Rate => 0.0,
-            Kind::Amount => {
-                let best = if let Better::Near(best) = sense.better { best } else { 0.0 };
-                let all = pooled.concat();
-                let squares: f64 = all.iter().map(|x| (x - best) * (x - best)).sum();
-                if all.is_empty() { 0.0 } else { TOLERANCE * (squares / all.len() as f64).sqrt() }
-            }
-        };
         Self {
             sense,
             baseline: of_baseline,
@@ -101,8 +90,16 @@ impl FigureEffect {
             blocks: has_data.into_iter().filter(|has| *has).count(),
             standard_error: standard_error(&effects),
             worse: BlockEffects { effects },
-            tolerance: tolerance.unwrap_or(by_default),
+            tolerance,
+            is_beyond_blocks: false,
         }
+    }
+
+    /// The same figure with no effect, as its difference is remembered for so long that blocks are not independent of one another.
+    pub(super) fn beyond_blocks(mut self) -> Self {
+        self.worse.effects.fill(0.0);
+        self.is_beyond_blocks = true;
+        self
     }
 
     /// By how much the result is worse, in the unit of the figure; negative where it is better.
@@ -233,6 +230,7 @@ mod tests {
     use super::super::hand_made::figure as terms;
     use super::*;
     use run::figure_called;
+    use score::Kind;
     use statistics::Exchanges;
 
     fn effect(name: &str, reduction: Reduction, a: &[Option<f64>], b: &[Option<f64>]) -> FigureEffect {
@@ -242,7 +240,7 @@ mod tests {
             &terms(name, reduction, a),
             &terms(name, reduction, b),
             &blocks,
-            None,
+            0.0,
         )
     }
 
@@ -341,7 +339,7 @@ mod tests {
         let [a, b] = [[Some(1.0), Some(2.0), None, None], [Some(1.0), None, Some(3.0), None]]
             .map(|values| terms("ra_rms_deg", Reduction::Rms, &values));
         let effect =
-            FigureEffect::of_runs(figure_called("ra_rms_deg").sense, &a, &b, &Blocks::every(4, 1), None);
+            FigureEffect::of_runs(figure_called("ra_rms_deg").sense, &a, &b, &Blocks::every(4, 1), 0.0);
         assert_eq!((effect.blocks, effect.baseline_of, effect.result_of), (3, 2, 2));
     }
 
@@ -365,7 +363,7 @@ mod tests {
         ] {
             let [before, after] = [a, b].map(|value| terms("any", reduction, &[Some(value); 4]));
             let sense = Sense { kind: Kind::Amount, better: Better::Near(1.0) };
-            let effect = FigureEffect::of_runs(sense, &before, &after, &Blocks::every(4, 1), None);
+            let effect = FigureEffect::of_runs(sense, &before, &after, &Blocks::every(4, 1), 0.0);
             let sum = effect.worse.effects.iter().sum::<f64>();
             assert!((sum - (b - a)).abs() < 1e-12 && effect.has_best_value(), "{a} {b}: {effect:?}");
         }
@@ -457,22 +455,6 @@ mod tests {
         let [low, high] = [squares[..3].to_vec(), squares[3..].to_vec()];
         assert!((half_width_of_a_side(&[high, low]) - 50.0).abs() < 1e-12);
         assert_eq!(half_width_of_a_side(&[vec![], vec![]]), 0.0);
-    }
-
-    #[test]
-    fn a_figure_may_be_worse_by_a_hundredth_of_its_size_unless_told_otherwise() {
-        let tolerance = |name: &str, reduction, a: f64, b: f64, told| {
-            let [a, b] = [a, b].map(|value| terms(name, reduction, &[Some(value), None]));
-            FigureEffect::of_runs(figure_called(name).sense, &a, &b, &Blocks::every(2, 1), told).tolerance
-        };
-        let is = |got: f64, expected: f64| assert!((got - expected).abs() < 1e-12, "{got}, not {expected}");
-        // Of 3 and 4 the root mean square is √12.5.
-        is(tolerance("ra_rms_deg", Reduction::Rms, 3.0, -4.0, None), 0.01 * 12.5f64.sqrt());
-        // The size of a NEES is its distance from 1.
-        is(tolerance("nees_mean", Reduction::Mean, 4.0, -3.0, None), 0.01 * 12.5f64.sqrt());
-        is(tolerance("ra_rms_deg", Reduction::Rms, 3.0, -4.0, Some(0.5)), 0.5);
-        is(tolerance("hit_rate", Reduction::Rate, 1.0, 0.0, None), 0.0);
-        is(tolerance("hit_rate", Reduction::Rate, 1.0, 0.0, Some(0.125)), 0.125);
     }
 
     /// Of 1, 2, 4, 5 the sample variance is 10/3, that of the sum of four 40/3.

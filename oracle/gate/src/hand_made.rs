@@ -69,6 +69,7 @@ pub(super) fn report(figures: &[(&str, FigureVerdict)]) -> GateReport {
         better_adjusted_p: 1.0,
         smallest_visible: None,
         blocks: 6,
+        loss_run: None,
     };
     GateReport {
         verdict: FigureVerdict::Worse,
@@ -120,3 +121,17 @@ pub(super) fn refusal(before: Sample, after: &Sample, options: &CompareOptions) 
 /// Twelve frames, eight of them lost and one won.
 pub(super) const BEFORE: [u8; 12] = [1, 1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 0];
 pub(super) const AFTER: [u8; 12] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 0];
+
+/// Units of groups of so many each, numbered through, all of them right.
+pub(super) fn days(groups: &[(&str, u64)]) -> UnitTable {
+    let mut number = 0;
+    let mut units = Vec::new();
+    for (group, count) in groups {
+        for _ in 0..*count {
+            let (verdict, group) = ("correct".to_owned(), (*group).to_owned());
+            units.push(UnitVerdict { number, group, verdict, cause: None });
+            number += 1;
+        }
+    }
+    UnitTable { units, figures: Vec::new() }
+}

@@ -4,9 +4,12 @@ use statistics::{JointTest, Tested, normal_quantile};
 
 use super::effects::FigureEffect;
 use super::report::{FigureReport, FigureVerdict};
+use super::runs::LossRun;
 
 /// The 95 % quantile of the standard normal law: the power at which the smallest visible change is told.
 const Z_POWER: f64 = 1.644_853_626_951_472_2;
+/// What runs of losses may add to alpha, of alpha.
+pub(super) const ALPHA_OF_RUNS: f64 = 0.05;
 /// A figure that the result lacks is gone when that would be chance with no more than this probability.
 const GONE_BY_CHANCE: f64 = 1e-3;
 
@@ -19,6 +22,8 @@ pub(super) struct Judge<'a> {
     /// Of a figure with a best value, where the change towards less was tested.
     pub(super) other_side: Option<usize>,
     pub(super) alpha: f64,
+    /// Of a rate on the same frames.
+    pub(super) loss_run: Option<&'a LossRun>,
 }
 
 impl Judge<'_> {
@@ -48,6 +53,7 @@ impl Judge<'_> {
             better_adjusted_p: self.better.figures[self.index].adjusted_p,
             smallest_visible: self.smallest_visible(),
             blocks: effect.blocks as u64,
+            loss_run: self.loss_run.cloned(),
         }
     }
 
@@ -72,7 +78,9 @@ impl Judge<'_> {
         let (Some(worsening), Some(change)) = (effect.worsening(), effect.change()) else {
             return FigureVerdict::TooLittleData;
         };
-        if !self.can_be_seen() {
+        if self.is_lost_in_runs() && worsening > effect.tolerance {
+            FigureVerdict::Worse
+        } else if !self.can_be_seen() {
             FigureVerdict::TooLittleData
         } else if self.tested().adjusted_p <= self.alpha && change > effect.tolerance {
             // Farther from the best value by what counts is worse; nearer to it, or across it, is another result.
@@ -84,9 +92,14 @@ impl Judge<'_> {
         }
     }
 
+    /// Whether so many losses, or so long a run of them, are no chance.
+    fn is_lost_in_runs(&self) -> bool {
+        self.loss_run.is_some_and(|run| run.adjusted_p <= ALPHA_OF_RUNS * self.alpha)
+    }
+
     /// Whether a figure that differed alike in every block it has would be found.
     fn can_be_seen(&self) -> bool {
-        (self.effect.blocks as f64).sqrt() > self.worse.critical + 1e-9
+        !self.effect.is_beyond_blocks && (self.effect.blocks as f64).sqrt() > self.worse.critical + 1e-9
     }
 
     /// The worsening that is seen with a probability of 95 %: of which the statistic lies as far above the critical value as one in
@@ -130,6 +143,7 @@ mod tests {
             worse: BlockEffects { effects: Vec::new() },
             standard_error: 0.25,
             tolerance: 0.5,
+            is_beyond_blocks: false,
         }
     }
 
@@ -146,7 +160,8 @@ mod tests {
             JointTest { figures: vec![tested; figures], critical }
         };
         let (worse, better) = (&test(worse), &test(better));
-        Judge { effect, worse, better, index: 0, other_side: None, alpha: 0.05 }.report(Some((0.25, 0.75)))
+        Judge { effect, worse, better, index: 0, other_side: None, alpha: 0.05, loss_run: None }
+            .report(Some((0.25, 0.75)))
     }
 
     #[test]

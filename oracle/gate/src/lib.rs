@@ -48,11 +48,19 @@ mod influence;
 )]
 mod judge;
 mod junit;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+mod memory;
+mod notes;
 mod options;
 mod read;
 mod report;
 mod rows;
+mod runs;
 mod sample;
+mod tolerance;
 
 pub use baseline::{Baseline, BaselineFigure, BaselineHeader, BlockRule, Replace};
 pub use blocks::{Blocks, LEAST_BLOCKS};
@@ -63,4 +71,5 @@ pub use junit::{junit, junit_of_failure};
 pub use options::CompareOptions;
 pub use read::read_result;
 pub use report::{FigureReport, FigureVerdict, GateReport};
+pub use runs::LossRun;
 pub use sample::Sample;

@@ -8,7 +8,7 @@ pub struct CompareOptions {
     pub alpha: f64,
     /// Names of the figures to compare; empty: all of the baseline.
     pub figures: Vec<String>,
-    /// By how much figures may be worse and pass, in their units, where it is not the default.
+    /// By how much figures may be worse and pass, in their units, in place of the baseline's tolerances.
     pub tolerances: IndexMap<String, f64>,
     /// Why figures with a best value may change; absent: a change shuts the gate.
     pub accept_changed: Option<String>,

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::flips::Flips;
 use super::identity::Pairing;
+use super::runs::LossRun;
 
 /// What is said of a figure, and of all of them together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -79,6 +80,8 @@ pub struct FigureReport {
     pub smallest_visible: Option<f64>,
     /// Blocks in which it has a value.
     pub blocks: u64,
+    /// Of a rate on the same frames: what was lost and won, and the longest run of losses.
+    pub loss_run: Option<LossRun>,
 }
 
 /// What a gate found: the document of `--json`.

@@ -25,16 +25,27 @@ pub(crate) enum Fault {
     MoreWrong(f64),
     /// Attitude is no longer solved in so much of the frames.
     FewerAttitudes(f64),
+    /// Nothing is detected in this part of the frames, in a row.
+    Blackout(f64, f64),
 }
 
 /// Those that a gate of 900 frames is to catch.
-pub(crate) const FAULTS: [Fault; 6] = [
+pub(crate) const FAULTS: [Fault; 15] = [
     Fault::LostHits(0.03),
     Fault::Shift(0.5),
     Fault::LargerErrors(1.2),
     Fault::Bias(0.1),
     Fault::MoreWrong(0.025),
     Fault::FewerAttitudes(0.03),
+    Fault::Blackout(0.0, 0.05),
+    Fault::Blackout(0.5, 0.55),
+    Fault::Blackout(0.95, 1.0),
+    Fault::Blackout(0.0, 0.1),
+    Fault::Blackout(0.45, 0.55),
+    Fault::Blackout(0.9, 1.0),
+    Fault::Blackout(0.0, 0.25),
+    Fault::Blackout(0.4, 0.65),
+    Fault::Blackout(0.75, 1.0),
 ];
 
 impl Fault {
@@ -49,14 +60,19 @@ impl Fault {
         };
         let away = frames.iter().map(dec_of).sum::<f64>().signum() * PIXEL_DEG;
         let mut faulty = frames.to_vec();
-        for frame in &mut faulty {
+        let count = frames.len() as f64;
+        for (place, frame) in faulty.iter_mut().enumerate() {
             let u = uniform(random);
+            let place = place as f64 / count;
             frame.verdict = match (frame.verdict, self) {
                 (Verdict::Correct { .. } | Verdict::Wrong { .. }, Self::LostHits(share)) if u < share => {
                     Verdict::Missed { cause: Cause::NotLinked }
                 }
                 (Verdict::Correct { error }, Self::MoreWrong(share)) if u < share / correct => {
                     Verdict::Wrong { error, taken: Taken::Nothing, cause: Cause::LostMotionTest }
+                }
+                (_, Self::Blackout(begin, end)) if (begin..end).contains(&place) => {
+                    Verdict::Missed { cause: Cause::BelowThreshold }
                 }
                 (verdict, Self::Shift(px)) => with_error(verdict, |ra, dec| (ra + px * PIXEL_DEG, dec)),
                 (verdict, Self::Bias(px)) => with_error(verdict, |ra, dec| (ra, dec + px * away)),
@@ -115,6 +131,26 @@ pub(crate) fn harmless(frames: &[FrameVerdict], seed: u64, pipeline: u64) -> Vec
         }
         let [a, b] = [(); 2].map(|()| 0.1 * PIXEL_DEG * normal(random));
         frame.verdict = with_error(frame.verdict, |ra, dec| (ra + a, dec + b));
+    }
+    changed
+}
+
+/// The same in episodes: of one frame in forty on, the verdicts of another stretch of the run, eight frames long in the mean.
+pub(crate) fn harmless_in_episodes(frames: &[FrameVerdict], seed: u64, pipeline: u64) -> Vec<FrameVerdict> {
+    let random = &mut Seed { seed, case: 4 + pipeline }.stream(0, Effect::CaseSeed, 0);
+    let mut changed = frames.to_vec();
+    let mut from = None;
+    for (place, frame) in changed.iter_mut().enumerate() {
+        let begins = uniform(random) < 0.025;
+        let ends = uniform(random) < 0.125;
+        from = match from {
+            None if begins => Some((uniform(random) * frames.len() as f64) as usize),
+            Some(_) if ends => None,
+            other => other,
+        };
+        if let Some(from) = from {
+            frame.verdict = frames[(from + place) % frames.len()].verdict;
+        }
     }
     changed
 }
