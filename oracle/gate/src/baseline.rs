@@ -483,6 +483,17 @@ mod tests {
         assert!(memory > 10.0 && memory * 10.0 == (memory * 10.0).round(), "{memory}");
     }
 
+    /// Errors that grow through 400 units are remembered all along: thirteen blocks of thirty, and eight of fifty for other frames.
+    #[test]
+    fn blocks_for_other_frames_are_longer_unless_their_length_was_given() {
+        let counts = |length| {
+            let baseline = Baseline::new(run(400), "a test", length).unwrap();
+            (baseline.blocks.count(), baseline.blocks_for_other_frames().count())
+        };
+        assert_eq!(counts(None), (13, 8));
+        assert_eq!(counts(Some(20)), (20, 20));
+    }
+
     #[test]
     fn a_baseline_keeps_the_tolerances_that_it_is_given() {
         let with = |name: &str| {

@@ -127,4 +127,30 @@ mod tests {
         assert_eq!(memory, Memory { units: 1.0, figure: String::new() });
         assert_eq!(super::memory(SourceKind::Run, "far_range", &UnitTable::default()), memory);
     }
+
+    /// Differences that are white, that drift for half the run, and that a fault makes last while the baseline is white.
+    #[test]
+    fn what_drifts_through_the_blocks_of_both_runs_is_remembered() {
+        let random = &mut Seed { seed: 9, case: 0 }.stream(0, Effect::PixelNoise, 0);
+        let table = table(&[("day 1", 400)]);
+        let blocks = Blocks::cut(SourceKind::Run, "far_range", &table, 50);
+        let thirds = Thirds::of(SourceKind::Run, "far_range", &table, &blocks);
+        assert_eq!(thirds.sequences.iter().map(Vec::len).collect::<Vec<_>>(), [24]);
+        let mut figure = |drift: f64, phase: f64| {
+            let mut term = |unit: u32| {
+                let slow = drift * (std::f64::consts::TAU * f64::from(unit) / 400.0 + phase).sin();
+                Term { sum: slow + normal(random), of: 1 }
+            };
+            FigureTerms::counted("ra_mean_deg", Reduction::Mean, (0..400).map(&mut term).collect())
+        };
+        let [white, other, drifting, lasting] =
+            [(0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (1.0, 2.0)].map(|(drift, phase)| figure(drift, phase));
+        assert!(!thirds.are_remembered(&white, &other));
+        assert!(thirds.are_remembered(&drifting, &lasting));
+        assert!(!thirds.are_remembered(&white, &lasting), "a fault is not chance");
+        // Blocks that are whole sequences are apart whatever they remember.
+        let days = Blocks::cut(SourceKind::Run, "far_range", &table, 400);
+        let thirds = Thirds::of(SourceKind::Run, "far_range", &table, &days);
+        assert!(!thirds.are_remembered(&drifting, &lasting));
+    }
 }
