@@ -5,7 +5,7 @@ use std::str::FromStr;
 use std::sync::Mutex;
 
 use clap::{Args, Subcommand};
-use files::{Failure, RunDirectory};
+use files::{Failure, FileError, RunDirectory};
 use pipeline::external::protocol::harmless;
 use run::pipeline_choice::PipelineChoice;
 use run::{Expectation, FirstFailure, Flight, Options};
@@ -291,6 +291,10 @@ struct Planned {
     #[serde(flatten)]
     plan: Plan,
     pieces: Vec<Piece>,
+    /// Folder that relative paths in the commands start from.
+    directory: PathBuf,
+    /// Files that the commands read, absolute: the study's own, its scenario's, those that cases read, and those among the words of a program.
+    files: Vec<PathBuf>,
 }
 
 #[derive(Serialize)]
@@ -363,7 +367,19 @@ fn planned(study: &Study, plan: &Plan, path: &Path, choice: &PipelineChoice) -> 
         arguments.extend(choice.arguments(study.scenario().world().code()));
         Piece { shard, first_case: cases.start, cases: cases.end - cases.start, arguments }
     };
-    Ok(Planned { pieces: (1..=plan.shards).map(piece).collect(), plan: plan.clone() })
+    let absolute =
+        |file: &Path| std::path::absolute(file).map_err(|error| FileError::io(file, "find", error));
+    let program = choice.files(study.scenario().world().code());
+    let mut files: Vec<PathBuf> =
+        study.files_read().iter().chain(&program).map(|file| absolute(file)).collect::<Result<_, _>>()?;
+    files.sort();
+    files.dedup();
+    Ok(Planned {
+        pieces: (1..=plan.shards).map(piece).collect(),
+        plan: plan.clone(),
+        directory: absolute(Path::new("."))?,
+        files,
+    })
 }
 
 fn merge(arguments: &MergeArguments, output: &Output) -> Result<Answer, Failure> {

@@ -101,8 +101,11 @@ fn scheduler() -> (Killed, String) {
     (Killed(child), address)
 }
 
+/// A worker in a folder of its own.
 fn worker(address: &str, bench: &Bench) -> Killed {
+    fs::create_dir_all(bench.path("elsewhere")).unwrap();
     let child = Command::new(python())
+        .current_dir(bench.path("elsewhere"))
         .args([
             "-m",
             "distributed.cli.dask_worker",
@@ -176,6 +179,62 @@ fn a_killed_driver_is_started_again_and_makes_what_is_missing() {
         name.extension().is_none_or(|e| e != "parquet") || after.get(name) == Some(bytes)
     };
     assert!(made.iter().all(is_kept));
+    bench.boresight("study run study.toml --out whole --shards 20").done();
+    bench.check_same("out/cases.parquet", "whole/cases.parquet");
+}
+
+/// A program and a scenario by relative paths, and eight workers that are in another folder: all travels to them by its content.
+#[test]
+#[ignore = "needs Python with Dask; continuous integration runs it"]
+fn a_study_travels_to_eight_workers_in_another_folder() {
+    let bench = Bench::new();
+    bench.write("study.toml", STUDY.replace("argon", "inputs/scenario.toml").replace("2000..2010", "0..10"));
+    fs::create_dir(bench.path("inputs")).unwrap();
+    let root = env!("CARGO_MANIFEST_DIR");
+    fs::copy(format!("{root}/scenarios/starting-point.toml"), bench.path("inputs/scenario.toml")).unwrap();
+    fs::copy(format!("{root}/docs/examples/brightest.py"), bench.path("brightest.py")).unwrap();
+    let program = ["--pipeline", "exec:python3 brightest.py"];
+
+    let (_scheduler, address) = scheduler();
+    let _workers: Vec<Killed> = (0..8).map(|_| worker(&address, &bench)).collect();
+    let status = on_dask(&bench, &format!("dask={address}")).args(program).stderr(Stdio::null()).status();
+    assert!(status.unwrap().success());
+    let whole = ["study", "run", "study.toml", "--out", "whole", "--shards", "20"];
+    bench.boresight_words(&[&whole[..], &program[..]].concat()).done();
+    bench.check_same("out/cases.parquet", "whole/cases.parquet");
+}
+
+#[test]
+#[ignore = "needs Python with Dask; continuous integration runs it"]
+fn a_program_that_workers_do_not_find_is_said_at_once() {
+    let bench = Bench::new();
+    bench.write("study.toml", STUDY);
+    let output = on_dask(&bench, "dask").env("BORESIGHT_PROGRAM", "/nowhere/boresight").output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    let parts = ["/nowhere/boresight: No such file or directory", "BORESIGHT_PROGRAM names the program"];
+    assert!(parts.iter().all(|part| said.contains(part)), "{said}");
+}
+
+#[test]
+#[ignore = "needs Python with Dask; continuous integration runs it"]
+fn a_scheduler_that_dies_is_said_and_its_shards_are_kept() {
+    let bench = Bench::new();
+    bench.write("study.toml", STUDY);
+    let (mut scheduler, address) = scheduler();
+    let _worker = worker(&address, &bench);
+    let driver = on_dask(&bench, &format!("dask={address}")).stderr(Stdio::piped()).spawn().unwrap();
+    wait_for("three shards", || shards(&bench) >= 3);
+    scheduler.0.kill().unwrap();
+    let output = driver.wait_with_output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    let parts =
+        [format!("the scheduler at {address} does not answer"), "of 20 shards were reported".to_owned()];
+    assert!(parts.iter().all(|part| said.contains(part)) && !said.contains("Traceback"), "{said}");
+    // The same command, on a cluster that is there.
+    let mut again = on_dask(&bench, "dask");
+    assert!(again.stderr(Stdio::null()).status().unwrap().success());
     bench.boresight("study run study.toml --out whole --shards 20").done();
     bench.check_same("out/cases.parquet", "whole/cases.parquet");
 }

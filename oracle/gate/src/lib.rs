@@ -26,11 +26,11 @@ mod baseline;
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod blocks;
+mod comparable;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
-mod comparable;
 mod compare;
 #[allow(
     clippy::indexing_slicing,

@@ -138,7 +138,7 @@ mod tests {
         assert_eq!(thirds.sequences.iter().map(Vec::len).collect::<Vec<_>>(), [24]);
         let mut figure = |drift: f64, phase: f64| {
             let mut term = |unit: u32| {
-                let slow = drift * (std::f64::consts::TAU * f64::from(unit) / 400.0 + phase).sin();
+                let slow = drift * libm::sin(std::f64::consts::TAU * f64::from(unit) / 400.0 + phase);
                 Term { sum: slow + normal(random), of: 1 }
             };
             FigureTerms::counted("ra_mean_deg", Reduction::Mean, (0..400).map(&mut term).collect())

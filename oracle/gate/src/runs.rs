@@ -132,8 +132,8 @@ mod tests {
     fn run_of(before: &[u8], after: &[u8]) -> LossRun {
         let [before, after] = [before, after].map(|bits| rate("hit_rate", bits));
         let units = days(&[("day 1", before.terms.len() as u64)]).units;
-        let sequences = [0..before.terms.len()];
-        loss_runs(&[(&before, &after)], &units, &sequences, 0.0025)[0].clone().unwrap()
+        let whole = 0..before.terms.len();
+        loss_runs(&[(&before, &after)], &units, std::slice::from_ref(&whole), 0.0025)[0].clone().unwrap()
     }
 
     /// Of 30 frames that alternate none remembers anything: an episode has three. Nine lost in a row are three throws, 2 · 2⁻³.
@@ -198,7 +198,10 @@ mod tests {
             let figures: Vec<_> =
                 names.iter().map(|name| (bits(name, &before), bits(name, &after))).collect();
             let pairs: Vec<_> = figures.iter().map(|(before, after)| (before, after)).collect();
-            loss_runs(&pairs, &days(&[("day 1", 60)]).units, &[0..60], 0.0025)[0].clone().unwrap().adjusted_p
+            loss_runs(&pairs, &days(&[("day 1", 60)]).units, std::slice::from_ref(&(0..60)), 0.0025)[0]
+                .clone()
+                .unwrap()
+                .adjusted_p
         };
         let alone = p(&["hit_rate"]);
         assert_eq!(p(&["hit_rate", "miss_rate"]), alone);

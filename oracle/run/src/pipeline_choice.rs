@@ -1,11 +1,12 @@
 //! Which pipeline runs: the built-in one, or somebody else's program.
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use files::{Failure, toml_file};
 use pipeline::external::Sandbox;
 use sha2::{Digest, Sha256};
 
 const EXEC: &str = "exec:";
+
 /// A larger file among a program's words counts by its name alone.
 const MOST_BYTES: u64 = 1 << 30;
 
@@ -63,13 +64,19 @@ impl PipelineChoice {
         if self.sandbox.is_some() {
             part(b"sandbox");
         }
-        for file in shlex::split(word.strip_prefix(EXEC).unwrap_or(word)).into_iter().flatten() {
+        for file in words(word) {
             // A word that names no file is a program of the search path, or an option.
             if let Ok(bytes) = sim::regular_file::read(Path::new(&file), MOST_BYTES) {
                 part(&bytes);
             }
         }
         Some(hash.finalize().into())
+    }
+
+    /// The files among a program's words, as they are written; none for the built-in pipeline of a world.
+    pub fn files(&self, world: &str) -> Vec<PathBuf> {
+        let word = self.word.as_deref().filter(|_| !self.is_built_in(world));
+        word.into_iter().flat_map(words).map(PathBuf::from).filter(|file| file.is_file()).collect()
     }
 
     /// The command of a program; `None` for the built-in pipeline of the world called `built_in`.
@@ -84,4 +91,9 @@ impl PipelineChoice {
             "there is no pipeline `{word}` in the world `{built_in}`; expected `{built_in}` or `exec:COMMAND`{hint}"
         )))
     }
+}
+
+/// The words of a program's command.
+fn words(word: &str) -> impl Iterator<Item = String> {
+    shlex::split(word.strip_prefix(EXEC).unwrap_or(word)).into_iter().flatten()
 }

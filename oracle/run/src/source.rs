@@ -73,6 +73,11 @@ impl ScenarioSource {
         self.contents.get(&path).map(String::as_str)
     }
 
+    /// The files whose content is known: those that the scenario reads, or may read with other values.
+    pub fn known_files(&self) -> impl Iterator<Item = &Path> {
+        self.contents.keys().map(PathBuf::as_path)
+    }
+
     /// SHA-256 of the files that the scenario reads, by their roles.
     ///
     /// # Errors

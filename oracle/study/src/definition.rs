@@ -316,6 +316,17 @@ impl Study {
         self.base.files()
     }
 
+    /// The files that it reads: its own, its scenario's as far as it has one, and those that cases read.
+    pub fn files_read(&self) -> Vec<PathBuf> {
+        let scenario = self.scenario_file();
+        let own = [self.path.as_path(), scenario.as_path()];
+        own.into_iter()
+            .chain(self.base.known_files())
+            .filter(|file| file.is_file())
+            .map(Path::to_path_buf)
+            .collect()
+    }
+
     /// The file of its scenario, as far as it has one.
     pub fn scenario_file(&self) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(&self.file.scenario)

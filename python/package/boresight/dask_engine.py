@@ -2,16 +2,21 @@
 
     python -m boresight.dask_engine --program boresight --out DIR [--scheduler ADDRESS] [--workers N] < plan.json
 
-The plan is what `boresight study plan --json` prints. Each shard is one call of the program on some worker, which writes
-its file below DIR (a folder that all workers see) and answers with its manifest; nothing else travels. The program does nothing
-for a shard that is there and whole, so that a task which the scheduler starts twice costs one look at a file.
+The plan is what `boresight study plan --json` prints. The files that it names travel to every worker, once, by their content: the study, its
+scenario, what its cases read, and the files among the words of a program. Each shard is one call of the program on some worker,
+which writes its file below DIR (a folder that all workers see) and answers with its manifest. The program does nothing for a shard
+that is there and whole, so that a task which the scheduler starts twice costs one look at a file.
 """
 
 from __future__ import annotations
 
 import argparse
 import ctypes
+import hashlib
 import json
+import logging
+import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -23,11 +28,14 @@ PR_SET_PDEATHSIG = 1
 """`prctl` of Linux: the signal that a process gets when its parent dies."""
 
 RETRIES = 3
-"""How often a shard is tried again after its worker died or its program failed."""
+"""How often a shard is tried again after its program was killed. A program that ends by itself, with whatever status, is not."""
 
 DEATHS = 100
 """How many workers may die over a shard before the scheduler gives it up: a cluster that takes machines away is no fault of a shard.
 Of a cluster on this machine; a scheduler elsewhere has its own configuration."""
+
+CONNECT_S = 30
+"""How long a scheduler may take to answer, s."""
 
 
 def die_with_parent() -> None:
@@ -36,11 +44,57 @@ def die_with_parent() -> None:
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
-def run_shard(command: list[str]) -> dict:
-    """Runs the program for one shard and gives its manifest."""
-    done = subprocess.run(command, capture_output=True, text=True, preexec_fn=die_with_parent)
+def digest_of(files: dict[str, bytes]) -> str:
+    """SHA-256 of files by their absolute paths."""
+    digest = hashlib.sha256()
+    for path, content in sorted(files.items()):
+        for part in (path.encode(), content):
+            digest.update(len(part).to_bytes(8, "little"))
+            digest.update(part)
+    return digest.hexdigest()
+
+
+def copy_of(path: str, below: str) -> str:
+    """Where the copy of a file or folder lies, below a folder that mirrors the absolute paths."""
+    return os.path.join(below, *pathlib.PurePath(path).parts[1:])
+
+
+def unpack(files: dict[str, bytes], below: str) -> None:
+    """Writes files below a folder, each at its absolute path. Absolute paths of the others that a TOML file has become those of the copies."""
+    for path, content in files.items():
+        if path.endswith(".toml"):
+            for other in files:
+                for quote in ('"', "'"):
+                    old, new = (f"{quote}{name}{quote}".encode() for name in (other, copy_of(other, below)))
+                    content = content.replace(old, new)
+        copy = pathlib.Path(copy_of(path, below))
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        whole = copy.with_name(f".{copy.name}.{os.getpid()}")
+        whole.write_bytes(content)
+        # Programs among them are run.
+        whole.chmod(0o755)
+        whole.replace(copy)
+
+
+def run_shard(command: list[str], folder: str, directory: str, files: list[str]) -> dict:
+    """Runs the program for one shard and gives its manifest, or `failed` with what the program said.
+
+    A program that was killed raises an error, and the scheduler tries again; one that ended by itself would end in the same way.
+    """
+    from distributed import get_worker
+
+    below = os.path.join(get_worker().local_directory, folder)
+    words = [copy_of(word, below) if word in files else word for word in command]
+    workdir = copy_of(directory, below)
+    os.makedirs(workdir, exist_ok=True)
+    try:
+        done = subprocess.run(words, cwd=workdir, capture_output=True, text=True, preexec_fn=die_with_parent)
+    except OSError as error:
+        return {"failed": f"worker {get_worker().address}: {words[0]}: {error.strerror}; BORESIGHT_PROGRAM names the program as workers find it"}
+    if done.returncode < 0:
+        raise RuntimeError(f"{' '.join(words)}: ended by signal {-done.returncode}")
     if done.returncode != 0:
-        raise RuntimeError(f"{' '.join(command)}: exit status {done.returncode}: {done.stderr.strip()}")
+        return {"failed": done.stderr.strip() or f"{' '.join(words)}: exit status {done.returncode}"}
     return json.loads(done.stdout)
 
 
@@ -56,27 +110,67 @@ def arguments() -> argparse.Namespace:
 def main() -> int:
     try:
         import dask
-        from distributed import Client, LocalCluster, as_completed
+        from distributed import Client, LocalCluster, WorkerPlugin, as_completed
     except ImportError as error:
         print(error, file=sys.stderr)
         return MISSING
+
+    class StudyFiles(WorkerPlugin):
+        """Writes the files of a study into the folder of every worker, of those that come later too."""
+
+        def __init__(self, files: dict[str, bytes], folder: str) -> None:
+            self.name = folder
+            self.files, self.folder = files, folder
+
+        def setup(self, worker: object) -> None:
+            unpack(self.files, os.path.join(worker.local_directory, self.folder))
+
+    # What goes wrong is said once, below.
+    logging.disable(logging.CRITICAL)
     given = arguments()
     plan = json.load(sys.stdin)
-    dask.config.set({"distributed.scheduler.allowed-failures": DEATHS})
-    cluster = given.scheduler or LocalCluster(
-        n_workers=given.workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
-    )
-    with Client(cluster) as client:
-        commands = [
-            [given.program, "--json", *piece["arguments"], "--out", given.out, "--jobs", "1"]
-            for piece in plan["pieces"]
-        ]
-        futures = client.map(run_shard, commands, retries=RETRIES, pure=False, key="shard")
-        done = 0
-        for future, manifest in as_completed(futures, with_results=True):
-            done += 1
-            print(json.dumps({"done": done, "of": len(commands), "shard": manifest["shard"]}), flush=True)
-            future.release()
+    files = {path: pathlib.Path(path).read_bytes() for path in plan["files"]}
+    folder = f"boresight-{digest_of(files)[:16]}"
+    commands = [
+        [given.program, "--json", *piece["arguments"], "--out", given.out, "--jobs", "1"] for piece in plan["pieces"]
+    ]
+    dask.config.set({"distributed.scheduler.allowed-failures": DEATHS, "distributed.comm.timeouts.connect": CONNECT_S})
+    done = 0
+    try:
+        cluster = given.scheduler or LocalCluster(
+            n_workers=given.workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
+        )
+        with Client(cluster, timeout=CONNECT_S) as client:
+            client.register_plugin(StudyFiles(files, folder))
+            futures = client.map(
+                run_shard,
+                commands,
+                folder=folder,
+                directory=plan["directory"],
+                files=list(files),
+                retries=RETRIES,
+                pure=False,
+                key="shard",
+            )
+            for future in as_completed(futures):
+                if future.status in ("cancelled", "lost"):
+                    raise ConnectionError("the scheduler is gone")
+                manifest = future.result()
+                if "failed" in manifest:
+                    client.cancel(futures)
+                    print(manifest["failed"], file=sys.stderr)
+                    return 1
+                done += 1
+                print(json.dumps({"done": done, "of": len(commands), "shard": manifest["shard"]}), flush=True)
+                future.release()
+    except OSError as error:
+        where = f"the scheduler at {given.scheduler}" if given.scheduler else "the cluster on this machine"
+        print(
+            f"{where} does not answer ({error}); {done} of {len(commands)} shards were reported, what is whole in {given.out} is kept, and "
+            "the same command goes on from there",
+            file=sys.stderr,
+        )
+        return 1
     if given.scheduler is None:
         cluster.close()
     return 0
