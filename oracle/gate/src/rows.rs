@@ -95,8 +95,10 @@ fn names(figures: &[(String, Reduction)]) -> impl Iterator<Item = String> {
     ["number", "block", "group", "verdict", "cause"].map(str::to_owned).into_iter().chain(ofs)
 }
 
+/// Either file may be the damaged one, so the message names both.
 fn no_column(path: &Path, name: &str) -> FileError {
-    FileError::format(path, "Parquet", format!("it has no column `{name}` of its type"))
+    let wanted = "of its type, though the figures of baseline.toml ask for it";
+    FileError::format(path, "Parquet", format!("it has no column `{name}` {wanted}"))
 }
 
 fn add(
