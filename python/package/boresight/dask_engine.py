@@ -110,7 +110,7 @@ def arguments() -> argparse.Namespace:
 def main() -> int:
     try:
         import dask
-        from distributed import Client, LocalCluster, WorkerPlugin, as_completed
+        from distributed import Client, LocalCluster, Worker, WorkerPlugin, as_completed
     except ImportError as error:
         print(error, file=sys.stderr)
         return MISSING
@@ -122,7 +122,7 @@ def main() -> int:
             self.name = folder
             self.files, self.folder = files, folder
 
-        def setup(self, worker: object) -> None:
+        def setup(self, worker: Worker) -> None:
             unpack(self.files, os.path.join(worker.local_directory, self.folder))
 
     # What goes wrong is said once, below.
