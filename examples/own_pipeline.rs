@@ -17,7 +17,7 @@ impl Pipeline<FarRange> for Brightest {
             Some((index, _)) => {
                 let (x, y) = (index % frame.columns(), index / frame.columns());
                 let position = PixelPoint::new(x as f64, y as f64);
-                let measurement = Measurement { position, line_of_sight: None };
+                let measurement = Measurement::new(position, None);
                 Outcome { solution: Solution::Detected(measurement), ..Outcome::none(NoSolution::NoTarget) }
             }
         }

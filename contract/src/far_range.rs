@@ -1,8 +1,8 @@
 //! What a far-range pipeline receives and answers.
 
 use crate::{
-    Body, Camera, CameraFrame, Frame, Interface, ListedStar, NoSolution, Outcome, Readout, Rotation,
-    Solution, Telemetry,
+    Body, Calibration, Camera, CameraFrame, Frame, Interface, ListedStar, NoSolution, Outcome, Readout,
+    Rotation, Solution, Telemetry,
 };
 
 /// The interface of far-range pipelines: star fields with a distant spacecraft.
@@ -44,6 +44,8 @@ pub struct Setup {
     pub bit_depth: u8,
     /// Gain, bias, read noise and saturation as calibrated; `None` when they are not known.
     pub readout: Option<Readout>,
+    /// Point-spread function, detector, brightness scale and attitude knowledge as calibrated.
+    pub calibration: Calibration,
     /// Pixels up to this digital number arrive as 0, whatever they were; `None`: every pixel arrives as it was.
     pub zero_suppression_dn: Option<u16>,
     /// The uploaded star list, ordered by `id`.

@@ -18,6 +18,7 @@
 
 mod angle;
 pub mod bounds;
+mod calibration;
 mod camera;
 #[allow(
     clippy::indexing_slicing,
@@ -25,6 +26,7 @@ mod camera;
     reason = "the images are made here, in the size of the camera"
 )]
 pub mod conformance;
+mod covariance;
 mod direction;
 pub mod docking;
 mod error;
@@ -40,7 +42,9 @@ mod telemetry;
 
 pub use angle::Angle;
 pub use bounds::OutOfRange;
+pub use calibration::{AttitudeKnowledge, Calibration, PsfCalibration};
 pub use camera::{Camera, Mounting};
+pub use covariance::Covariance2;
 pub use direction::{Body, CameraFrame, Direction, Icrs, Target};
 pub use error::ContractError;
 pub use far_range::{FarRange, Setup};

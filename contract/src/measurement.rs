@@ -2,15 +2,27 @@
 
 use std::fmt;
 
-use crate::{CameraFrame, Direction, Icrs, PixelPoint, Rotation};
+use crate::{CameraFrame, Covariance2, Direction, Icrs, PixelPoint, Rotation};
 
 /// The target, found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement {
     /// Centre of the target's image.
     pub position: PixelPoint,
+    /// Covariance of that centre along columns and rows, px; `None` when the pipeline does not estimate it.
+    pub position_covariance: Option<Covariance2>,
     /// Line of sight to the target; `None` when the pipeline measures in the image only.
     pub line_of_sight: Option<Direction<Icrs>>,
+    /// Covariance of the line of sight, rad: of its angles atan2(X, Z) across columns and atan2(Y, Z) across rows in the camera frame,
+    /// the error of the attitude included; `None` without a line of sight, or when the pipeline does not estimate it.
+    pub line_of_sight_covariance: Option<Covariance2>,
+}
+
+impl Measurement {
+    /// A centre and a line of sight without covariances.
+    pub fn new(position: PixelPoint, line_of_sight: Option<Direction<Icrs>>) -> Self {
+        Self { position, position_covariance: None, line_of_sight, line_of_sight_covariance: None }
+    }
 }
 
 /// Why there is no target in the answer.

@@ -38,6 +38,7 @@ fn setup(columns: usize, rows: usize) -> Setup {
         camera_from_body: Rotation::identity(),
         bit_depth: 12,
         readout: None,
+        calibration: contract::Calibration::default(),
         zero_suppression_dn: None,
         stars: Vec::new(),
     }

@@ -93,6 +93,7 @@ fn answer(
             read_noise_e: READ_NOISE_E,
             saturation_dn: 4095,
         }),
+        calibration: contract::Calibration::default(),
         zero_suppression_dn: None,
         stars: stars.to_vec(),
     };

@@ -124,7 +124,7 @@ fn outcome(
                 );
                 return Err(row.error(column, expected));
             }
-            Solution::Detected(Measurement { position, line_of_sight: line.line_of_sight })
+            Solution::Detected(Measurement::new(position, line.line_of_sight))
         }
     };
     Ok(Outcome {
@@ -215,10 +215,10 @@ mod tests {
         ];
         let vector = || prop::array::uniform3(0.1..3.0_f64).prop_map(Vector3::from);
         let detected = (-0.5..750.5_f64, any::<f64>(), prop::option::of(vector())).prop_map(|(x, y, los)| {
-            Solution::Detected(Measurement {
-                position: PixelPoint::new(x, if (-0.5..=579.5).contains(&y) { y } else { -0.0 }),
-                line_of_sight: los.map(|v| Direction::from_vector(v).unwrap()),
-            })
+            Solution::Detected(Measurement::new(
+                PixelPoint::new(x, if (-0.5..=579.5).contains(&y) { y } else { -0.0 }),
+                los.map(|v| Direction::from_vector(v).unwrap()),
+            ))
         });
         let solution = prop_oneof![detected, reason.prop_map(Solution::NoSolution)];
         let source = prop::option::of(prop_oneof![

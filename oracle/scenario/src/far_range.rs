@@ -1,14 +1,14 @@
 //! The far-range world: star fields with a distant spacecraft.
 
 use clap::ValueEnum;
-use contract::{Camera, OutOfRange, Readout, bounds};
+use contract::{AttitudeKnowledge, Calibration, Camera, OutOfRange, PsfCalibration, Readout, bounds};
 use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sim::Simulation;
 use sim::catalog::{CatalogConfig, CatalogSource};
 use sim::onboard::{RoiConfig, ShutterConfig};
-use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
+use sim::optics::{OpticsConfig, PsfConfig, Radiometry, RadiometryConfig};
 use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::{SensorConfig, Switch};
 use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
@@ -74,6 +74,9 @@ pub struct FarRangeScenario {
     // Not written where it says nothing: resolved scenarios, and their hashes, are those from before there was such a table.
     #[serde(default, skip_serializing_if = "ScoreConfig::is_default")]
     pub score: ScoreConfig,
+    /// Calibration given to the pipeline, in place of the numbers that follow from the tables above; absent: all of those.
+    #[serde(default, skip_serializing_if = "is_nothing_stated")]
+    pub calibration: Calibration,
     /// Parameters of the pipeline `far_range`.
     #[serde(default)]
     pub far_range: FarRangeConfig,
@@ -132,6 +135,10 @@ pub enum FarRangeWorld {
     FarRange,
 }
 
+fn is_nothing_stated(calibration: &Calibration) -> bool {
+    *calibration == Calibration::default()
+}
+
 fn off() -> Switch {
     Switch::Off
 }
@@ -144,6 +151,12 @@ pub struct StarListConfig {
     #[schemars(range(min = -2, max = 15))]
     pub magnitude_limit: f64,
 }
+
+/// Standard deviation of the nominal mounting about each axis, arcsec: a calibration on ground and the launch after it.
+const MOUNTING_SIGMA_ARCSEC: f64 = 180.0;
+
+/// Colour B − V of the Sun, mag (Ramírez et al. 2012, ApJ 752, 5: 0.653).
+const SUN_B_MINUS_V: f64 = 0.653;
 
 scenario_file!(FarRangeScenario, "far_range");
 
@@ -182,6 +195,42 @@ impl FarRangeScenario {
             target: self.target.clone(),
             solar_system: self.solar_system,
         }
+    }
+
+    /// The calibration given to a pipeline: what follows from optics, detector, radiometry and knowledge of the attitude, with the stated numbers
+    /// in place of those.
+    ///
+    /// The point-spread function follows for Gaussian ones alone, the brightness scale for a radiometry that is allowed. The nominal mounting counts as
+    /// known to [`MOUNTING_SIGMA_ARCSEC`] about each axis.
+    pub fn calibration(&self) -> Calibration {
+        let psf = match self.psf {
+            PsfConfig::Gaussian { sigma_px } => {
+                Some(PsfCalibration { sigma_px, halo_sigma_px: 4.0, halo_fraction: 0.0 })
+            }
+            PsfConfig::GaussianHalo { sigma_px, halo_sigma_px, halo_fraction } => {
+                Some(PsfCalibration { sigma_px, halo_sigma_px, halo_fraction })
+            }
+            _ => None,
+        };
+        let knowledge = &self.knowledge;
+        let slow_period_s = knowledge.drift.periods_s.iter().copied().fold(f64::INFINITY, f64::min);
+        let derived = Calibration {
+            psf,
+            full_well_e: Some(self.sensor.full_well_e),
+            spill_fraction: Some(self.sensor.blooming.map_or(0.0, |blooming| blooming.spill_fraction)),
+            response_sigma: Some(self.sensor.fixed_pattern.prnu_fraction),
+            zero_magnitude_e_per_s: Radiometry::new(&self.radiometry)
+                .ok()
+                .map(|radiometry| radiometry.zero_point_e_per_s(Some(SUN_B_MINUS_V), None)),
+            target_e_per_s: None,
+            attitude: Some(AttitudeKnowledge {
+                white_arcsec: knowledge.noise_arcsec,
+                slow_arcsec: knowledge.drift.rms_arcsec,
+                slow_period_s: if slow_period_s.is_finite() { slow_period_s } else { 1e9 },
+                constant_arcsec: knowledge.bias_arcsec.map(|bias| bias.hypot(MOUNTING_SIGMA_ARCSEC)),
+            }),
+        };
+        derived.replaced_by(self.calibration)
     }
 
     /// How the detector's electrons become digital numbers, as its calibration tells a pipeline.

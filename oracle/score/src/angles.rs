@@ -175,7 +175,7 @@ mod tests {
     use crate::hand_made::{CENTRE, PIXEL, camera, direction_at, frame, tilted, unproject};
 
     fn measured(position: PixelPoint, line_of_sight: Option<Direction<Icrs>>) -> Measurement {
-        Measurement { position, line_of_sight }
+        Measurement::new(position, line_of_sight)
     }
 
     /// The error of a line of sight of the pipeline's own.

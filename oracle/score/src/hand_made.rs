@@ -113,7 +113,7 @@ pub(crate) fn cluster(position: PixelPoint, label: Label) -> Cluster {
 /// An answer from the image alone.
 pub(crate) fn detected_at(position: PixelPoint) -> Outcome {
     Outcome {
-        solution: Solution::Detected(Measurement { position, line_of_sight: None }),
+        solution: Solution::Detected(Measurement::new(position, None)),
         camera_from_icrs: None,
         attitude_source: None,
         n_stars: None,

@@ -145,6 +145,7 @@ impl Bench<'_> {
             camera_from_body: Rotation::<CameraFrame, Body>::identity(),
             bit_depth: self.camera.sensor.bit_depth,
             readout: None,
+            calibration: contract::Calibration::default(),
             zero_suppression_dn: None,
             stars: Vec::new(),
         };

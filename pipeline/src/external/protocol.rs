@@ -207,7 +207,7 @@ fn measurement(answer: &Answer, (columns, rows): (usize, usize)) -> Result<Measu
             Some(direction)
         }
     };
-    Ok(Measurement { position, line_of_sight })
+    Ok(Measurement::new(position, line_of_sight))
 }
 
 pub(super) fn line(value: &impl Serialize) -> Result<Vec<u8>, String> {

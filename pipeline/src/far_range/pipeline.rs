@@ -315,10 +315,10 @@ impl FarRangePipeline {
         let target = select_target(&movers);
 
         let solution = match target {
-            Some(i) => Solution::Detected(Measurement {
-                position: blobs[i].measured(),
-                line_of_sight: line_of_sight(blobs[i].measured(), &camera_from_icrs, &self.model),
-            }),
+            Some(i) => Solution::Detected(Measurement::new(
+                blobs[i].measured(),
+                line_of_sight(blobs[i].measured(), &camera_from_icrs, &self.model),
+            )),
             None if has_previous => Solution::NoSolution(NoSolution::NoTarget),
             None => Solution::NoSolution(NoSolution::NoPreviousFrame),
         };

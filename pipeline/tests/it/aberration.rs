@@ -66,6 +66,7 @@ fn error_arcsec(aberration: AberrationConfig) -> f64 {
         camera_from_body: Rotation::identity(),
         bit_depth: 12,
         readout: None,
+        calibration: contract::Calibration::default(),
         zero_suppression_dn: None,
         stars: stars(),
     };

@@ -30,6 +30,7 @@ fn setup() -> Setup {
         camera_from_body: Rotation::identity(),
         bit_depth: 12,
         readout: None,
+        calibration: contract::Calibration::default(),
         zero_suppression_dn: None,
         stars: Vec::new(),
     }

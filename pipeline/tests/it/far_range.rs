@@ -107,6 +107,7 @@ fn setup() -> Setup {
         camera_from_body: nominal(),
         bit_depth: 12,
         readout: Some(READOUT),
+        calibration: contract::Calibration::default(),
         zero_suppression_dn: None,
         stars: stars(),
     }

@@ -96,6 +96,7 @@ fn setup(scenario: &FarRangeScenario, stars: &[StarRow]) -> Setup {
         camera_from_body: scenario.mounting.nominal.camera_from_body(),
         bit_depth: scenario.sensor.bit_depth,
         readout: Some(scenario.readout()),
+        calibration: scenario.calibration(),
         zero_suppression_dn: scenario.zero_suppression_dn,
         stars: stars.iter().map(StarRow::listed).collect(),
     }

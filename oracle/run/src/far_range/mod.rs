@@ -354,6 +354,7 @@ fn setup_of(directory: &Path, dataset: &Dataset) -> Result<Setup, Failure> {
         camera_from_body: camera.mounting.camera_from_body(),
         bit_depth: camera.bit_depth,
         readout: camera.readout,
+        calibration: Default::default(),
         zero_suppression_dn: camera.zero_suppression_dn,
         stars: stars.iter().map(StarRow::listed).collect(),
     })

@@ -1,0 +1,138 @@
+//! Calibration of a camera and of the attitude knowledge, beyond geometry and readout.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::{OutOfRange, bounds};
+
+/// Numbers that a user calibrates about the image of a point, the detector, the brightness scale and the errors of the telemetry; each
+/// is absent where it is not known. They may be wrong: a pipeline estimates what it can and takes these as a prior.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Calibration {
+    /// Image of a point.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub psf: Option<PsfCalibration>,
+    /// Electrons that a pixel holds, 1 to 1e9.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1e9))]
+    pub full_well_e: Option<f64>,
+    /// Part of the charge above the full well that spills along the columns, 0 to 1; 0: none does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1))]
+    pub spill_fraction: Option<f64>,
+    /// Standard deviation of the response of single pixels, relative to their mean, 0 to 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1))]
+    pub response_sigma: Option<f64>,
+    /// Photoelectrons per second from a star like the Sun of V = 0, 1e-3 to 1e15.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1e-3, max = 1e15))]
+    pub zero_magnitude_e_per_s: Option<f64>,
+    /// Least and greatest photoelectrons per second expected from the target, each 1e-3 to 1e15.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 1e-3, max = 1e15)))]
+    pub target_e_per_s: Option<[f64; 2]>,
+    /// Errors of the telemetry's attitude and of the nominal mounting.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub attitude: Option<AttitudeKnowledge>,
+}
+
+/// Image of a point: a circular Gaussian core and a wider Gaussian halo.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PsfCalibration {
+    /// Standard deviation of the core, px, 0.2 to 20.
+    #[schemars(range(min = 0.2, max = 20))]
+    pub sigma_px: f64,
+    /// Standard deviation of the halo, px, 0.2 to 200.
+    #[serde(default = "no_halo_px")]
+    #[schemars(range(min = 0.2, max = 200))]
+    pub halo_sigma_px: f64,
+    /// Part of the flux in the halo, 0 to 1.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 1))]
+    pub halo_fraction: f64,
+}
+
+/// Width of a halo without flux, px.
+fn no_halo_px() -> f64 {
+    4.0
+}
+
+/// Standard deviations of the telemetry's attitude and of the mounting about the axes of the body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AttitudeKnowledge {
+    /// Noise that is new in every frame, about x, y, z, arcsec, each 0 to 36000.
+    #[schemars(inner(range(min = 0, max = 36000)))]
+    pub white_arcsec: [f64; 3],
+    /// Slow error, about x, y, z, arcsec, each 0 to 36000.
+    #[schemars(inner(range(min = 0, max = 36000)))]
+    pub slow_arcsec: [f64; 3],
+    /// Time over which the slow error changes, s, 1 to 1e9.
+    #[schemars(range(min = 1, max = 1e9))]
+    pub slow_period_s: f64,
+    /// Constant error, of the nominal mounting included, about x, y, z, arcsec, each 0 to 36000.
+    #[schemars(inner(range(min = 0, max = 36000)))]
+    pub constant_arcsec: [f64; 3],
+}
+
+impl Calibration {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for the first field outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "calibration")?;
+        let Some([least, greatest]) = self.target_e_per_s else { return Ok(()) };
+        bounds::require("calibration.target_e_per_s[1]", greatest, format!("at least {least}"), |value| {
+            value >= least
+        })
+    }
+
+    /// This calibration with the numbers that `stated` has in place of its own.
+    pub fn replaced_by(self, stated: Self) -> Self {
+        Self {
+            psf: stated.psf.or(self.psf),
+            full_well_e: stated.full_well_e.or(self.full_well_e),
+            spill_fraction: stated.spill_fraction.or(self.spill_fraction),
+            response_sigma: stated.response_sigma.or(self.response_sigma),
+            zero_magnitude_e_per_s: stated.zero_magnitude_e_per_s.or(self.zero_magnitude_e_per_s),
+            target_e_per_s: stated.target_e_per_s.or(self.target_e_per_s),
+            attitude: stated.attitude.or(self.attitude),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_number_outside_its_range_is_named() {
+        let good = Calibration {
+            psf: Some(PsfCalibration { sigma_px: 0.8, halo_sigma_px: 4.0, halo_fraction: 0.04 }),
+            target_e_per_s: Some([1e3, 1e6]),
+            ..Calibration::default()
+        };
+        good.check().unwrap();
+        let refused = |calibration: Calibration| calibration.check().unwrap_err().path;
+        assert_eq!(refused(Calibration { full_well_e: Some(0.0), ..good }), "calibration.full_well_e");
+        assert_eq!(
+            refused(Calibration { target_e_per_s: Some([10.0, 1.0]), ..good }),
+            "calibration.target_e_per_s[1]"
+        );
+        let psf = PsfCalibration { sigma_px: f64::NAN, halo_sigma_px: 4.0, halo_fraction: 0.0 };
+        assert_eq!(refused(Calibration { psf: Some(psf), ..good }), "calibration.psf.sigma_px");
+    }
+
+    #[test]
+    fn a_stated_number_replaces_a_derived_one_alone() {
+        let derived =
+            Calibration { full_well_e: Some(6e4), response_sigma: Some(0.01), ..Calibration::default() };
+        let stated = Calibration { full_well_e: Some(5e4), ..Calibration::default() };
+        let expected = Calibration { full_well_e: Some(5e4), ..derived };
+        assert_eq!(derived.replaced_by(stated), expected);
+    }
+}
