@@ -29,13 +29,24 @@ pub struct Calibration {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-3, max = 1e15))]
     pub zero_magnitude_e_per_s: Option<f64>,
-    /// Least and greatest photoelectrons per second expected from the target, each 1e-3 to 1e15.
+    /// Size and brightness of the target.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(inner(range(min = 1e-3, max = 1e15)))]
-    pub target_e_per_s: Option<[f64; 2]>,
+    pub target: Option<TargetCalibration>,
     /// Errors of the telemetry's attitude and of the nominal mounting.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub attitude: Option<AttitudeKnowledge>,
+}
+
+/// Size and brightness of the target, to a factor of two.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TargetCalibration {
+    /// Half its size, m, 0 to 1e6.
+    #[schemars(range(min = 0, max = 1e6))]
+    pub radius_m: f64,
+    /// Photoelectrons per second at a range of 1 km, sunlit, 1e-3 to 1e18.
+    #[schemars(range(min = 1e-3, max = 1e18))]
+    pub e_per_s_at_1_km: f64,
 }
 
 /// Image of a point: a circular Gaussian core and a wider Gaussian halo.
@@ -84,11 +95,7 @@ impl Calibration {
     /// # Errors
     /// [`OutOfRange`] for the first field outside its range.
     pub fn check(&self) -> Result<(), OutOfRange> {
-        bounds::check(self, "calibration")?;
-        let Some([least, greatest]) = self.target_e_per_s else { return Ok(()) };
-        bounds::require("calibration.target_e_per_s[1]", greatest, format!("at least {least}"), |value| {
-            value >= least
-        })
+        bounds::check(self, "calibration")
     }
 
     /// This calibration with the numbers that `stated` has in place of its own.
@@ -99,7 +106,7 @@ impl Calibration {
             spill_fraction: stated.spill_fraction.or(self.spill_fraction),
             response_sigma: stated.response_sigma.or(self.response_sigma),
             zero_magnitude_e_per_s: stated.zero_magnitude_e_per_s.or(self.zero_magnitude_e_per_s),
-            target_e_per_s: stated.target_e_per_s.or(self.target_e_per_s),
+            target: stated.target.or(self.target),
             attitude: stated.attitude.or(self.attitude),
         }
     }
@@ -113,16 +120,14 @@ mod tests {
     fn each_number_outside_its_range_is_named() {
         let good = Calibration {
             psf: Some(PsfCalibration { sigma_px: 0.8, halo_sigma_px: 4.0, halo_fraction: 0.04 }),
-            target_e_per_s: Some([1e3, 1e6]),
+            target: Some(TargetCalibration { radius_m: 0.4, e_per_s_at_1_km: 1e8 }),
             ..Calibration::default()
         };
         good.check().unwrap();
         let refused = |calibration: Calibration| calibration.check().unwrap_err().path;
         assert_eq!(refused(Calibration { full_well_e: Some(0.0), ..good }), "calibration.full_well_e");
-        assert_eq!(
-            refused(Calibration { target_e_per_s: Some([10.0, 1.0]), ..good }),
-            "calibration.target_e_per_s[1]"
-        );
+        let target = TargetCalibration { radius_m: -1.0, e_per_s_at_1_km: 1e8 };
+        assert_eq!(refused(Calibration { target: Some(target), ..good }), "calibration.target.radius_m");
         let psf = PsfCalibration { sigma_px: f64::NAN, halo_sigma_px: 4.0, halo_fraction: 0.0 };
         assert_eq!(refused(Calibration { psf: Some(psf), ..good }), "calibration.psf.sigma_px");
     }

@@ -42,7 +42,7 @@ mod telemetry;
 
 pub use angle::Angle;
 pub use bounds::OutOfRange;
-pub use calibration::{AttitudeKnowledge, Calibration, PsfCalibration};
+pub use calibration::{AttitudeKnowledge, Calibration, PsfCalibration, TargetCalibration};
 pub use camera::{Camera, Mounting};
 pub use covariance::Covariance2;
 pub use direction::{Body, CameraFrame, Direction, Icrs, Target};

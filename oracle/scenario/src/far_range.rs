@@ -222,7 +222,7 @@ impl FarRangeScenario {
             zero_magnitude_e_per_s: Radiometry::new(&self.radiometry)
                 .ok()
                 .map(|radiometry| radiometry.zero_point_e_per_s(Some(SUN_B_MINUS_V), None)),
-            target_e_per_s: None,
+            target: None,
             attitude: Some(AttitudeKnowledge {
                 white_arcsec: knowledge.noise_arcsec,
                 slow_arcsec: knowledge.drift.rms_arcsec,

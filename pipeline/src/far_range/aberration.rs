@@ -53,6 +53,18 @@ pub fn aberration_correction(
     })
 }
 
+/// Direction in which a star is seen, of a unit vector along the axes of ICRS without aberration: s + v/c, normalised. Exact to (v/c)², a
+/// milliarcsecond; the annual part is [`annual_velocity_km_s`]. An orbital velocity that is not finite counts as unknown.
+pub(super) fn apparent_direction(
+    time: Epoch,
+    orbital_km_s: Option<Vector3<f64>>,
+    direction: &Vector3<f64>,
+) -> Vector3<f64> {
+    let orbital =
+        orbital_km_s.filter(|velocity| velocity.norm() < LIGHT_KM_S / 2.0).unwrap_or_else(Vector3::zeros);
+    (direction + (orbital + annual_velocity_km_s(time)) / LIGHT_KM_S).normalize()
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::attitude::{StarPair, solve_q_method};

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::attitude::{AttitudeConfig, StarWeights};
+use super::best::BestConfig;
 use super::centroid::CentroidConfig;
 use super::detect::Weights;
 use super::hotspots::HotspotConfig;
@@ -16,6 +17,10 @@ use super::track::TrackingConfig;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FarRangeConfig {
+    /// Method: `best`, or `paper` as published.
+    pub mode: Mode,
+    /// Parameters of the best mode.
+    pub best: BestConfig,
     /// Thresholds I1 and I2 of detection.
     pub thresholds: ThresholdConfig,
     /// What weights the pixels of a cluster: `intensity` as in the paper, or `above_background`.
@@ -42,6 +47,17 @@ pub struct FarRangeConfig {
     pub max_gap_s: f64,
 }
 
+/// Method of the far-range pipeline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Mode {
+    /// Attitude from prior and stars, hypotheses about the target, fitted images (docs/best-mode.md).
+    Best,
+    /// The paper's method.
+    #[default]
+    Paper,
+}
+
 /// Whether aberration is corrected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -56,6 +72,8 @@ pub enum AberrationConfig {
 impl Default for FarRangeConfig {
     fn default() -> Self {
         Self {
+            mode: Mode::default(),
+            best: BestConfig::default(),
             thresholds: ThresholdConfig::default(),
             weights: Weights::default(),
             centroid: CentroidConfig::default(),

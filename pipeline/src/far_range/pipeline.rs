@@ -1,9 +1,8 @@
-//! The far-range pipeline: its steps in order, and what it remembers from frame to frame.
+//! The paper's mode: its steps in order, and what it remembers from frame to frame.
 
 use contract::{
-    AttitudeSource, Body, CameraFrame, Cluster, ContractError, FarRange, Frame, Icrs, Label, ListedStar,
-    Measurement, NoSolution, OutOfRange, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution,
-    Telemetry,
+    AttitudeSource, Body, CameraFrame, Cluster, ContractError, Frame, Icrs, Label, ListedStar, Measurement,
+    NoSolution, OutOfRange, Outcome, Rotation, Setup, Solution, Telemetry,
 };
 use hifitime::Epoch;
 
@@ -19,6 +18,7 @@ use super::line_of_sight::line_of_sight;
 use super::motion::{Mover, select_target};
 use super::overrides::{Identity, Overrides};
 use super::track::{Track, expected_position, link};
+use super::usable::unusable;
 use crate::{CameraModel, PipelineError};
 
 /// The far-range method on one sequence of frames.
@@ -26,7 +26,7 @@ use crate::{CameraModel, PipelineError};
 /// A frame whose image is empty or saturated leaves what is remembered as it was: the next frame is linked across
 /// it. A frame counts as saturated when more than half of its transmitted pixels are at full scale.
 #[derive(Debug)]
-pub struct FarRangePipeline {
+pub(super) struct PaperPipeline {
     config: FarRangeConfig,
     model: CameraModel,
     stars: StarList,
@@ -49,14 +49,14 @@ struct Previous {
     tracks: Vec<Track>,
 }
 
-impl FarRangePipeline {
+impl PaperPipeline {
     /// A pipeline that has seen no frame.
     ///
     /// # Errors
     /// Those of [`FarRangeConfig::check`], of the camera's check and of [`contract::Readout::check`];
     /// [`OutOfRange`] for fitted centres with a camera whose readout is not known, and for thresholds below the zero
     /// suppression of the camera.
-    pub fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
+    pub(super) fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
         config.check()?;
         config.check_suppression(setup.zero_suppression_dn, setup.bit_depth)?;
         let model = CameraModel::new(&setup.camera)?;
@@ -229,9 +229,9 @@ enum Known {
     Nothing,
 }
 
-impl FarRangePipeline {
-    /// [`Pipeline::process`] with results of single steps given from outside; for an error budget.
-    pub fn process_with(
+impl PaperPipeline {
+    /// [`contract::Pipeline::process`] with results of single steps given from outside; for an error budget.
+    pub(super) fn process_with(
         &mut self,
         frame: &Frame,
         telemetry: &Telemetry,
@@ -345,60 +345,6 @@ impl FarRangePipeline {
             attitude_source: Some(attitude_source),
             n_stars: Some(seen.len() as u32),
             clusters,
-        }
-    }
-}
-
-impl Pipeline<FarRange> for FarRangePipeline {
-    fn process(&mut self, frame: &Frame, telemetry: &Telemetry) -> Outcome {
-        self.process_with(frame, telemetry, &Overrides::default())
-    }
-}
-
-/// Why a frame and its telemetry cannot be processed at all, if so.
-fn unusable(frame: &Frame, telemetry: &Telemetry, model: &CameraModel) -> Option<String> {
-    let (columns, rows) = model.size_px();
-    if (frame.columns(), frame.rows()) != (columns, rows) {
-        return Some(format!(
-            "a frame of {} × {} pixels for a camera of {columns} × {rows}",
-            frame.columns(),
-            frame.rows()
-        ));
-    }
-    let norm = telemetry.body_from_icrs.quaternion().norm();
-    let is_unit = (norm - 1.0).abs() < 1e-4;
-    (!is_unit).then(|| format!("the telemetry's attitude has norm {norm}, expected 1"))
-}
-
-/// Builds [`FarRangePipeline`] pipelines.
-#[derive(Debug, Clone, Default)]
-pub struct FarRangeFactory {
-    config: FarRangeConfig,
-}
-
-impl FarRangeFactory {
-    /// A factory of pipelines with this configuration.
-    ///
-    /// # Errors
-    /// Those of [`FarRangeConfig::check`].
-    pub fn new(config: FarRangeConfig) -> Result<Self, PipelineError> {
-        config.check()?;
-        Ok(Self { config })
-    }
-}
-
-impl PipelineFactory<FarRange> for FarRangeFactory {
-    fn name(&self) -> String {
-        "far-range".to_owned()
-    }
-
-    fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline<FarRange>>, ContractError> {
-        match FarRangePipeline::new(self.config.clone(), setup) {
-            Ok(pipeline) => Ok(Box::new(pipeline)),
-            Err(PipelineError::Contract(error)) => Err(error),
-            Err(error) => {
-                Err(ContractError::CannotBuild { pipeline: self.name(), reason: error.to_string() })
-            }
         }
     }
 }

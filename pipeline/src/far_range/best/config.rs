@@ -1,0 +1,45 @@
+//! Parameters of the best mode.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Parameters of the best mode; every one has a default.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct BestConfig {
+    /// Whether the frames are a sequence, in their order: mounting, point-spread function, hot pixels and the motion of the target are then
+    /// estimated over frames. `false` for single, unrelated frames.
+    pub sequence: bool,
+    /// Error of the position of a star beyond its centroid's (list, distortion, trail), px, 0 to 10.
+    #[schemars(range(min = 0, max = 10))]
+    pub star_floor_px: f64,
+    /// Error of the centroid of the target beyond that of its fit (response within pixels, structure of the body), px, 0 to 10.
+    #[schemars(range(min = 0, max = 10))]
+    pub target_floor_px: f64,
+    /// Relative error of the calibrated width of the point-spread function, 0.001 to 2.
+    #[schemars(range(min = 0.001, max = 2))]
+    pub psf_width_error: f64,
+    /// Most stars that are fitted for the attitude, the brightest, 1 to 1000.
+    #[schemars(range(min = 1, max = 1000))]
+    pub max_stars: u32,
+    /// Greatest speed of the target in the image, px/s, 1e-6 to 1e6.
+    #[schemars(range(min = 1e-6, max = 1e6))]
+    pub max_speed_px_per_s: f64,
+    /// Least natural logarithm of the odds that the reported cluster is the target, −100 to 100.
+    #[schemars(range(min = -100, max = 100))]
+    pub min_log_odds: f64,
+}
+
+impl Default for BestConfig {
+    fn default() -> Self {
+        Self {
+            sequence: true,
+            star_floor_px: 0.03,
+            target_floor_px: 0.0,
+            psf_width_error: 0.05,
+            max_stars: 12,
+            max_speed_px_per_s: 5.0,
+            min_log_odds: 0.0,
+        }
+    }
+}

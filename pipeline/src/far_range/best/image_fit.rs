@@ -1,0 +1,484 @@
+//! Image of a point, and of known neighbours, fitted to pixels with priors: maximum a posteriori by Fisher scoring.
+//!
+//! Expected electrons of a pixel: m = b + F [(1 − h) G(σ) + h G(σ_h)] + Σ F_k G_k, with G the share of a circular Gaussian that falls on
+//! the pixel (a product of two differences of error functions; the core may be wider along rows than along columns by a factor) and the sum over neighbours at known positions. Variance of a pixel:
+//! v = m + r² + (ρ m)², of photons, readout and rounding, and the response of single pixels. The fit solves the score equations
+//! Σ ∂m (n − m)/v = 0 of the quasi-likelihood (McCullagh & Nelder 1989, Generalized Linear Models, Sec. 9.2) by Fisher scoring with weights 1/v that
+//! follow the model; the information is Σ ∂m ∂mᵀ/v. Priors are normal.
+//!
+//! Pixels that were not transmitted, that are saturated or that hold spilt charge are not among the pixels of the fit: a cut image is fitted
+//! by what arrived of it.
+
+use super::normal_equations::{MAX_PARAMETERS, NormalEquations, Vector};
+
+/// One pixel of a fit, counted from the first of its window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Pixel {
+    pub(super) column: usize,
+    pub(super) row: usize,
+    /// Electrons: digital number without bias, times the gain.
+    pub(super) electrons: f64,
+}
+
+/// Noise of a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PixelNoise {
+    /// Variance of readout and rounding, e².
+    pub(super) readout_e2: f64,
+    /// Variance of the response of single pixels, relative.
+    pub(super) response: f64,
+}
+
+impl PixelNoise {
+    /// Variance of a pixel of mean `mean_e`, e²; never below a twentieth of the readout's.
+    #[inline(always)]
+    fn variance(&self, mean_e: f64) -> f64 {
+        (mean_e + self.readout_e2 + self.response * mean_e * mean_e).max(0.05 * self.readout_e2).max(1e-9)
+    }
+}
+
+/// Normal prior of a parameter; an infinite variance leaves it free, a variance of 0 fixes it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Prior {
+    pub(super) mean: f64,
+    pub(super) variance: f64,
+}
+
+impl Prior {
+    /// A free parameter that starts at `start`.
+    pub(super) fn free(start: f64) -> Self {
+        Self { mean: start, variance: f64::INFINITY }
+    }
+
+    /// A known parameter.
+    pub(super) fn fixed(value: f64) -> Self {
+        Self { mean: value, variance: 0.0 }
+    }
+
+    /// A parameter known with a standard deviation.
+    pub(super) fn normal(mean: f64, sigma: f64) -> Self {
+        Self { mean, variance: sigma * sigma }
+    }
+}
+
+/// Image of a point: widths of core and halo, and how far it is smeared along columns and rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PointImage {
+    /// Standard deviation of the core, px.
+    pub(super) sigma_px: f64,
+    /// Standard deviation of the halo, px.
+    pub(super) halo_sigma_px: f64,
+    /// Part of the flux in the halo.
+    pub(super) halo_fraction: f64,
+    /// Length of the trail during the exposure along columns and rows, px.
+    pub(super) trail_px: [f64; 2],
+}
+
+impl PointImage {
+    /// Share of the flux on the pixel whose centre is at the offset (dx, dy) from that of the image.
+    pub(super) fn share(&self, dx: f64, dy: f64) -> f64 {
+        let of = |sigma: f64| {
+            let along = |offset: f64, trail: f64| Share::of(offset, smeared(sigma, trail)).value;
+            along(dx, self.trail_px[0]) * along(dy, self.trail_px[1])
+        };
+        (1.0 - self.halo_fraction) * of(self.sigma_px) + self.halo_fraction * of(self.halo_sigma_px)
+    }
+
+    /// Share of the flux on the central pixel of an image in its middle.
+    pub(super) fn central_share(&self) -> f64 {
+        self.share(0.0, 0.0)
+    }
+}
+
+/// A source at a known position in the window of the fitted one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Neighbour {
+    /// Position, counted from the first pixel of the window, px.
+    pub(super) x_px: f64,
+    pub(super) y_px: f64,
+    /// Flux, electrons.
+    pub(super) flux_e: Prior,
+    pub(super) image: PointImage,
+}
+
+/// What is fitted: priors of the parameters and known neighbours.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ImageModel<'a> {
+    /// Position, counted from the first pixel of the window, px.
+    pub(super) x_px: Prior,
+    pub(super) y_px: Prior,
+    /// Flux, electrons.
+    pub(super) flux_e: Prior,
+    /// Background of a pixel, electrons.
+    pub(super) background_e: Prior,
+    /// Natural logarithm of the width of the core over that of `image`.
+    pub(super) log_width: Prior,
+    /// Natural logarithm of the width of the core along rows over that along columns: a body is no circle.
+    pub(super) log_elongation: Prior,
+    /// Part of the flux in the halo.
+    pub(super) halo_fraction: Prior,
+    pub(super) image: PointImage,
+    /// At most [`MAX_NEIGHBOURS`].
+    pub(super) neighbours: &'a [Neighbour],
+}
+
+/// Most neighbours of a fit.
+pub(super) const MAX_NEIGHBOURS: usize = MAX_PARAMETERS - OWN_PARAMETERS;
+
+/// Parameters of the fitted source: position, flux, background, width, halo, elongation.
+const OWN_PARAMETERS: usize = 7;
+const X: usize = 0;
+const Y: usize = 1;
+const FLUX: usize = 2;
+const BACKGROUND: usize = 3;
+const LOG_WIDTH: usize = 4;
+const HALO: usize = 5;
+const ELONGATION: usize = 6;
+
+/// Maximum of the posterior.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FittedImage {
+    /// Position, counted from the first pixel of the window, px.
+    pub(super) x_px: f64,
+    pub(super) y_px: f64,
+    /// Covariance of the position, (xx, xy, yy), px²: the inverse of the Fisher information, priors included.
+    pub(super) covariance_px2: [f64; 3],
+    /// Flux, electrons, and its standard deviation.
+    pub(super) flux_e: f64,
+    pub(super) flux_sigma_e: f64,
+    pub(super) background_e: f64,
+    /// Width of the core over the calibrated one.
+    pub(super) width: f64,
+    /// Part of the flux in the halo.
+    pub(super) halo_fraction: f64,
+    /// Σ (n − m)²/v over the pixels.
+    pub(super) chi_squared: f64,
+    /// Pixels less free parameters.
+    pub(super) freedom: usize,
+}
+
+impl FittedImage {
+    /// χ² per degree of freedom: near 1 where the model is that of the image.
+    pub(super) fn misfit(&self) -> f64 {
+        self.chi_squared / self.freedom.max(1) as f64
+    }
+}
+
+/// Steps at most, accepted or not.
+const MAX_STEPS: usize = 60;
+
+/// Decrement gᵀF⁻¹g below which the maximum counts as found: the position is then within 0.03 of its standard deviation.
+const DECREMENT: f64 = 1e-3;
+
+/// Damping (Levenberg's λ, relative to the diagonal): at first, and the largest before the fit gives up.
+const FIRST_DAMPING: f64 = 1e-3;
+const LARGEST_DAMPING: f64 = 1e6;
+
+/// Damping up to which a small decrement is that of Fisher scoring itself.
+const UNDAMPED: f64 = 1e-2;
+
+/// Longest step of the position, px, and of the logarithm of the width.
+const LONGEST_STEP_PX: f64 = 0.7;
+const LARGEST_LOG_STEP: f64 = 0.2;
+
+/// Farthest that the centre of a cut image may lie outside the window, px.
+const BEYOND_PX: f64 = 8.0;
+
+/// Range of the width over the calibrated one.
+const WIDTHS: (f64, f64) = (0.3, 12.0);
+
+/// Shares of Gaussians that fall on the columns or rows of a window, with their derivatives; owns its buffers.
+#[derive(Debug, Default)]
+pub(super) struct ImageFitter {
+    core: [Vec<Share>; 2],
+    halo: [Vec<Share>; 2],
+    /// Electrons of each neighbour of unit flux on each pixel of the fit, neighbour after neighbour.
+    neighbours: Vec<f64>,
+    /// Weights 1/v of the pixels at the parameters at hand, and at those of the last evaluation.
+    weights: Vec<f64>,
+    next_weights: Vec<f64>,
+}
+
+/// Share of a Gaussian on a column or row, and its derivatives with respect to the centre and to the logarithm of the width.
+#[derive(Debug, Clone, Copy, Default)]
+struct Share {
+    value: f64,
+    by_centre: f64,
+    by_log_width: f64,
+}
+
+struct Evaluation {
+    /// Σ (n − m)²/v and the priors' part, with the weights of the parameters at hand.
+    objective: f64,
+    prior_part: f64,
+    /// Σ (n − m)²/v with the weights of these parameters.
+    chi_squared: f64,
+    equations: NormalEquations,
+}
+
+/// Which parameters are estimated: their places among all, in order.
+struct Estimated {
+    places: [usize; MAX_PARAMETERS],
+    count: usize,
+}
+
+impl ImageFitter {
+    /// Fits `model` to the pixels of a window of `columns` × `rows`; `None` with too few pixels, or where no maximum is found within
+    /// eight pixels of the window.
+    pub(super) fn fit(
+        &mut self,
+        pixels: &[Pixel],
+        (columns, rows): (usize, usize),
+        noise: PixelNoise,
+        model: &ImageModel<'_>,
+    ) -> Option<FittedImage> {
+        let priors = model.priors();
+        let estimated = Estimated::of(&priors, OWN_PARAMETERS + model.neighbours.len());
+        let n = estimated.count;
+        if pixels.len() < n.min(4) {
+            return None;
+        }
+        for axis in [&mut self.core, &mut self.halo] {
+            axis[0].resize(columns, Share::default());
+            axis[1].resize(rows, Share::default());
+        }
+        self.draw_neighbours(pixels, model);
+        let mut at: Vector = [0.0; MAX_PARAMETERS];
+        for (value, prior) in at.iter_mut().zip(&priors) {
+            *value = prior.mean;
+        }
+        self.weights.clear();
+        let mut here = self.evaluate(pixels, noise, model, &priors, &estimated, &at);
+        std::mem::swap(&mut self.weights, &mut self.next_weights);
+        let mut damping = FIRST_DAMPING;
+        for _ in 0..MAX_STEPS {
+            let step = here.equations.step(damping)?;
+            let decrement: f64 = (0..n).map(|i| step[i] * here.equations.score[i]).sum();
+            if decrement < DECREMENT && damping <= UNDAMPED {
+                break;
+            }
+            let next = estimated.moved(&at, &step);
+            let there = self.evaluate(pixels, noise, model, &priors, &estimated, &next);
+            if there.objective <= here.objective {
+                at = next;
+                here = Evaluation { objective: there.chi_squared + there.prior_part, ..there };
+                std::mem::swap(&mut self.weights, &mut self.next_weights);
+                damping = (damping * 0.1).max(1e-9);
+            } else {
+                damping *= 10.0;
+                if damping.is_nan() || damping > LARGEST_DAMPING {
+                    return None;
+                }
+            }
+        }
+        let (x, y) = (estimated.place_of(X)?, estimated.place_of(Y)?);
+        let covariance_px2 = here.equations.covariance(x, y)?;
+        let flux_sigma_e = match estimated.place_of(FLUX) {
+            Some(flux) => here.equations.covariance(flux, flux)?[0].sqrt(),
+            None => 0.0,
+        };
+        let inside = |v: f64, n: usize| v >= -0.5 - BEYOND_PX && v <= n as f64 - 0.5 + BEYOND_PX;
+        let is_sound = inside(at[X], columns)
+            && inside(at[Y], rows)
+            && covariance_px2.iter().all(|element| element.is_finite())
+            && here.chi_squared.is_finite();
+        is_sound.then(|| FittedImage {
+            x_px: at[X],
+            y_px: at[Y],
+            covariance_px2,
+            flux_e: at[FLUX],
+            flux_sigma_e,
+            background_e: at[BACKGROUND],
+            width: libm::exp(at[LOG_WIDTH]),
+            halo_fraction: at[HALO],
+            chi_squared: here.chi_squared,
+            freedom: pixels.len().saturating_sub(n),
+        })
+    }
+
+    fn draw_neighbours(&mut self, pixels: &[Pixel], model: &ImageModel<'_>) {
+        self.neighbours.clear();
+        for neighbour in model.neighbours {
+            self.neighbours.extend(pixels.iter().map(|pixel| {
+                neighbour.image.share(pixel.column as f64 - neighbour.x_px, pixel.row as f64 - neighbour.y_px)
+            }));
+        }
+    }
+
+    fn evaluate(
+        &mut self,
+        pixels: &[Pixel],
+        noise: PixelNoise,
+        model: &ImageModel<'_>,
+        priors: &[Prior; MAX_PARAMETERS],
+        estimated: &Estimated,
+        at: &Vector,
+    ) -> Evaluation {
+        let sigma_px = model.image.sigma_px * libm::exp(at[LOG_WIDTH]);
+        let sigmas_px = [sigma_px, sigma_px * libm::exp(at[ELONGATION])];
+        let has_halo = at[HALO] > 0.0 || estimated.places[..estimated.count].contains(&HALO);
+        for axis in [0, 1] {
+            let (centre, trail_px) = (at[axis], model.image.trail_px[axis]);
+            fill(&mut self.core[axis], centre, smeared(sigmas_px[axis], trail_px));
+            if has_halo {
+                fill(&mut self.halo[axis], centre, smeared(model.image.halo_sigma_px, trail_px));
+            }
+        }
+        let mut got = Evaluation {
+            objective: 0.0,
+            prior_part: 0.0,
+            chi_squared: 0.0,
+            equations: NormalEquations::new(estimated.count),
+        };
+        let (flux_e, halo) = (at[FLUX], at[HALO]);
+        let mut by: Vector = [0.0; MAX_PARAMETERS];
+        self.next_weights.clear();
+        for (i, pixel) in pixels.iter().enumerate() {
+            let (core_x, core_y) = (&self.core[0][pixel.column], &self.core[1][pixel.row]);
+            let (halo_x, halo_y) = (&self.halo[0][pixel.column], &self.halo[1][pixel.row]);
+            let (core, wide) = (core_x.value * core_y.value, halo_x.value * halo_y.value);
+            let shape = (1.0 - halo) * core + halo * wide;
+            let mut mean = at[BACKGROUND] + flux_e * shape;
+            by[X] = flux_e
+                * ((1.0 - halo) * core_x.by_centre * core_y.value + halo * halo_x.by_centre * halo_y.value);
+            by[Y] = flux_e
+                * ((1.0 - halo) * core_x.value * core_y.by_centre + halo * halo_x.value * halo_y.by_centre);
+            by[FLUX] = shape;
+            by[BACKGROUND] = 1.0;
+            by[LOG_WIDTH] = flux_e
+                * (1.0 - halo)
+                * (core_x.by_log_width * core_y.value + core_x.value * core_y.by_log_width);
+            by[HALO] = flux_e * (wide - core);
+            by[ELONGATION] = flux_e * (1.0 - halo) * core_x.value * core_y.by_log_width;
+            for k in 0..model.neighbours.len() {
+                let share = self.neighbours[k * pixels.len() + i];
+                mean += at[OWN_PARAMETERS + k] * share;
+                by[OWN_PARAMETERS + k] = share;
+            }
+            let variance = noise.variance(mean);
+            let residual = pixel.electrons - mean;
+            let squared = residual * residual / variance;
+            got.chi_squared += squared;
+            got.objective += residual * residual * self.weights.get(i).copied().unwrap_or(1.0 / variance);
+            self.next_weights.push(1.0 / variance);
+            let mut chosen: Vector = [0.0; MAX_PARAMETERS];
+            for (chosen, &place) in chosen.iter_mut().zip(&estimated.places[..estimated.count]) {
+                *chosen = by[place];
+            }
+            got.equations.add(residual, &chosen, 1.0 / variance);
+        }
+        for (i, &place) in estimated.places[..estimated.count].iter().enumerate() {
+            let Prior { mean, variance } = priors[place];
+            if variance.is_finite() {
+                let residual = mean - at[place];
+                got.prior_part += residual * residual / variance;
+                got.equations.add_prior(i, residual, variance);
+            }
+        }
+        got.objective += got.prior_part;
+        got
+    }
+}
+
+impl ImageModel<'_> {
+    fn priors(&self) -> [Prior; MAX_PARAMETERS] {
+        let mut priors = [Prior::fixed(0.0); MAX_PARAMETERS];
+        priors[X] = self.x_px;
+        priors[Y] = self.y_px;
+        priors[FLUX] = self.flux_e;
+        priors[BACKGROUND] = self.background_e;
+        priors[LOG_WIDTH] = self.log_width;
+        priors[HALO] = self.halo_fraction;
+        priors[ELONGATION] = self.log_elongation;
+        for (prior, neighbour) in priors[OWN_PARAMETERS..].iter_mut().zip(self.neighbours) {
+            *prior = neighbour.flux_e;
+        }
+        priors
+    }
+}
+
+impl Estimated {
+    fn of(priors: &[Prior; MAX_PARAMETERS], parameters: usize) -> Self {
+        let mut estimated = Self { places: [0; MAX_PARAMETERS], count: 0 };
+        for (place, prior) in priors.iter().enumerate().take(parameters) {
+            if prior.variance > 0.0 {
+                estimated.places[estimated.count] = place;
+                estimated.count += 1;
+            }
+        }
+        estimated
+    }
+
+    fn place_of(&self, parameter: usize) -> Option<usize> {
+        self.places[..self.count].iter().position(|&place| place == parameter)
+    }
+
+    /// The parameters one step farther, no farther than a step may go.
+    fn moved(&self, at: &Vector, step: &Vector) -> Vector {
+        let longest_of = |place: usize| match place {
+            X | Y => LONGEST_STEP_PX,
+            LOG_WIDTH | ELONGATION => LARGEST_LOG_STEP,
+            _ => f64::INFINITY,
+        };
+        let places = &self.places[..self.count];
+        let shrink =
+            places.iter().zip(step).map(|(&place, step)| step.abs() / longest_of(place)).fold(1.0, f64::max);
+        let mut next = *at;
+        for (&place, step) in places.iter().zip(step) {
+            next[place] += step / shrink;
+        }
+        next[LOG_WIDTH] = next[LOG_WIDTH].clamp(libm::log(WIDTHS.0), libm::log(WIDTHS.1));
+        next[HALO] = next[HALO].clamp(0.0, 0.9);
+        next
+    }
+}
+
+/// Width of a Gaussian smeared over a trail: the variance of a uniform distribution is added.
+fn smeared(sigma_px: f64, trail_px: f64) -> f64 {
+    (sigma_px * sigma_px + trail_px * trail_px / 12.0).sqrt()
+}
+
+/// Shares of a Gaussian of width `sigma` about `centre` on all pixels of an axis: one error function per edge.
+fn fill(shares: &mut [Share], centre: f64, sigma: f64) {
+    let mut left = Edge::at(-0.5 - centre, sigma);
+    for (i, share) in shares.iter_mut().enumerate() {
+        let right = Edge::at(i as f64 + 0.5 - centre, sigma);
+        *share = Share::between(&left, &right, sigma);
+        left = right;
+    }
+}
+
+/// Distance of an edge in widths, cumulative distribution and density there.
+struct Edge {
+    t: f64,
+    cumulative: f64,
+    density: f64,
+}
+
+impl Edge {
+    fn at(offset: f64, sigma: f64) -> Self {
+        let t = offset / sigma;
+        Self {
+            t,
+            cumulative: 0.5 * libm::erf(t * std::f64::consts::FRAC_1_SQRT_2),
+            density: 0.5
+                * std::f64::consts::FRAC_2_SQRT_PI
+                * std::f64::consts::FRAC_1_SQRT_2
+                * libm::exp(-0.5 * t * t),
+        }
+    }
+}
+
+impl Share {
+    fn of(offset: f64, sigma: f64) -> Self {
+        Self::between(&Edge::at(offset - 0.5, sigma), &Edge::at(offset + 0.5, sigma), sigma)
+    }
+
+    fn between(left: &Edge, right: &Edge, sigma: f64) -> Self {
+        Self {
+            value: right.cumulative - left.cumulative,
+            by_centre: (left.density - right.density) / sigma,
+            by_log_width: left.t * left.density - right.t * right.density,
+        }
+    }
+}

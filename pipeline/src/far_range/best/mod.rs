@@ -1,0 +1,16 @@
+//! The best mode: the attitude from the prior of telemetry and the stars, hypotheses about which cluster is the target, and its image fitted with
+//! all that is known of the camera (docs/best-mode.md).
+
+mod config;
+mod hot_pixels;
+mod image_fit;
+mod mounting;
+mod normal_equations;
+mod photometry;
+mod pipeline;
+mod point_image;
+mod stars;
+mod tracks;
+
+pub use config::BestConfig;
+pub(super) use pipeline::BestPipeline;

@@ -1,0 +1,523 @@
+//! Clusters as sources of light, and the fits of their images.
+
+use contract::{Frame, PixelPoint, Readout, Window};
+
+use super::hot_pixels::HotPixels;
+use super::image_fit::{
+    FittedImage, ImageFitter, ImageModel, MAX_NEIGHBOURS, Neighbour, Pixel, PixelNoise, PointImage, Prior,
+};
+use super::point_image::PointImageEstimate;
+use crate::far_range::detect::{Blob, Detector};
+
+/// What the light of a frame is measured against.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PhotometryModel {
+    pub(super) readout: Readout,
+    /// Variance of the response of single pixels, relative.
+    pub(super) response: f64,
+    /// Electrons of a full well; infinite when it is not known.
+    pub(super) full_well_e: f64,
+    /// Whether charge above the full well may spill along the columns.
+    pub(super) may_spill: bool,
+    /// Background of the frame, electrons per pixel, with the standard deviation of a pixel.
+    pub(super) background_e: f64,
+    pub(super) pixel_sigma_e: f64,
+}
+
+/// A cluster with its light.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Source {
+    pub(super) blob: Blob,
+    /// Brightness centre above the background, px.
+    pub(super) centre: PixelPoint,
+    /// Electrons above the background.
+    pub(super) flux_e: f64,
+    /// Number of saturated pixels.
+    pub(super) saturated: usize,
+    /// Whether pixels beside it were not transmitted.
+    pub(super) is_cut: bool,
+    /// Index of the pixel that is bright alone: no optics makes such an image.
+    pub(super) spike: Option<usize>,
+}
+
+/// A fitted source in the frame.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FittedSource {
+    pub(super) position: PixelPoint,
+    pub(super) image: FittedImage,
+}
+
+/// Pixels of a window beyond the pixels of a bright cluster, px.
+const MARGIN_PX: usize = 5;
+
+/// Largest side of a window, px: bounds the time of a fit.
+const MAX_SIDE_PX: usize = 48;
+
+/// Part of the full well by which its calibration may be wrong.
+const WELL_ERROR: f64 = 0.25;
+
+/// Rejected residual of a pixel, in standard deviations: a hot pixel or a cosmic-ray hit in the window.
+const REJECTED_SIGMAS: f64 = 6.0;
+
+impl PhotometryModel {
+    fn electrons(&self, dn: u16) -> f64 {
+        (f64::from(dn) - self.readout.bias_dn) * self.readout.gain_e_per_dn
+    }
+
+    fn is_saturated(&self, frame: &Frame, dn: u16) -> bool {
+        dn >= self.readout.saturation_dn.min(frame.full_scale_dn())
+    }
+
+    /// Noise of a pixel, with the response known to `response` relative.
+    fn noise(&self, response: f64) -> PixelNoise {
+        let Readout { gain_e_per_dn, read_noise_e, .. } = self.readout;
+        PixelNoise {
+            readout_e2: read_noise_e * read_noise_e + gain_e_per_dn * gain_e_per_dn / 12.0,
+            response: response * response,
+        }
+    }
+
+    /// Prior of the background under a source.
+    fn background_prior(&self) -> Prior {
+        Prior::normal(self.background_e, 0.5 * self.pixel_sigma_e)
+    }
+
+    /// The light of a cluster with the pixels `members`; `psf` tells a bright pixel from a point.
+    pub(super) fn source(&self, frame: &Frame, blob: &Blob, members: &[u32], psf: &PointImage) -> Source {
+        let columns = frame.columns();
+        let (mut flux_e, mut sum_x, mut sum_y) = (0.0, 0.0, 0.0);
+        let (mut saturated, mut is_cut) = (0, false);
+        let mut peak = (0, 0);
+        for &index in members {
+            let (x, y) = (index as usize % columns, index as usize / columns);
+            let dn = frame.at(x, y);
+            saturated += usize::from(self.is_saturated(frame, dn));
+            if dn > peak.1 {
+                peak = (index as usize, dn);
+            }
+            let electrons = (self.electrons(dn) - self.background_e).max(0.0);
+            flux_e += electrons;
+            sum_x += electrons * x as f64;
+            sum_y += electrons * y as f64;
+        }
+        if let Some(windows) = frame.windows() {
+            is_cut = members.iter().any(|&index| {
+                let (x, y) = (index as usize % columns, index as usize / columns);
+                touches_the_outside(windows, frame, x, y)
+            });
+        }
+        let centre = if flux_e > 0.0 { PixelPoint::new(sum_x / flux_e, sum_y / flux_e) } else { blob.centre };
+        let spike = (saturated <= 1 && self.is_spike(frame, peak.0, psf)).then_some(peak.0);
+        Source { blob: *blob, centre, flux_e, saturated, is_cut, spike }
+    }
+
+    /// Whether the pixel holds more of the light about it than half way between a point's image and all of it.
+    fn is_spike(&self, frame: &Frame, index: usize, psf: &PointImage) -> bool {
+        let (x, y) = (index % frame.columns(), index / frame.columns());
+        let above = |x: usize, y: usize| self.electrons(frame.at(x, y)) - self.background_e;
+        let peak_e = above(x, y);
+        let mut around_e = 0.0;
+        for row in y.saturating_sub(1)..(y + 2).min(frame.rows()) {
+            for column in x.saturating_sub(1)..(x + 2).min(frame.columns()) {
+                if is_transmitted(frame, column, row) {
+                    around_e += above(column, row);
+                }
+            }
+        }
+        let limit = 0.5 + 0.5 * psf.central_share();
+        let sigma_e = (8.0 * limit * limit * self.pixel_sigma_e * self.pixel_sigma_e
+            + (1.0 - limit) * (1.0 - limit) * (self.pixel_sigma_e * self.pixel_sigma_e + peak_e.max(0.0)))
+        .sqrt();
+        peak_e - limit * around_e > 1.5 * sigma_e
+    }
+}
+
+/// Fits the images of sources; owns its buffers.
+#[derive(Debug, Default)]
+pub(super) struct SourceFitter {
+    fitter: ImageFitter,
+    pixels: Vec<Pixel>,
+    kept: Vec<Pixel>,
+    saturated: Vec<(usize, usize)>,
+}
+
+/// A known source near the fitted one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct KnownSource {
+    pub(super) position: PixelPoint,
+    pub(super) flux_e: f64,
+    /// Relative standard deviation of the flux.
+    pub(super) flux_sigma: f64,
+    pub(super) image: PointImage,
+}
+
+/// A frame with its clusters, and what is known of the camera.
+#[derive(Clone, Copy)]
+pub(super) struct FrameLight<'a> {
+    pub(super) frame: &'a Frame,
+    pub(super) detector: &'a Detector,
+    pub(super) model: &'a PhotometryModel,
+    pub(super) hot_pixels: &'a HotPixels,
+}
+
+/// A rectangle of pixels, clipped to the frame.
+#[derive(Debug, Clone, Copy)]
+struct FitWindow {
+    x: usize,
+    y: usize,
+    columns: usize,
+    rows: usize,
+}
+
+impl SourceFitter {
+    /// Fits a star, or a candidate as if it were a point; `None` where there is no maximum. The response of pixels counts as known to 3 %, so
+    /// that an error of the point's image spoils no bright star; the halo, a few percent of the flux, counts as background.
+    pub(super) fn point(
+        &mut self,
+        light: FrameLight<'_>,
+        source: &Source,
+        members: &[u32],
+        psf: &PointImageEstimate,
+        trail_px: [f64; 2],
+    ) -> Option<FittedSource> {
+        let image = psf.image(trail_px);
+        let reach = (3.5 * image.sigma_px + 0.5 * trail_px[0].max(trail_px[1])).ceil().max(2.0) as usize;
+        let extent = Extent::of(light.frame, members);
+        let window = if source.saturated == 0 && extent.side() <= 2 * reach + 1 {
+            FitWindow::about(light.frame, extent.rounded(source.centre), reach)?
+        } else {
+            FitWindow::around(light.frame, extent, MARGIN_PX)?
+        };
+        self.gather(light, window, members, &[], light.model.may_spill);
+        let centre = source.centre;
+        let model = ImageModel {
+            x_px: Prior::free(centre.x - window.x as f64),
+            y_px: Prior::free(centre.y - window.y as f64),
+            flux_e: Prior::free(source.flux_e.max(1.0)),
+            background_e: light.model.background_prior(),
+            log_width: Prior::normal(0.0, psf.log_width_sigma()),
+            log_elongation: Prior::fixed(0.0),
+            halo_fraction: Prior::fixed(0.0),
+            image,
+            neighbours: &[],
+        };
+        let noise = light.model.noise(light.model.response.max(0.03));
+        let fitted = self.fitter.fit(&self.pixels, window.size(), noise, &model)?;
+        Some(window.in_frame(fitted))
+    }
+
+    /// Fits the image of the target: a point or a small body at `start`, with its known neighbours. `position_sigma_px` is the standard deviation of the start
+    /// where it is a prediction, infinite where it is a cluster's.
+    pub(super) fn target(
+        &mut self,
+        light: FrameLight<'_>,
+        start: &TargetStart<'_>,
+        psf: &PointImageEstimate,
+        known: &[KnownSource],
+    ) -> Option<FittedSource> {
+        let image = psf.image([0.0; 2]);
+        let reach = (4.0 * image.sigma_px).ceil().max(3.0) as usize + 1;
+        let window = match start.members {
+            [] => FitWindow::about(light.frame, rounded(light.frame, start.position)?, reach)?,
+            members => {
+                let extent = Extent::of(light.frame, members);
+                let margin = if start.is_saturated { MARGIN_PX + 2 } else { reach - 1 };
+                FitWindow::around(light.frame, extent, margin)?
+            }
+        };
+        let near = |source: &&KnownSource| window.distance_px(source.position) <= 3.0;
+        let mut near: Vec<&KnownSource> = known.iter().filter(near).collect();
+        near.sort_by(|a, b| b.flux_e.total_cmp(&a.flux_e));
+        near.truncate(MAX_NEIGHBOURS);
+        let neighbours: Vec<Neighbour> = near
+            .iter()
+            .map(|source| Neighbour {
+                x_px: source.position.x - window.x as f64,
+                y_px: source.position.y - window.y as f64,
+                flux_e: Prior::normal(source.flux_e, source.flux_sigma * source.flux_e),
+                image: source.image,
+            })
+            .collect();
+        let mut fitted =
+            self.from_all_starts(light, window, start, psf, &neighbours, light.model.may_spill)?;
+        if light.model.may_spill && !self.saturated.is_empty() && !self.spills(&fitted, light.model, &image) {
+            // No well overflows: the pixels beside saturated ones hold their own charge alone.
+            fitted = self.from_all_starts(light, window, start, psf, &neighbours, false).unwrap_or(fitted);
+        }
+        Some(window.in_frame(fitted))
+    }
+
+    /// The fit with the smallest χ² from the start, and, of an image that was cut in its bright part, from positions beyond the cut.
+    fn from_all_starts(
+        &mut self,
+        light: FrameLight<'_>,
+        window: FitWindow,
+        start: &TargetStart<'_>,
+        psf: &PointImageEstimate,
+        neighbours: &[Neighbour],
+        spills: bool,
+    ) -> Option<FittedImage> {
+        self.gather(light, window, start.members, neighbours, spills);
+        let image = psf.image([0.0; 2]);
+        let noise = light.model.noise(light.model.response);
+        let position_prior =
+            |mean: f64| Prior { mean, variance: start.position_sigma_px * start.position_sigma_px };
+        let (x, y) = (start.position.x - window.x as f64, start.position.y - window.y as f64);
+        let mut model = ImageModel {
+            x_px: position_prior(x),
+            y_px: position_prior(y),
+            flux_e: Prior::free(start.flux_e.max(1.0)),
+            background_e: light.model.background_prior(),
+            log_width: Prior::normal(0.0, libm::hypot(psf.log_width_sigma(), start.body_log_width)),
+            log_elongation: Prior::normal(0.0, start.body_log_width),
+            halo_fraction: Prior::normal(image.halo_fraction, psf.halo_sigma),
+            image,
+            neighbours,
+        };
+        let mut best = self.fitter.fit(&self.pixels, window.size(), noise, &model);
+        if start.is_cut && start.is_saturated {
+            let rows = self.pixels.iter().map(|pixel| pixel.row);
+            let (first, last) = (rows.clone().min()? as f64, rows.max()? as f64);
+            for y in [first - 0.5, 0.5 * (y + last), last, last + 0.7, last + 2.0, last + 4.0] {
+                model.y_px = Prior::free(y);
+                let fitted = self.fitter.fit(&self.pixels, window.size(), noise, &model);
+                best = better(best, fitted);
+            }
+        }
+        if best.is_none_or(|best| best.misfit() > EXTENDED_MISFIT) {
+            // A body of several pixels.
+            model.y_px = position_prior(best.map_or(y, |best| best.y_px));
+            model.log_width = Prior::normal(0.5, 1.0);
+            model.log_elongation = Prior::normal(0.0, 0.3);
+            best = better(best, self.fitter.fit(&self.pixels, window.size(), noise, &model));
+        }
+        let fitted = best?;
+        self.without_outliers(&fitted, window, noise, &model).or(best)
+    }
+
+    /// The fit without pixels whose residuals no noise makes; `None` where there is none, or too many for that.
+    fn without_outliers(
+        &mut self,
+        fitted: &FittedImage,
+        window: FitWindow,
+        noise: PixelNoise,
+        model: &ImageModel<'_>,
+    ) -> Option<FittedImage> {
+        if fitted.misfit() < 1.5 {
+            return None;
+        }
+        let image = PointImage {
+            sigma_px: model.image.sigma_px * fitted.width,
+            halo_fraction: fitted.halo_fraction,
+            ..model.image
+        };
+        self.kept.clear();
+        self.kept.extend(self.pixels.iter().filter(|pixel| {
+            let mean = fitted.background_e
+                + fitted.flux_e
+                    * image.share(pixel.column as f64 - fitted.x_px, pixel.row as f64 - fitted.y_px)
+                + model
+                    .neighbours
+                    .iter()
+                    .map(|n| {
+                        n.flux_e.mean * n.image.share(pixel.column as f64 - n.x_px, pixel.row as f64 - n.y_px)
+                    })
+                    .sum::<f64>();
+            // An error of 5 % of the model is no outlier.
+            let sigma = (noise.readout_e2 + mean.max(0.0) + (0.05 * mean) * (0.05 * mean)).sqrt();
+            pixel.electrons - mean < REJECTED_SIGMAS * sigma
+        }));
+        let rejected = self.pixels.len() - self.kept.len();
+        if rejected == 0 || rejected > self.pixels.len() / 20 + 2 {
+            return None;
+        }
+        let model = ImageModel {
+            x_px: Prior { mean: fitted.x_px, ..model.x_px },
+            y_px: Prior { mean: fitted.y_px, ..model.y_px },
+            flux_e: Prior { mean: fitted.flux_e, ..model.flux_e },
+            ..*model
+        };
+        self.fitter.fit(&self.kept, window.size(), noise, &model)
+    }
+
+    /// Whether the fitted image fills a well so far that charge spills, the full well wrong by [`WELL_ERROR`].
+    fn spills(&self, fitted: &FittedImage, model: &PhotometryModel, image: &PointImage) -> bool {
+        let image = PointImage { sigma_px: image.sigma_px * fitted.width, ..*image };
+        self.saturated.iter().any(|&(column, row)| {
+            let share = image.share(column as f64 - fitted.x_px, row as f64 - fitted.y_px);
+            fitted.background_e + fitted.flux_e * share > (1.0 - WELL_ERROR) * model.full_well_e
+        })
+    }
+
+    /// Collects the pixels of a window that hold the light of their own alone: transmitted, not saturated, not hot, without spilt charge, and in
+    /// no other cluster but those of known sources.
+    fn gather(
+        &mut self,
+        light: FrameLight<'_>,
+        window: FitWindow,
+        members: &[u32],
+        known: &[Neighbour],
+        spills: bool,
+    ) {
+        let FrameLight { frame, detector, model, hot_pixels } = light;
+        let columns = frame.columns();
+        self.saturated.clear();
+        for row in 0..window.rows {
+            for column in 0..window.columns {
+                let dn = frame.at(window.x + column, window.y + row);
+                if model.is_saturated(frame, dn) {
+                    self.saturated.push((column, row));
+                }
+            }
+        }
+        let windows: Option<Vec<&Window>> =
+            frame.windows().map(|all| all.iter().filter(|sent| window.overlaps(sent)).collect());
+        let is_own = |index: usize| members.contains(&(index as u32));
+        let is_of_known = |x: usize, y: usize| {
+            let (x, y) = (x as f64 - window.x as f64, y as f64 - window.y as f64);
+            known.iter().any(|at| (at.x_px - x).abs() <= 4.0 && (at.y_px - y).abs() <= 4.0)
+        };
+        let is_foreign = |x: usize, y: usize| {
+            let index = y * columns + x;
+            detector.is_in_cluster(index) && !is_own(index) && !is_of_known(x, y)
+        };
+        self.pixels.clear();
+        for row in 0..window.rows {
+            for column in 0..window.columns {
+                let (x, y) = (window.x + column, window.y + row);
+                let dn = frame.at(x, y);
+                let is_sent = windows.as_ref().is_none_or(|sent| sent.iter().any(|sent| sent.contains(x, y)));
+                if !is_sent || model.is_saturated(frame, dn) || hot_pixels.contains(y * columns + x) {
+                    continue;
+                }
+                if spills && self.saturated.iter().any(|&(c, r)| c == column && r.abs_diff(row) <= 1) {
+                    continue;
+                }
+                let beside = (x.saturating_sub(1)..(x + 2).min(columns))
+                    .any(|x| (y.saturating_sub(1)..(y + 2).min(frame.rows())).any(|y| is_foreign(x, y)));
+                if beside && !is_own(y * columns + x) {
+                    continue;
+                }
+                self.pixels.push(Pixel { column, row, electrons: model.electrons(dn) });
+            }
+        }
+    }
+}
+
+/// Misfit from which on a wider image is tried.
+const EXTENDED_MISFIT: f64 = 4.0;
+
+/// Where the fit of the target's image starts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TargetStart<'a> {
+    pub(super) position: PixelPoint,
+    /// Standard deviation of the position along an axis where it is a prior, infinite where it is not, px.
+    pub(super) position_sigma_px: f64,
+    pub(super) flux_e: f64,
+    /// Standard deviation of the logarithm of the width of its image over that of a point, by the size of the body.
+    pub(super) body_log_width: f64,
+    /// Pixels of its cluster; none where there is no cluster.
+    pub(super) members: &'a [u32],
+    pub(super) is_saturated: bool,
+    pub(super) is_cut: bool,
+}
+
+fn better(a: Option<FittedImage>, b: Option<FittedImage>) -> Option<FittedImage> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if b.chi_squared < a.chi_squared && b.flux_e > 0.0 { b } else { a }),
+        (a, b) => a.or(b),
+    }
+}
+
+/// First and last column and row of the pixels of a cluster.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    x: (usize, usize),
+    y: (usize, usize),
+}
+
+impl Extent {
+    fn of(frame: &Frame, members: &[u32]) -> Self {
+        let columns = frame.columns();
+        let mut extent = Self { x: (usize::MAX, 0), y: (usize::MAX, 0) };
+        for &index in members {
+            let (x, y) = (index as usize % columns, index as usize / columns);
+            extent.x = (extent.x.0.min(x), extent.x.1.max(x));
+            extent.y = (extent.y.0.min(y), extent.y.1.max(y));
+        }
+        extent
+    }
+
+    fn side(&self) -> usize {
+        (self.x.1 + 1).saturating_sub(self.x.0).max((self.y.1 + 1).saturating_sub(self.y.0))
+    }
+
+    /// The pixel of a position, inside.
+    fn rounded(&self, position: PixelPoint) -> (usize, usize) {
+        let within = |v: f64, (first, last): (usize, usize)| {
+            (v.round().max(0.0) as usize).clamp(first, last.max(first))
+        };
+        (within(position.x, self.x), within(position.y, self.y))
+    }
+}
+
+/// The pixel of a position; `None` beside the detector.
+fn rounded(frame: &Frame, position: PixelPoint) -> Option<(usize, usize)> {
+    position
+        .is_on_detector(frame.columns(), frame.rows())
+        .then(|| (position.x.round().max(0.0) as usize, position.y.round().max(0.0) as usize))
+}
+
+impl FitWindow {
+    fn about(frame: &Frame, (x, y): (usize, usize), reach: usize) -> Option<Self> {
+        Self::around(frame, Extent { x: (x, x), y: (y, y) }, reach)
+    }
+
+    /// The pixels of an extent and `margin` beyond, clipped to the frame; `None` where that is too large.
+    fn around(frame: &Frame, extent: Extent, margin: usize) -> Option<Self> {
+        let clip = |(first, last): (usize, usize), n: usize| {
+            let first = first.min(n - 1).saturating_sub(margin);
+            (first, (last + margin + 1).min(n).saturating_sub(first))
+        };
+        let ((x, columns), (y, rows)) = (clip(extent.x, frame.columns()), clip(extent.y, frame.rows()));
+        (columns.max(rows) <= MAX_SIDE_PX && columns.min(rows) > 0).then_some(Self { x, y, columns, rows })
+    }
+
+    fn size(&self) -> (usize, usize) {
+        (self.columns, self.rows)
+    }
+
+    fn overlaps(&self, window: &Window) -> bool {
+        window.x < self.x + self.columns
+            && self.x < window.x + window.columns
+            && window.y < self.y + self.rows
+            && self.y < window.y + window.rows
+    }
+
+    /// Distance of a position from the window, 0 inside, px.
+    fn distance_px(&self, position: PixelPoint) -> f64 {
+        let beyond =
+            |v: f64, first: usize, n: usize| (first as f64 - v).max(v - (first + n - 1) as f64).max(0.0);
+        beyond(position.x, self.x, self.columns).max(beyond(position.y, self.y, self.rows))
+    }
+
+    fn in_frame(&self, image: FittedImage) -> FittedSource {
+        FittedSource {
+            position: PixelPoint::new(self.x as f64 + image.x_px, self.y as f64 + image.y_px),
+            image,
+        }
+    }
+}
+
+fn is_transmitted(frame: &Frame, x: usize, y: usize) -> bool {
+    frame.windows().is_none_or(|windows| windows.iter().any(|window| window.contains(x, y)))
+}
+
+/// Whether a neighbour of a pixel is on the detector and was not transmitted.
+fn touches_the_outside(windows: &[Window], frame: &Frame, x: usize, y: usize) -> bool {
+    let sent = |x: usize, y: usize| windows.iter().any(|window| window.contains(x, y));
+    (x > 0 && !sent(x - 1, y))
+        || (x + 1 < frame.columns() && !sent(x + 1, y))
+        || (y > 0 && !sent(x, y - 1))
+        || (y + 1 < frame.rows() && !sent(x, y + 1))
+}

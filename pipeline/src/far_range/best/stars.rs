@@ -1,0 +1,237 @@
+//! Stars: where they are expected, which clusters they are, and the attitude that they give.
+
+use contract::{CameraFrame, Icrs, ListedStar, PixelPoint, Rotation};
+use nalgebra::{Matrix2, Matrix2x3, Matrix3, Vector2, Vector3};
+
+use super::mounting::AttitudeError;
+use crate::CameraModel;
+
+/// A listed star where it is expected.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ExpectedStar {
+    pub(super) star: ListedStar,
+    /// Apparent direction along the axes of ICRS: aberration applied.
+    pub(super) apparent: Vector3<f64>,
+    /// Position in the image, px.
+    pub(super) position: PixelPoint,
+    /// Expected flux, electrons.
+    pub(super) flux_e: f64,
+}
+
+/// A cluster that may be a star.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StarCandidate {
+    pub(super) position: PixelPoint,
+    pub(super) flux_e: f64,
+    /// Whether the flux is a lower bound.
+    pub(super) is_saturated: bool,
+}
+
+/// The image of a star, as measured, with the direction that it is expected in.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StarMeasurement {
+    pub(super) position: PixelPoint,
+    /// Variances of the position along columns and rows, px².
+    pub(super) variance_px2: [f64; 2],
+    pub(super) apparent: Vector3<f64>,
+}
+
+/// Range of the natural logarithm of measured over expected flux: colours that V does not show make stars up to ten times as bright for silicon,
+/// and variable ones a fifth as bright.
+const LOG_FLUX_RATIO: (f64, f64) = (-1.6, 2.4);
+
+/// Standard deviation of a brightness centre in the search for the common offset, px.
+const CENTRE_PX: f64 = 0.35;
+
+/// Gain of a matched star in the search, in units of half a χ²: a chance match within the tolerance is rarer by e⁻⁶.
+const MATCH_GAIN: f64 = 6.0;
+
+/// Standard deviations of the prior within which the offset is looked for.
+const SEARCH_SIGMAS: f64 = 3.5;
+
+/// Whether the brightness of a candidate allows it to be the star.
+fn is_as_bright(candidate: &StarCandidate, star: &ExpectedStar) -> bool {
+    let ratio = libm::log(candidate.flux_e.max(1e-9) / star.flux_e.max(1e-9));
+    ratio >= LOG_FLUX_RATIO.0 && (ratio <= LOG_FLUX_RATIO.1 || candidate.is_saturated)
+}
+
+/// Matches candidates with expected stars through the common offset of the image that explains most of them: pairs (candidate, star).
+///
+/// `sigma_px` is the standard deviation of the offset along each axis, `sigma_roll` that of the turn about the boresight, rad.
+pub(super) fn matches_by_offset(
+    candidates: &[StarCandidate],
+    stars: &[ExpectedStar],
+    sigma_px: [f64; 2],
+    sigma_roll: f64,
+) -> Vec<(usize, usize)> {
+    let mut pairs = Vec::new();
+    let radius_px =
+        stars.iter().map(|star| star.position.x.abs().max(star.position.y.abs())).fold(0.0, f64::max);
+    // The centre of the turn is somewhere in the image.
+    let tolerance_px = 3.0 * libm::hypot(CENTRE_PX, 0.25 * sigma_roll * radius_px);
+    let reach = sigma_px.map(|sigma| SEARCH_SIGMAS * sigma + tolerance_px);
+    for (c, candidate) in candidates.iter().enumerate() {
+        for (s, star) in stars.iter().enumerate() {
+            let (dx, dy) = (candidate.position.x - star.position.x, candidate.position.y - star.position.y);
+            if dx.abs() <= reach[0] && dy.abs() <= reach[1] && is_as_bright(candidate, star) {
+                pairs.push((c, s, dx, dy));
+            }
+        }
+    }
+    let mut best: (f64, Vec<(usize, usize)>) = (0.0, Vec::new());
+    for &(_, _, dx, dy) in &pairs {
+        let (zx, zy) = (dx / sigma_px[0], dy / sigma_px[1]);
+        let mut near: Vec<_> = pairs
+            .iter()
+            .map(|&(c, s, x, y)| (libm::hypot(x - dx, y - dy), c, s))
+            .filter(|(distance, ..)| *distance <= tolerance_px)
+            .collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let mut gain = -0.5 * (zx * zx + zy * zy);
+        let mut matched: Vec<(usize, usize)> = Vec::new();
+        for (distance, c, s) in near {
+            if !matched.iter().any(|&(mc, ms)| mc == c || ms == s) {
+                let z = 3.0 * distance / tolerance_px;
+                gain += MATCH_GAIN - 0.5 * z * z;
+                matched.push((c, s));
+            }
+        }
+        if gain > best.0 {
+            best = (gain, matched);
+        }
+    }
+    best.1
+}
+
+/// Matches candidates with stars at their expected positions, the nearest first, each within `gate_px` of its star: pairs (candidate, star).
+pub(super) fn matches_at_positions(
+    candidates: &[StarCandidate],
+    stars: &[ExpectedStar],
+    gate_px: impl Fn(&ExpectedStar) -> f64,
+) -> Vec<(usize, usize)> {
+    let mut pairs = Vec::new();
+    for (s, star) in stars.iter().enumerate() {
+        let gate_px = gate_px(star);
+        for (c, candidate) in candidates.iter().enumerate() {
+            if (candidate.position.x - star.position.x).abs() <= gate_px {
+                let distance = candidate.position.distance(star.position);
+                if distance <= gate_px && is_as_bright(candidate, star) {
+                    pairs.push((distance, c, s));
+                }
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+    let mut matched: Vec<(usize, usize)> = Vec::new();
+    for (_, c, s) in pairs {
+        if !matched.iter().any(|&(mc, ms)| mc == c || ms == s) {
+            matched.push((c, s));
+        }
+    }
+    matched
+}
+
+/// Residual of a star, px, and its derivative by a small turn of the camera about its axes, for an attitude; `None` where it has no image.
+fn residual(
+    star: &StarMeasurement,
+    camera_from_icrs: &Rotation<CameraFrame, Icrs>,
+    model: &CameraModel,
+) -> Option<(Vector2<f64>, Matrix2x3<f64>)> {
+    let (u, v) = model.to_ideal(star.position)?;
+    let r = camera_from_icrs.rotate(&star.apparent);
+    if r.z <= 0.0 {
+        return None;
+    }
+    let (fx, fy) = model.focal_px();
+    let (x, y) = (r.x / r.z, r.y / r.z);
+    Some((Vector2::new(u - fx * x, v - fy * y), turn_derivative(x, y, fx, fy)))
+}
+
+/// Derivative of (fx X/Z, fy Y/Z) by a small turn θ of the camera axes, for which a direction moves by θ × r.
+pub(super) fn turn_derivative(x: f64, y: f64, fx: f64, fy: f64) -> Matrix2x3<f64> {
+    Matrix2x3::new(-fx * x * y, fx * (1.0 + x * x), -fx * y, -fy * (1.0 + y * y), fy * x * y, fy * x)
+}
+
+/// An attitude from a prior and stars.
+#[derive(Debug, Clone)]
+pub(super) struct StarAttitude {
+    /// Error of the telemetry's attitude, in axes of the camera: the posterior.
+    pub(super) error: AttitudeError,
+    /// Which of the stars were used: outliers are dropped.
+    pub(super) used: Vec<bool>,
+}
+
+/// Normalised residual, squared, above which a star is an outlier: χ² with two degrees of freedom exceeds it once in 3000.
+const OUTLIER: f64 = 16.0;
+
+/// Linearisations of the attitude; a turn of a degree needs three.
+const ITERATIONS: usize = 4;
+
+/// Posterior error of the attitude from the prior and the stars, by least squares; the star with the largest residual is dropped as long as it is an
+/// outlier. `attitude` is the camera's attitude for an error in camera axes.
+pub(super) fn solve_attitude(
+    stars: &[StarMeasurement],
+    prior: &AttitudeError,
+    attitude: impl Fn(Vector3<f64>) -> Rotation<CameraFrame, Icrs>,
+    model: &CameraModel,
+) -> Option<StarAttitude> {
+    let prior_information = prior.covariance.try_inverse()?;
+    let mut used = vec![true; stars.len()];
+    loop {
+        let mut e = prior.mean;
+        let mut covariance = prior.covariance;
+        for _ in 0..ITERATIONS {
+            let camera_from_icrs = attitude(e);
+            let mut information = prior_information;
+            let mut score = prior_information * (prior.mean - e);
+            for (star, _) in stars.iter().zip(&used).filter(|(_, used)| **used) {
+                let Some((residual, by)) = residual(star, &camera_from_icrs, model) else { continue };
+                let weight = weight(star);
+                information += by.transpose() * weight * by;
+                score += by.transpose() * (weight * residual);
+            }
+            covariance = information.try_inverse()?;
+            let step = covariance * score;
+            e += step;
+            if step.norm() < 1e-10 {
+                break;
+            }
+        }
+        let camera_from_icrs = attitude(e);
+        let worst = stars
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| used.get(*i) == Some(&true))
+            .filter_map(|(i, star)| {
+                let (residual, by) = residual(star, &camera_from_icrs, model)?;
+                // The residual of a fitted star has the variance of its position less that of the fit.
+                let [vx, vy] = star.variance_px2;
+                let expected = Matrix2::new(vx, 0.0, 0.0, vy) - by * covariance * by.transpose();
+                let least = 0.1 * vx.min(vy);
+                let normalised = residual.x * residual.x / expected[(0, 0)].max(least)
+                    + residual.y * residual.y / expected[(1, 1)].max(least);
+                Some((normalised, i))
+            })
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        match worst {
+            Some((normalised, i)) if normalised > OUTLIER => used[i] = false,
+            _ => return Some(StarAttitude { error: AttitudeError { mean: e, covariance }, used }),
+        }
+    }
+}
+
+fn weight(star: &StarMeasurement) -> Matrix2<f64> {
+    let [vx, vy] = star.variance_px2;
+    Matrix2::new(1.0 / vx, 0.0, 0.0, 1.0 / vy)
+}
+
+/// Covariance in the image, px², of a direction at the ideal coordinates (x, y) = (X/Z, Y/Z) by the attitude's covariance.
+pub(super) fn image_covariance(
+    covariance: &Matrix3<f64>,
+    x: f64,
+    y: f64,
+    (fx, fy): (f64, f64),
+) -> Matrix2<f64> {
+    let by = turn_derivative(x, y, fx, fy);
+    by * covariance * by.transpose()
+}

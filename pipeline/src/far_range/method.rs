@@ -1,0 +1,86 @@
+//! The far-range pipeline by its mode, and its factory.
+
+use contract::{ContractError, FarRange, Frame, Outcome, Pipeline, PipelineFactory, Setup, Telemetry};
+
+use super::best::BestPipeline;
+use super::config::{FarRangeConfig, Mode};
+use super::overrides::Overrides;
+use super::pipeline::PaperPipeline;
+use crate::PipelineError;
+
+/// The far-range pipeline on one sequence of frames, in the mode of its configuration.
+#[derive(Debug)]
+pub struct FarRangePipeline(Method);
+
+#[derive(Debug)]
+enum Method {
+    Paper(Box<PaperPipeline>),
+    Best(Box<BestPipeline>),
+}
+
+impl FarRangePipeline {
+    /// A pipeline before its first frame.
+    ///
+    /// # Errors
+    /// Those of [`FarRangeConfig::check`], of the camera's check and of [`contract::Readout::check`];
+    /// [`contract::OutOfRange`] for fitted centres with a camera whose readout is not known, and for thresholds below the zero
+    /// suppression of the camera.
+    pub fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
+        Ok(Self(match config.mode {
+            Mode::Paper => Method::Paper(Box::new(PaperPipeline::new(config, setup)?)),
+            Mode::Best => Method::Best(Box::new(BestPipeline::new(config, setup)?)),
+        }))
+    }
+
+    /// [`Pipeline::process`] with results of single steps given from outside; for an error budget.
+    pub fn process_with(
+        &mut self,
+        frame: &Frame,
+        telemetry: &Telemetry,
+        overrides: &Overrides<'_>,
+    ) -> Outcome {
+        match &mut self.0 {
+            Method::Paper(pipeline) => pipeline.process_with(frame, telemetry, overrides),
+            Method::Best(pipeline) => pipeline.process_with(frame, telemetry, overrides),
+        }
+    }
+}
+
+impl Pipeline<FarRange> for FarRangePipeline {
+    fn process(&mut self, frame: &Frame, telemetry: &Telemetry) -> Outcome {
+        self.process_with(frame, telemetry, &Overrides::default())
+    }
+}
+
+/// Builds [`FarRangePipeline`] pipelines.
+#[derive(Debug, Clone, Default)]
+pub struct FarRangeFactory {
+    config: FarRangeConfig,
+}
+
+impl FarRangeFactory {
+    /// A factory of pipelines with this configuration.
+    ///
+    /// # Errors
+    /// Those of [`FarRangeConfig::check`].
+    pub fn new(config: FarRangeConfig) -> Result<Self, PipelineError> {
+        config.check()?;
+        Ok(Self { config })
+    }
+}
+
+impl PipelineFactory<FarRange> for FarRangeFactory {
+    fn name(&self) -> String {
+        "far-range".to_owned()
+    }
+
+    fn build(&self, setup: &Setup) -> Result<Box<dyn Pipeline<FarRange>>, ContractError> {
+        match FarRangePipeline::new(self.config.clone(), setup) {
+            Ok(pipeline) => Ok(Box::new(pipeline)),
+            Err(PipelineError::Contract(error)) => Err(error),
+            Err(error) => {
+                Err(ContractError::CannotBuild { pipeline: self.name(), reason: error.to_string() })
+            }
+        }
+    }
+}

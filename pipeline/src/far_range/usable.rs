@@ -1,0 +1,20 @@
+//! Frames that cannot be processed at all.
+
+use contract::{Frame, Telemetry};
+
+use crate::CameraModel;
+
+/// Why a frame and its telemetry cannot be processed; `None` when they can.
+pub(super) fn unusable(frame: &Frame, telemetry: &Telemetry, model: &CameraModel) -> Option<String> {
+    let (columns, rows) = model.size_px();
+    if (frame.columns(), frame.rows()) != (columns, rows) {
+        return Some(format!(
+            "a frame of {} × {} pixels for a camera of {columns} × {rows}",
+            frame.columns(),
+            frame.rows()
+        ));
+    }
+    let norm = telemetry.body_from_icrs.quaternion().norm();
+    let is_unit = (norm - 1.0).abs() < 1e-4;
+    (!is_unit).then(|| format!("the telemetry's attitude has norm {norm}, expected 1"))
+}
