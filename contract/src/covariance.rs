@@ -34,6 +34,19 @@ impl Covariance2 {
         Self::from_sigmas(sigma_x, sigma_y, xy / (sigma_x * sigma_y))
     }
 
+    /// A covariance of two angles from their standard deviations, degrees, and their correlation.
+    ///
+    /// # Errors
+    /// As [`Covariance2::from_sigmas`].
+    pub fn from_degrees([sigma_x_deg, sigma_y_deg, correlation]: [f64; 3]) -> Result<Self, OutOfRange> {
+        Self::from_sigmas(sigma_x_deg.to_radians(), sigma_y_deg.to_radians(), correlation)
+    }
+
+    /// Standard deviations of two angles, degrees, and their correlation.
+    pub fn degrees(&self) -> [f64; 3] {
+        [self.sigma_x.to_degrees(), self.sigma_y.to_degrees(), self.correlation]
+    }
+
     /// Standard deviation of the first error.
     pub fn sigma_x(&self) -> f64 {
         self.sigma_x
@@ -58,7 +71,9 @@ impl Covariance2 {
     /// Squared Mahalanobis distance eᵀ C⁻¹ e of an error e: χ² with two degrees of freedom when C is the covariance of normal errors.
     pub fn mahalanobis_squared(&self, [x, y]: [f64; 2]) -> f64 {
         let (x, y, rho) = (x / self.sigma_x, y / self.sigma_y, self.correlation);
-        (x * x - 2.0 * rho * x * y + y * y) / (1.0 - rho * rho)
+        // A sum of squares: rounding makes none of it negative, however near the correlation is to ±1.
+        let of_x_beside_y = x - rho * y;
+        of_x_beside_y * of_x_beside_y / ((1.0 - rho) * (1.0 + rho)) + y * y
     }
 }
 
@@ -78,6 +93,16 @@ mod tests {
         // [[4, 1.5], [1.5, 9]]⁻¹ = [[9, −1.5], [−1.5, 4]] / 33.75; e = (1, 2): (9 − 6 + 16) / 33.75.
         let covariance = Covariance2::from_matrix(4.0, 1.5, 9.0).unwrap();
         assert!((covariance.mahalanobis_squared([1.0, 2.0]) - 19.0 / 33.75).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_distance_is_never_negative_and_angles_change_their_unit() {
+        let narrow = Covariance2::from_sigmas(1.0, 1.0, 1.0 - f64::EPSILON).unwrap();
+        assert!(narrow.mahalanobis_squared([0.1 + 0.2, 0.3]) >= 0.0);
+        let angles = Covariance2::from_degrees([180.0, 90.0, -0.5]).unwrap();
+        assert_eq!(angles.matrix()[0], std::f64::consts::PI * std::f64::consts::PI);
+        assert_eq!(angles.degrees(), [180.0, 90.0, -0.5]);
+        assert_eq!(Covariance2::from_degrees([1.0, -1.0, 0.0]).unwrap_err().path, "sigma_y");
     }
 
     #[test]

@@ -92,21 +92,27 @@ pub enum AttitudeSource {
     TooFewStars,
     /// No star: the last filtered mounting was used.
     NoStars,
+    /// Enough stars seen, and no set of them that matches the list: the last filtered mounting was used.
+    NoMatch,
 }
 
 impl AttitudeSource {
+    /// Every one.
+    pub const ALL: [Self; 4] = [Self::Stars, Self::TooFewStars, Self::NoStars, Self::NoMatch];
+
     /// The word used in files.
     pub fn code(self) -> &'static str {
         match self {
             Self::Stars => "stars",
             Self::TooFewStars => "too_few_stars",
             Self::NoStars => "no_stars",
+            Self::NoMatch => "no_match",
         }
     }
 
     /// Reads [`AttitudeSource::code`].
     pub fn parse(code: &str) -> Option<Self> {
-        [Self::Stars, Self::TooFewStars, Self::NoStars].into_iter().find(|source| source.code() == code)
+        Self::ALL.into_iter().find(|source| source.code() == code)
     }
 }
 

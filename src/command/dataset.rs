@@ -157,11 +157,15 @@ fn process_dataset(
     });
     // The measurements may have any name.
     let files = [("measurements".to_owned(), json!(measurements))].into_iter().chain(files.skip(1));
-    let document: Map<String, Value> = files.chain([("frames".to_owned(), json!(frames))]).collect();
-    output.answer(
-        &document,
-        format!("{frames} {}s processed, answers in {}", world.image(), measurements.display()),
-    )?;
+    let summary = processed.summary.iter().map(|summary| (summary.key.to_owned(), json!(summary.counts)));
+    let document: Map<String, Value> =
+        files.chain([("frames".to_owned(), json!(frames))]).chain(summary).collect();
+    let mut text = format!("{frames} {}s processed, answers in {}", world.image(), measurements.display());
+    if let Some(summary) = &processed.summary {
+        text.push('\n');
+        text.push_str(&summary.text);
+    }
+    output.answer(&document, text)?;
     Ok(Answer::Yes)
 }
 

@@ -1,7 +1,9 @@
 //! The table that a person reads, shaped like Table 2 of the far-range paper.
 use comfy_table::{Attribute, Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use indexmap::IndexMap;
-use score::{Cause, Figure, Score, Table2, Table2Distance, angle, attitude_note, names, warm_up_note};
+use score::{
+    Cause, ConsistencyRow, Figure, Score, Table2, Table2Distance, angle, attitude_note, names, warm_up_note,
+};
 
 /// How to print a score.
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +56,10 @@ pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
         text.push('\n');
         text.push_str(&causes(title, &columns, pick, style.styled));
     }
+    if !score.consistency.is_empty() {
+        text.push('\n');
+        text.push_str(&consistency(&score.consistency, style.styled));
+    }
     text
 }
 
@@ -97,7 +103,7 @@ struct Row {
 fn rows(columns: &[Column<'_>], reference: Option<&Table2>) -> Vec<Row> {
     let images = columns.iter().map(|column| (column.frames.to_string(), None)).collect();
     let mut rows = vec![Row { label: "images".to_owned(), cells: images, is_reference: false }];
-    let mut add = |label: &str, name, format: fn(f64) -> String, published: Option<[f64; 6]>| {
+    let mut add = |label: &str, name, format: Format, published: Option<[f64; 6]>| {
         let cells = columns.iter().map(|column| figure(column.figures.get(name), format)).collect();
         let limit = columns.last().and_then(|column| column.figures.get(name)?.limit_deg);
         let label = limit.map_or_else(|| label.to_owned(), |limit| format!("{label} < {}", angle(limit)));
@@ -119,11 +125,44 @@ fn rows(columns: &[Column<'_>], reference: Option<&Table2>) -> Vec<Row> {
     add("Dec RMS", names::DEC_RMS_DEG, arcsec, None);
     add("x RMS, px", names::CENTROID_X_RMS_PX, pixels, None);
     add("y RMS, px", names::CENTROID_Y_RMS_PX, pixels, None);
+    for (label, name, format) in CONSISTENCY {
+        // Most pipelines state no covariance.
+        if columns.iter().any(|column| column.figures.get(name).is_some_and(|figure| figure.of > 0)) {
+            add(label, name, format, None);
+        }
+    }
+    add("frames until settled", names::FRAMES_UNTIL_SETTLED, whole, None);
     rows
 }
 
+/// How a number is written.
+type Format = fn(f64) -> String;
+
+/// Figures of the honesty of covariances, with their labels.
+const CONSISTENCY: [(&str, &str, Format); 6] = [
+    ("centroid NEES", names::CENTROID_NEES_MEAN, number),
+    ("centroid < 1 σ", names::CENTROID_WITHIN_1SIGMA_RATE, percent),
+    ("centroid < 3 σ", names::CENTROID_WITHIN_3SIGMA_RATE, percent),
+    ("line of sight NEES", names::LINE_OF_SIGHT_NEES_MEAN, number),
+    ("line of sight < 1 σ", names::LINE_OF_SIGHT_WITHIN_1SIGMA_RATE, percent),
+    ("line of sight < 3 σ", names::LINE_OF_SIGHT_WITHIN_3SIGMA_RATE, percent),
+];
+
+/// The honesty of the covariances by the state of the image and by the source of the attitude.
+fn consistency(rows: &[ConsistencyRow], styled: bool) -> String {
+    let mut table = plain_table(styled);
+    let labels = CONSISTENCY.map(|(label, ..)| label);
+    table.set_header(["Correct answers with a covariance", "images"].into_iter().chain(labels));
+    for row in rows {
+        let cells = CONSISTENCY.map(|(_, name, format)| figure(row.figures.get(name), format).0);
+        let label = format!("{}: {}", row.by, row.value.replace('_', " "));
+        table.add_row([label, row.frames.to_string()].into_iter().chain(cells));
+    }
+    finish(table)
+}
+
 /// The value and the interval of a figure as they are printed; a dash where there is none.
-fn figure(figure: Option<&Figure>, format: fn(f64) -> String) -> (String, Option<String>) {
+fn figure(figure: Option<&Figure>, format: Format) -> (String, Option<String>) {
     let value = figure.and_then(|figure| figure.value).map_or("–".to_owned(), format);
     let interval = figure
         .and_then(|figure| figure.low.zip(figure.high))
@@ -140,6 +179,14 @@ pub(crate) fn percent(fraction: f64) -> String {
 fn arcsec(degrees: f64) -> String {
     let arcsec = 3600.0 * degrees;
     if arcsec < 99.95 { format!("{arcsec:.1}") } else { format!("{arcsec:.0}") }
+}
+
+fn number(value: f64) -> String {
+    format!("{value:.2}")
+}
+
+fn whole(value: f64) -> String {
+    format!("{value:.0}")
 }
 
 fn pixels(px: f64) -> String {
@@ -267,6 +314,7 @@ mod tests {
             misses: [("merged_with_star".to_owned(), frames / 20 * groups as u64)].into(),
             wrong: IndexMap::new(),
             wrong_taken: IndexMap::new(),
+            consistency: Vec::new(),
         }
     }
 
@@ -302,6 +350,28 @@ mod tests {
         assert!(text(Some("none")).contains("No answer has a line of sight"));
         assert_eq!(text(Some("own")), text(None));
         assert!(["own and telemetry", "none"].iter().all(|word| widest(&text(Some(word))) <= 100));
+    }
+
+    #[test]
+    fn covariances_have_rows_and_a_table_where_an_answer_states_one() {
+        let mut score = score(1, 300);
+        let text = far_range(&score, TableStyle::default());
+        assert!(!text.contains('σ') && !text.contains("covariance"), "{text}");
+        let nees = Figure::mean(&[vec![0.5, 1.5, 1.75]]);
+        score.figures.insert(names::CENTROID_NEES_MEAN.to_owned(), nees);
+        let figures: IndexMap<_, _> = [(names::CENTROID_NEES_MEAN.to_owned(), nees)].into();
+        let row = |by: &str, value: &str| ConsistencyRow {
+            by: by.to_owned(),
+            value: value.to_owned(),
+            frames: 3,
+            figures: figures.clone(),
+        };
+        score.consistency = vec![row("image", "cut"), row("attitude", "too_few_stars")];
+        let text = far_range(&score, TableStyle::default());
+        assert!(line(&text, "centroid NEES").contains("1.25 ("), "{text}");
+        let cells: Vec<&str> = line(&text, "attitude: too few stars").split_whitespace().collect();
+        assert_eq!(cells, ["attitude:", "too", "few", "stars", "3", "1.25", "–", "–", "–", "–", "–"]);
+        assert!(line(&text, "image: cut").contains("1.25") && widest(&text) <= 165, "{text}");
     }
 
     #[test]

@@ -7,7 +7,10 @@ use boresight::files::{
     CameraFile, Dataset, FrameHeader, ImageFormat, RunDirectory, TelemetryRow, TelemetryWriter, parse_utc,
     write_frame,
 };
-use contract::{Camera, Frame, Mounting, Readout, Rotation, Telemetry, Window};
+use contract::{
+    AttitudeKnowledge, Calibration, Camera, Frame, Mounting, PsfCalibration, Readout, Rotation, Telemetry,
+    Window,
+};
 use hifitime::Unit;
 use nalgebra::Vector3;
 use tempfile::{TempDir, tempdir};
@@ -23,6 +26,18 @@ fn camera_file() -> CameraFile {
             read_noise_e: 15.0,
             saturation_dn: 1020,
         }),
+        calibration: Calibration {
+            psf: Some(PsfCalibration { sigma_px: 0.8, halo_sigma_px: 4.0, halo_fraction: 0.0434 }),
+            full_well_e: Some(41_000.5),
+            target_e_per_s: Some([1e3, 1e7]),
+            attitude: Some(AttitudeKnowledge {
+                white_arcsec: [53.5; 3],
+                slow_arcsec: [20.0, 0.1, 0.0],
+                slow_period_s: 3100.0,
+                constant_arcsec: [180.6, 180.0, 181.1],
+            }),
+            ..Calibration::default()
+        },
         zero_suppression_dn: Some(40),
         camera: Camera {
             columns: 24,
@@ -176,6 +191,14 @@ fn a_bad_camera_file_names_the_field() {
     check("magnitude_limit = 7.0", "magnitude_limit = 7.0\nstar_epoch_utc = 'now'", "star_epoch_utc");
     check("focal_length_mm = 20.187", "focal_length_mm = -1.0", "camera.focal_length_mm");
     check("phi_deg = 1.0", "phi_deg = inf", "mounting.phi_deg");
+    check("full_well_e = 41000.5", "full_well_e = 0.0", "calibration.full_well_e");
+    check("full_well_e = 41000.5", "full_wel_e = 41000.5", "unknown field `full_wel_e`");
+    check("sigma_px = 0.8", "sigma_px = nan", "calibration.psf.sigma_px");
+    check(
+        "target_e_per_s = [1000.0,",
+        "target_e_per_s = [100000000.0,",
+        "calibration.target_e_per_s[1]: is 10000000, expected at least 100000000",
+    );
 }
 
 #[test]

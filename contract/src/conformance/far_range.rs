@@ -61,6 +61,11 @@ impl Conformance for FarRange {
             {
                 return Some(format!("the line of sight is not a unit vector: {los:?}"));
             }
+            if measurement.line_of_sight.is_none()
+                && let Some(covariance) = &measurement.line_of_sight_covariance
+            {
+                return Some(format!("a covariance has no line of sight that it is of: {covariance:?}"));
+            }
         }
         if let Some(attitude) = &outcome.camera_from_icrs
             && !is_one(attitude.quaternion().norm())

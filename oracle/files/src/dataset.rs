@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-use contract::{Camera, Frame, Mounting, OutOfRange, Readout, Telemetry, bounds};
+use contract::{Calibration, Camera, Frame, Mounting, OutOfRange, Readout, Telemetry, bounds};
 use hifitime::Epoch;
 use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
@@ -36,6 +36,9 @@ pub struct CameraFile {
     /// Gain, bias, read noise and saturation as calibrated; without it, the built-in pipeline cannot fit centroids.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub readout: Option<Readout>,
+    /// Point-spread function, detector, brightness scale and attitude knowledge as calibrated; what is absent is not known.
+    #[serde(default, skip_serializing_if = "is_unknown")]
+    pub calibration: Calibration,
     /// Pixels up to this digital number are 0 in the images, whatever they were, 0 to 65535; without it, none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub zero_suppression_dn: Option<u16>,
@@ -47,6 +50,10 @@ pub struct CameraFile {
     /// Parameters of the built-in pipeline; without it, its defaults.
     #[serde(default)]
     pub far_range: FarRangeConfig,
+}
+
+fn is_unknown(calibration: &Calibration) -> bool {
+    *calibration == Calibration::default()
 }
 
 fn default_magnitude_limit() -> f64 {
@@ -75,6 +82,7 @@ impl CameraFile {
 impl TomlTable for CameraFile {
     fn check(&self) -> Result<(), OutOfRange> {
         bounds::check(self, "")?;
+        self.calibration.check()?;
         self.far_range.check().map_err(|error| error.under("far_range"))?;
         self.star_epoch_utc.as_ref().map_or(Ok(()), |text| {
             let refused = |expected| OutOfRange::new("star_epoch_utc", text, expected);

@@ -78,7 +78,7 @@ pub use field_telemetry::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
 pub use frame_file::{ImageFormat, read_frame, write_frame};
 pub use frame_header::FrameHeader;
 pub use lines::Lines;
-pub use measurements::{MeasurementWriter, read_measurements};
+pub use measurements::{MeasurementWriter, outcome_as_filed, read_measurements};
 pub use origin::{AnswerOrigin, line_of, read_origins};
 pub use parquet_file::ParquetFile;
 pub use parquet_table::{Row, TableReader, TableWriter};

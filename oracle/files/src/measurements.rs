@@ -1,10 +1,11 @@
 //! `measurements.csv`: a pipeline's answers, ours or anybody's.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use contract::{
-    AttitudeSource, Camera, CameraFrame, Direction, Icrs, Measurement, NoSolution, Outcome, PixelPoint,
-    Rotation, Solution,
+    AttitudeSource, Camera, CameraFrame, Covariance2, Direction, Icrs, Measurement, NoSolution, OutOfRange,
+    Outcome, PixelPoint, Rotation, Solution,
 };
 
 use super::FileError;
@@ -15,6 +16,8 @@ use super::table::{optional, table};
 
 const POSITION: [&str; 2] = ["x_px", "y_px"];
 const LINE_OF_SIGHT: [&str; 3] = ["los_j2000_x", "los_j2000_y", "los_j2000_z"];
+const POSITION_COVARIANCE: [&str; 3] = ["sigma_x_px", "sigma_y_px", "correlation_xy"];
+const LINE_OF_SIGHT_COVARIANCE: [&str; 3] = ["sigma_ra_deg", "sigma_dec_deg", "correlation_ra_dec"];
 
 table! {
     /// A row of the file.
@@ -31,10 +34,16 @@ table! {
         /// attitude of the camera, norm 1 within 1e-5; not scored
         camera_from_icrs: Option<Rotation<CameraFrame, Icrs>> =
             optional(["q_cam_j2000_w", "q_cam_j2000_x", "q_cam_j2000_y", "q_cam_j2000_z"]),
-        /// where it comes from: `stars`, `too_few_stars`, `no_stars`
+        /// where it comes from: `stars`, `too_few_stars`, `no_stars`, `no_match`
         attitude: String = optional(["attitude"]),
         /// stars identified; empty when the pipeline does not tell
         n_stars: Option<u32> = optional(["n_stars"]),
+        /// standard deviations of the centre along columns and rows, px, more than 0, and their correlation, above −1 and below 1; all three or none,
+        /// and none unless `detected`
+        position_covariance: Option<[f64; 3]> = optional(POSITION_COVARIANCE),
+        /// the same of the line of sight, degrees: of its angles across columns ("RA") and rows ("Dec") in the camera, the error of the attitude
+        /// included; none without a line of sight
+        line_of_sight_covariance: Option<[f64; 3]> = optional(LINE_OF_SIGHT_COVARIANCE),
     }
 }
 
@@ -64,8 +73,25 @@ impl MeasurementWriter {
             camera_from_icrs: outcome.camera_from_icrs,
             attitude: outcome.attitude_source.map_or("", AttitudeSource::code).to_owned(),
             n_stars: outcome.n_stars,
+            position_covariance: measurement
+                .and_then(|measurement| measurement.position_covariance)
+                .map(|covariance| [covariance.sigma_x(), covariance.sigma_y(), covariance.correlation()]),
+            line_of_sight_covariance: measurement
+                .and_then(|measurement| measurement.line_of_sight_covariance)
+                .map(|covariance| covariance.degrees()),
         })
     }
+}
+
+/// The answer as it comes back from the file: the standard deviations of its line of sight have changed their unit twice, which may move
+/// their last bit. A score of the run is made of these, so that one of the file is the same to the bit.
+pub fn outcome_as_filed(outcome: &Outcome) -> Cow<'_, Outcome> {
+    let Solution::Detected(measurement) = &outcome.solution else { return Cow::Borrowed(outcome) };
+    let Some(covariance) = measurement.line_of_sight_covariance else { return Cow::Borrowed(outcome) };
+    // Standard deviations so small that the file has 0 for them have no covariance there.
+    let line_of_sight_covariance = Covariance2::from_degrees(covariance.degrees()).ok();
+    let solution = Solution::Detected(Measurement { line_of_sight_covariance, ..*measurement });
+    Cow::Owned(Outcome { solution, ..outcome.clone() })
 }
 
 /// Reads the table: the answer to each frame of `camera`, frames ascending, gaps allowed, clusters empty. What the protocol of external
@@ -94,8 +120,25 @@ fn reason(row: &CsvRow<'_>) -> Result<Option<NoSolution>, FileError> {
     // What stands behind `failed: ` is kept to the letter.
     let reason =
         NoSolution::parse(status.trim_start_matches(' ')).ok_or_else(|| row.error("status", STATUS))?;
-    row.check_empty(POSITION.into_iter().chain(LINE_OF_SIGHT))?;
+    let of_a_target = [POSITION.as_slice(), &LINE_OF_SIGHT, &POSITION_COVARIANCE, &LINE_OF_SIGHT_COVARIANCE];
+    row.check_empty(of_a_target.into_iter().flatten().copied())?;
     Ok(Some(reason))
+}
+
+/// The covariance that the cells of three columns say, if they say one.
+fn covariance(
+    row: &CsvRow<'_>,
+    [sigma_x, sigma_y, correlation]: [&'static str; 3],
+    said: Option<Result<Covariance2, OutOfRange>>,
+) -> Result<Option<Covariance2>, FileError> {
+    said.transpose().map_err(|wrong| {
+        let column = match wrong.path.as_str() {
+            "sigma_x" => sigma_x,
+            "sigma_y" => sigma_y,
+            _ => correlation,
+        };
+        row.error(column, wrong.expected)
+    })
 }
 
 fn outcome(
@@ -106,10 +149,9 @@ fn outcome(
 ) -> Result<Outcome, FileError> {
     let attitude_source = match line.attitude.trim() {
         "" => None,
-        code => Some(
-            AttitudeSource::parse(code)
-                .ok_or_else(|| row.error("attitude", "`stars`, `too_few_stars`, `no_stars` or nothing"))?,
-        ),
+        code => Some(AttitudeSource::parse(code).ok_or_else(|| {
+            row.error("attitude", "`stars`, `too_few_stars`, `no_stars`, `no_match` or nothing")
+        })?),
     };
     let solution = match reason {
         Some(reason) => Solution::NoSolution(reason),
@@ -124,7 +166,20 @@ fn outcome(
                 );
                 return Err(row.error(column, expected));
             }
-            Solution::Detected(Measurement::new(position, line.line_of_sight))
+            let of_position = line
+                .position_covariance
+                .map(|[x, y, correlation]| Covariance2::from_sigmas(x, y, correlation));
+            let of_line_of_sight = line.line_of_sight_covariance.map(Covariance2::from_degrees);
+            if of_line_of_sight.is_some() && line.line_of_sight.is_none() {
+                let expected = "nothing, as the row has no line of sight";
+                return Err(row.error(LINE_OF_SIGHT_COVARIANCE[0], expected));
+            }
+            Solution::Detected(Measurement {
+                position,
+                position_covariance: covariance(row, POSITION_COVARIANCE, of_position)?,
+                line_of_sight: line.line_of_sight,
+                line_of_sight_covariance: covariance(row, LINE_OF_SIGHT_COVARIANCE, of_line_of_sight)?,
+            })
         }
     };
     Ok(Outcome {
@@ -182,6 +237,43 @@ mod tests {
         check_refused("frame,status,x_px,y_px\n1,no_target,,\n1,no_target,,\n", "line 3", "frame");
     }
 
+    #[test]
+    fn a_covariance_is_read_in_the_units_of_its_columns() {
+        let header = "frame,status,x_px,y_px,los_j2000_x,los_j2000_y,los_j2000_z,sigma_x_px,sigma_y_px,correlation_xy,\
+                      sigma_ra_deg,sigma_dec_deg,correlation_ra_dec";
+        let outcomes = read(&format!(
+            "{header}\n1,detected,1,2,0,0,1,0.25,0.5,-0.5,180,90,0\n2,detected,1,2,,,,,,,,,\n"
+        ))
+        .unwrap();
+        let measurement = outcomes[0].1.measurement().unwrap();
+        assert_eq!(measurement.position_covariance.unwrap().matrix(), [0.0625, -0.0625, 0.25]);
+        let [ra, both, dec] = measurement.line_of_sight_covariance.unwrap().matrix();
+        let pi = std::f64::consts::PI;
+        assert_eq!((ra, both, dec), (pi * pi, 0.0, pi * pi / 4.0));
+        assert_eq!(outcomes[1].1.measurement(), Some(&Measurement::new(PixelPoint::new(1.0, 2.0), None)));
+    }
+
+    #[test]
+    fn a_covariance_that_is_none_is_refused_by_its_column() {
+        let header = "frame,status,x_px,y_px,sigma_x_px,sigma_y_px,correlation_xy,los_j2000_x,los_j2000_y,los_j2000_z,\
+                      sigma_ra_deg,sigma_dec_deg,correlation_ra_dec";
+        let check = |row: &str, column| check_refused(&format!("{header}\n1,{row}\n"), "line 2", column);
+        check("detected,1,2,0,1,0,,,,,,", "sigma_x_px");
+        check("detected,1,2,1,-1,0,,,,,,", "sigma_y_px");
+        check("detected,1,2,1,inf,0,,,,,,", "sigma_y_px");
+        check("detected,1,2,1,1,1,,,,,,", "correlation_xy");
+        check("detected,1,2,1,1,-1,,,,,,", "correlation_xy");
+        check("detected,1,2,1,1,,,,,,,", "correlation_xy");
+        check("detected,1,2,,1,0,,,,,,", "sigma_x_px");
+        check("detected,1,2,,,,0,0,1,1,0,0", "sigma_dec_deg");
+        check("detected,1,2,,,,0,0,1,1e-323,1,0", "sigma_ra_deg");
+        check("detected,1,2,,,,0,0,1,1,1,1.5", "correlation_ra_dec");
+        check("detected,1,2,,,,0,0,1,1,,0", "sigma_dec_deg");
+        check("detected,1,2,,,,,,,1,1,0", "sigma_ra_deg");
+        check("no_target,,,1,1,0,,,,,,", "sigma_x_px");
+        check("no_target,,,,,,,,,,,0", "correlation_ra_dec");
+    }
+
     /// As by the protocol of external pipelines: an unknown word would pass for a miss, a place off the detector for a detection.
     #[test]
     fn what_an_external_pipeline_may_not_answer_is_refused() {
@@ -214,17 +306,28 @@ mod tests {
             "\\PC{0,20}".prop_map(NoSolution::Failed),
         ];
         let vector = || prop::array::uniform3(0.1..3.0_f64).prop_map(Vector3::from);
-        let detected = (-0.5..750.5_f64, any::<f64>(), prop::option::of(vector())).prop_map(|(x, y, los)| {
-            Solution::Detected(Measurement::new(
-                PixelPoint::new(x, if (-0.5..=579.5).contains(&y) { y } else { -0.0 }),
-                los.map(|v| Direction::from_vector(v).unwrap()),
-            ))
-        });
+        let covariance = || {
+            let sigma = || 1e-9..1e3_f64;
+            let said = (sigma(), sigma(), -0.999..0.999_f64);
+            prop::option::of(said.prop_map(|(x, y, rho)| Covariance2::from_sigmas(x, y, rho).unwrap()))
+        };
+        let detected =
+            (-0.5..750.5_f64, any::<f64>(), covariance(), prop::option::of((vector(), covariance())))
+                .prop_map(|(x, y, position_covariance, los)| {
+                    let line_of_sight = los.map(|(vector, _)| Direction::from_vector(vector).unwrap());
+                    Solution::Detected(Measurement {
+                        position: PixelPoint::new(x, if (-0.5..=579.5).contains(&y) { y } else { -0.0 }),
+                        position_covariance,
+                        line_of_sight,
+                        line_of_sight_covariance: los.and_then(|(_, covariance)| covariance),
+                    })
+                });
         let solution = prop_oneof![detected, reason.prop_map(Solution::NoSolution)];
         let source = prop::option::of(prop_oneof![
             Just(AttitudeSource::Stars),
             Just(AttitudeSource::TooFewStars),
             Just(AttitudeSource::NoStars),
+            Just(AttitudeSource::NoMatch),
         ]);
         (solution, prop::option::of(vector()), source, prop::option::of(any::<u32>())).prop_map(
             |(solution, axis, attitude_source, n_stars)| Outcome {
@@ -246,7 +349,9 @@ mod tests {
             let rows: Vec<_> = (0..).map(|n: u64| n * 7).zip(outcomes).collect();
             rows.iter().for_each(|(frame, outcome)| writer.write(*frame, outcome).unwrap());
             writer.finish().unwrap();
-            prop_assert_eq!(read_measurements(&path, &camera()).unwrap(), rows);
+            let filed = |(frame, outcome): &(u64, Outcome)| (*frame, outcome_as_filed(outcome).into_owned());
+            let filed: Vec<_> = rows.iter().map(filed).collect();
+            prop_assert_eq!(read_measurements(&path, &camera()).unwrap(), filed);
         }
     }
 }

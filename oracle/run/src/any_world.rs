@@ -20,7 +20,7 @@ use sim::SimError;
 use crate::flight::Flight;
 use crate::pipeline_choice::PipelineChoice;
 use crate::renderer_choice::RendererChoice;
-use crate::run_result::{FirstFailure, RunResult};
+use crate::run_result::{AnswerSummary, FirstFailure, RunResult};
 
 /// What a run is asked for beside its scenario. A world refuses what it does not have.
 #[derive(Debug, Default)]
@@ -200,6 +200,8 @@ pub struct DatasetAnswers {
     pub files: Vec<PathBuf>,
     /// The first failure of the pipeline, if it failed at all.
     pub first_failure: Option<FirstFailure>,
+    /// The answers in a few numbers, where the world has any.
+    pub summary: Option<AnswerSummary>,
 }
 
 /// A scenario of any world.

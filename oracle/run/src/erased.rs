@@ -174,6 +174,7 @@ impl<W: World> AnyWorld for Of<W> {
             frames: processed.frames,
             files: W::Answers::files(order.measurements),
             first_failure: processed.first_failure,
+            summary: processed.summary,
         })
     }
 

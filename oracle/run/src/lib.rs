@@ -33,7 +33,7 @@ pub use erased::Of;
 pub use far_range::{FarRangeMission, SceneTruth};
 pub use flight::{Expectation, Flight};
 pub use renderer_choice::RendererChoice;
-pub use run_result::{FirstFailure, NotFlown, RunResult};
+pub use run_result::{AnswerSummary, FirstFailure, NotFlown, RunResult};
 pub use source::world_of_run;
 pub use world::{
     AnswerCount, FrameAnswer, Judgement, OpenDataset, World, process, process_into, refuse_attitude,

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use contract::{FailedStarts, Interface};
 use files::{Failure, FileError};
+use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 /// Bytes of a score's file that are read, at most.
@@ -19,6 +20,17 @@ pub struct RunResult<S> {
     pub first_failure: Option<FirstFailure>,
     /// What was not flown, where the pipeline never started. Its failed starts were flown, and are scored.
     pub not_flown: Option<NotFlown>,
+}
+
+/// Answers in a few numbers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AnswerSummary {
+    /// What they are of: a key of a JSON document.
+    pub key: &'static str,
+    /// The numbers, by word.
+    pub counts: IndexMap<&'static str, u64>,
+    /// The same as a line for people.
+    pub text: String,
 }
 
 /// What was not flown of a run whose pipeline never started.

@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 
 use crate::any_world::{Options, ScenarioSource};
 use crate::flight::{Flight, in_order};
-use crate::run_result::{FirstFailure, NotFlown, RunResult};
+use crate::run_result::{AnswerSummary, FirstFailure, NotFlown, RunResult};
 
 /// Starts of a pipeline in a row that may fail before a run is over.
 const MOST_FAILED_STARTS: u32 = 3;
@@ -469,6 +469,11 @@ pub trait Answers<I: Interface>: Sized {
     /// [`FileError`] when a file cannot be written.
     fn add(&mut self, number: u64, outcome: &I::Outcome) -> Result<(), FileError>;
 
+    /// All answers so far in a few numbers, where the world has any.
+    fn summary(&self) -> Option<AnswerSummary> {
+        None
+    }
+
     /// Completes the files, the measurements last: without them, nobody misses the others.
     ///
     /// # Errors
@@ -634,7 +639,7 @@ pub fn process_into<I: Interface, A: Answers<I>>(
     done: impl Fn(),
 ) -> Result<AnswerCount, Failure> {
     let mut pipeline = factory.build(setup)?;
-    let mut processed = AnswerCount { frames: 0, first_failure: None };
+    let mut processed = AnswerCount { frames: 0, first_failure: None, summary: None };
     for image in images {
         let (image, telemetry) = image?;
         let (number, outcome) = (I::number(&image), pipeline.process(&image, &telemetry));
@@ -648,6 +653,7 @@ pub fn process_into<I: Interface, A: Answers<I>>(
     if let Some(failed) = pipeline.failed_starts() {
         return Err(failed.clone().into());
     }
+    processed.summary = answers.summary();
     answers.finish()?;
     Ok(processed)
 }
@@ -659,6 +665,8 @@ pub struct AnswerCount {
     pub frames: u64,
     /// The first failure of the pipeline, if it failed at all.
     pub first_failure: Option<FirstFailure>,
+    /// The answers in a few numbers, where the world has any.
+    pub summary: Option<AnswerSummary>,
 }
 
 /// Refuses to grant an attitude in a world whose answers are not lines of sight.

@@ -227,7 +227,9 @@ impl FarRangeScenario {
                 white_arcsec: knowledge.noise_arcsec,
                 slow_arcsec: knowledge.drift.rms_arcsec,
                 slow_period_s: if slow_period_s.is_finite() { slow_period_s } else { 1e9 },
-                constant_arcsec: knowledge.bias_arcsec.map(|bias| bias.hypot(MOUNTING_SIGMA_ARCSEC)),
+                constant_arcsec: knowledge
+                    .bias_arcsec
+                    .map(|bias| (bias * bias + MOUNTING_SIGMA_ARCSEC * MOUNTING_SIGMA_ARCSEC).sqrt()),
             }),
         };
         derived.replaced_by(self.calibration)

@@ -12,9 +12,11 @@ use super::angles::{
 };
 use super::argon_table2::Table2;
 use super::cause::{Cause, Detector};
+use super::consistency::{self, ImageState};
 use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
 use super::figure_spec::{Better, FigureSpec};
 use super::report::{GroupScore, Score, names};
+use super::settled;
 use super::verdict::{FrameVerdict, Taken, Unproject, Verdict, judge};
 
 /// What the score needs besides the frames.
@@ -174,11 +176,18 @@ impl<'a> Scorer<'a> {
             Some(last) if *last.group == *name => Arc::clone(&last.group),
             _ => Arc::from(name),
         };
+        let verdict = judge(truth, objects, outcome, detector, &self.context.unproject, granted);
+        let position = outcome.and_then(Outcome::measurement).map(|measurement| measurement.position);
+        let image = match verdict {
+            Verdict::Correct { .. } => position.and_then(|position| ImageState::of(position, objects)),
+            _ => None,
+        };
         let verdict = FrameVerdict {
             frame,
             group,
             is_warm_up,
-            verdict: judge(truth, objects, outcome, detector, &self.context.unproject, granted),
+            verdict,
+            image,
             n_stars: outcome.and_then(|outcome| outcome.n_stars),
             attitude_source: outcome.and_then(|outcome| outcome.attitude_source),
         };
@@ -195,10 +204,14 @@ impl<'a> Scorer<'a> {
         let counted = |sequence: &&Vec<&FrameVerdict>| !sequence.iter().any(|frame| frame.is_warm_up);
         let sequences: Vec<&[&FrameVerdict]> = groups.values().filter(counted).map(Vec::as_slice).collect();
         let limits = self.context.limits;
-        let all = group_score(&sequences, &limits);
-        let of_group = |sequence: &Vec<&FrameVerdict>| group_score(&[sequence], &limits);
-        let groups =
-            groups.iter().map(|(group, sequence)| ((*group).to_owned(), of_group(sequence))).collect();
+        let starts = from_the_start(&self.verdicts);
+        let every_start: Vec<&[&FrameVerdict]> = starts.values().map(Vec::as_slice).collect();
+        let all = group_score(&sequences, &every_start, &limits);
+        let of_group = |(group, sequence): (&&str, &Vec<&FrameVerdict>)| {
+            let start: Vec<&[&FrameVerdict]> = starts.get(group).map(Vec::as_slice).into_iter().collect();
+            ((*group).to_owned(), group_score(&[sequence], &start, &limits))
+        };
+        let groups = groups.iter().map(of_group).collect();
         let score = Score {
             scenario: self.context.scenario,
             seed: self.context.seed,
@@ -212,6 +225,7 @@ impl<'a> Scorer<'a> {
             misses: all.misses,
             wrong: all.wrong,
             wrong_taken: all.wrong_taken,
+            consistency: consistency::rows(&sequences),
         };
         FarRangeJudgement { score, verdicts: self.verdicts, limits, published: None }
     }
@@ -220,7 +234,24 @@ impl<'a> Scorer<'a> {
 /// The figures of every score, in their order.
 pub fn figures() -> Vec<FigureSpec> {
     let limits = WithinLimits::of_degrees([0.0; 2]);
-    definitions(&limits).into_iter().map(|definition| definition.figure).collect()
+    definitions(&limits).into_iter().map(|definition| definition.figure).chain([settled::spec()]).collect()
+}
+
+/// The frames of each group in order of time, with those of the warm-up in the group that they precede: what a start is, with no regard to
+/// what other figures count.
+fn from_the_start(verdicts: &[FrameVerdict]) -> IndexMap<&str, Vec<&FrameVerdict>> {
+    let mut starts: IndexMap<&str, Vec<&FrameVerdict>> = IndexMap::new();
+    let mut warm_up = Vec::new();
+    for verdict in verdicts {
+        if verdict.is_warm_up {
+            warm_up.push(verdict);
+        } else {
+            let start = starts.entry(&verdict.group).or_default();
+            start.append(&mut warm_up);
+            start.push(verdict);
+        }
+    }
+    starts
 }
 
 /// The attitude that the lines of sight of some frames rest on.
@@ -233,8 +264,12 @@ fn attitude_of(frames: &[FrameVerdict]) -> Option<String> {
     attitude_word(own, centroids, granted.map(AttitudeUsed::code))
 }
 
-/// The score of some sequences of frames taken together.
-fn group_score(sequences: &[&[&FrameVerdict]], limits: &WithinLimits) -> GroupScore {
+/// The score of some sequences of frames taken together; `starts` are the same with the warm-up.
+fn group_score(
+    sequences: &[&[&FrameVerdict]],
+    starts: &[&[&FrameVerdict]],
+    limits: &WithinLimits,
+) -> GroupScore {
     let frames = || sequences.iter().copied().flatten();
     let causes = |of: &dyn Fn(&Verdict) -> Option<Cause>| {
         let codes = Cause::ALL.map(Cause::code);
@@ -245,6 +280,7 @@ fn group_score(sequences: &[&[&FrameVerdict]], limits: &WithinLimits) -> GroupSc
         figures: definitions(limits)
             .iter()
             .map(|definition| (definition.figure.name.clone(), definition.figure(sequences)))
+            .chain([(settled::spec().name, settled::figure(starts))])
             .collect(),
         misses: causes(&|verdict| match verdict {
             Verdict::Missed { cause } => Some(*cause),
@@ -320,7 +356,7 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
     };
     let ([ra_1px, ra_2px], [dec_1px, dec_2px]) = (limits.ra_deg, limits.dec_deg);
     let stars = |frame: &FrameVerdict| frame.n_stars.map(f64::from);
-    vec![
+    let mut list = vec![
         of_all(names::HIT_RATE, "hit rate", |frame| frame.verdict.is_detected()),
         within(names::RA_WITHIN_1PX, "RA within 1 px", ra, ra_1px),
         within(names::RA_WITHIN_2PX, "RA within 2 px", ra, ra_2px),
@@ -348,11 +384,14 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
         of_all(names::ATTITUDE_FROM_STARS_RATE, "attitude from stars rate", |frame| {
             frame.attitude_source == Some(AttitudeSource::Stars)
         }),
-    ]
+    ];
+    list.extend(consistency::definitions());
+    list
 }
 
 impl UnitTable {
-    /// The frames of a far-range run, from their verdicts.
+    /// The frames of a far-range run, from their verdicts, with what each adds to every figure but the frames until settled, which only
+    /// a whole sequence has.
     pub fn of_frames(frames: &[FrameVerdict], limits: &WithinLimits) -> Self {
         let unit = |frame: &FrameVerdict| {
             let row = frame.row();
@@ -380,8 +419,11 @@ impl UnitTable {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hand_made::{CENTRE, COLUMNS, PIXEL, ROWS, detected_at, frame, target_with, unproject};
-    use contract::{NoSolution, PixelPoint};
+    use crate::hand_made::{
+        CENTRE, COLUMNS, PIXEL, ROWS, detected_at, direction_at, frame, target_with, tilted, unproject,
+    };
+    use crate::report::Figure;
+    use contract::{Covariance2, Measurement, NoSolution, PixelPoint, Solution};
 
     /// The paper's, of the hand-made camera's square pixels too.
     const LIMITS: WithinLimits = WithinLimits { ra_deg: [0.024, 0.048], dec_deg: [0.024, 0.048] };
@@ -579,20 +621,124 @@ mod tests {
         }
     }
 
+    /// An answer so many pixels off, with the covariance of its centroid, px.
+    fn with_covariance([x, y]: [f64; 2], covariance: Option<[f64; 3]>) -> Option<Outcome> {
+        let mut measurement = Measurement::new(PixelPoint::new(CENTRE.x + x, CENTRE.y + y), None);
+        measurement.position_covariance =
+            covariance.map(|[x, y, rho]| Covariance2::from_sigmas(x, y, rho).unwrap());
+        let solution = Solution::Detected(measurement);
+        Some(Outcome { solution, ..Outcome::none(NoSolution::NoTarget) })
+    }
+
+    /// In units of σ the errors are (2, 0) with ρ = 1/2 and (1, 2) with ρ = −1/2: eᵀ C⁻¹ e is 4/0.75 and 7/0.75, half of it 8/3 and 14/3.
+    #[test]
+    fn consistency_is_counted_over_the_correct_with_a_covariance_by_closed_forms() {
+        let outcomes = [
+            with_covariance([0.5, 0.0], Some([0.25, 0.5, 0.5])),
+            with_covariance([0.25, 0.5], Some([0.25, 0.25, -0.5])),
+            with_covariance([30.0, 0.0], Some([0.25, 0.25, 0.0])),
+            with_covariance([1.0, 0.0], None),
+            None,
+        ];
+        let score = score(&outcomes);
+        let value = |name: &str| score.figures[name].value.unwrap();
+        assert!((value(names::CENTROID_NEES_MEAN) - 11.0 / 3.0).abs() < 1e-14);
+        assert_eq!(counts_of(&score, names::CENTROID_NEES_MEAN), (2, 2));
+        assert_eq!(counts_of(&score, names::CENTROID_WITHIN_1SIGMA_RATE), (2, 4));
+        assert_eq!(counts_of(&score, names::CENTROID_WITHIN_3SIGMA_RATE), (4, 4));
+        assert_eq!(score.figures[names::LINE_OF_SIGHT_NEES_MEAN].value, None);
+        let rows: Vec<_> = score
+            .consistency
+            .iter()
+            .map(|row| (row.by.as_str(), row.value.as_str(), row.frames, row.figures.len()))
+            .collect();
+        assert_eq!(rows, [("image", "whole", 2, 6), ("attitude", "unstated", 2, 6)]);
+        for row in &score.consistency {
+            assert_eq!(row.figures[names::CENTROID_NEES_MEAN], score.figures[names::CENTROID_NEES_MEAN]);
+        }
+        // Without a covariance there is nothing to tell, and no table of it.
+        assert!(self::score(&outcomes[3..]).consistency.is_empty());
+    }
+
+    /// Camera axes, whatever way the camera looks: an error of one pixel to the right with σ of half a pixel, down with σ of two.
+    #[test]
+    fn the_covariance_of_a_line_of_sight_is_in_the_axes_of_the_true_camera() {
+        let truth = tilted(0);
+        let camera_line_of_sight = direction_at(PixelPoint::new(CENTRE.x + 1.0, CENTRE.y + 1.0));
+        let mut measurement =
+            Measurement::new(CENTRE, Some(truth.camera_from_icrs.inverse() * camera_line_of_sight));
+        measurement.line_of_sight_covariance = Some(Covariance2::from_degrees([0.012, 0.048, 0.0]).unwrap());
+        let outcome = Outcome {
+            solution: Solution::Detected(measurement),
+            attitude_source: Some(AttitudeSource::NoMatch),
+            ..Outcome::none(NoSolution::NoTarget)
+        };
+        let mut scorer = scorer();
+        let objects = [ObjectTruth { cut: 0.4, ..target_with(1000.0) }];
+        scorer.add(&truth, &objects, Some(&outcome), GrantedAttitude::None).unwrap();
+        let judgement = scorer.finish();
+        // (2² + 0.5²)/2; the arc tangent of a pixel is its argument to 1e-7 of it.
+        let nees = judgement.score.figures[names::LINE_OF_SIGHT_NEES_MEAN].value.unwrap();
+        assert!((nees - 2.125).abs() < 1e-5, "{nees}");
+        assert_eq!(counts_of(&judgement.score, names::LINE_OF_SIGHT_WITHIN_1SIGMA_RATE), (1, 2));
+        assert_eq!(judgement.score.figures[names::CENTROID_NEES_MEAN].of, 0);
+        let rows = judgement.score.consistency.iter().map(|row| (row.by.as_str(), row.value.as_str()));
+        assert!(rows.eq([("image", "cut"), ("attitude", "no_match")]));
+        let verdict = &judgement.verdicts[0];
+        let row = verdict.row();
+        assert_eq!((row.image, row.centroid_nees, row.line_of_sight_nees), (Some("cut"), None, Some(nees)));
+        assert!(
+            (row.ra_over_sigma.unwrap() - 2.0).abs() < 1e-5
+                && (row.dec_over_sigma.unwrap() - 0.5).abs() < 1e-5
+        );
+    }
+
+    /// The start is what the warm-up is: it counts there, whatever else is left out of the figures.
+    #[test]
+    fn a_start_is_counted_from_the_first_frame_whatever_the_warm_up() {
+        let lost = || Some(Outcome::none(NoSolution::NoTarget));
+        let day: Vec<_> = (0..4).map(|_| lost()).chain((0..26).map(|_| Some(right_of_target(0.0)))).collect();
+        let until = |warm_up_frames| {
+            let mut scorer = scorer();
+            scorer.context.warm_up_frames = warm_up_frames;
+            for (number, outcome) in day.iter().enumerate() {
+                let truth = frame(number as u64);
+                let objects = [ObjectTruth { frame: truth.frame, ..target_with(1000.0) }];
+                scorer.add(&truth, &objects, outcome.as_ref(), GrantedAttitude::None).unwrap();
+            }
+            let score = scorer.finish().score;
+            let of = |figures: &IndexMap<String, Figure>| figures[names::FRAMES_UNTIL_SETTLED].value;
+            let groups =
+                score.groups.iter().map(|(name, group)| (name.clone(), of(&group.figures))).collect();
+            (of(&score.figures), groups)
+        };
+        let named = |groups: &[(&str, Option<f64>)]| -> Vec<(String, Option<f64>)> {
+            groups.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect()
+        };
+        assert_eq!(until(0), (Some(4.0), named(&[("day 1", Some(4.0))])));
+        assert_eq!(until(10), (Some(4.0), named(&[(WARM_UP, None), ("day 1", Some(4.0))])));
+    }
+
     #[test]
     fn an_error_of_exactly_one_pixel_is_not_within_it() {
         let with_error = |ra: Angle| {
             let error = LineOfSightError { ra, dec: Angle::ZERO, attitude: AttitudeUsed::Own };
-            let error = AnswerError { centroid_px: None, line_of_sight: Some(error) };
+            let error = AnswerError {
+                centroid_px: None,
+                line_of_sight: Some(error),
+                centroid_normalised: None,
+                line_of_sight_normalised: None,
+            };
             let verdict = FrameVerdict {
                 is_warm_up: false,
                 frame: 0,
                 group: "day 1".into(),
                 verdict: Verdict::Correct { error },
+                image: None,
                 n_stars: None,
                 attitude_source: None,
             };
-            group_score(&[&[&verdict]], &LIMITS).figures[names::RA_WITHIN_1PX].count
+            group_score(&[&[&verdict]], &[], &LIMITS).figures[names::RA_WITHIN_1PX].count
         };
         assert_eq!(with_error(Angle::from_degrees(0.024)), 0);
         assert_eq!(with_error(Angle::from_degrees(-0.024)), 0);
@@ -665,7 +811,7 @@ mod tests {
     #[test]
     fn every_score_has_the_figures_of_the_list_in_its_order() {
         let figures: Vec<String> = figures().into_iter().map(|figure| figure.name).collect();
-        assert!(figures.iter().eq(score(&day()).figures.keys()) && figures.len() == 23);
+        assert!(figures.iter().eq(score(&day()).figures.keys()) && figures.len() == 30);
     }
 
     #[test]
@@ -696,7 +842,9 @@ mod tests {
         );
         assert_eq!((table.units[6].group.as_str(), table.units[6].verdict.as_str()), ("day 1", "wrong"));
         assert_eq!(table.units[8].cause.as_deref(), Some("not_reported"));
-        assert_eq!(table.figures.len(), scored.score.figures.len());
+        // A start is the whole sequence's.
+        let of_frames = scored.score.figures.keys().filter(|name| *name != names::FRAMES_UNTIL_SETTLED);
+        assert!(table.figures.iter().map(|figure| &figure.name).eq(of_frames));
     }
 
     /// The pixel of the hand-made camera is the paper's.

@@ -1,8 +1,10 @@
 //! The error of a line of sight, as two angles in the camera system.
 
-use contract::{Angle, Camera, CameraFrame, Direction, Icrs, Measurement, PixelPoint, Rotation};
+use contract::{Angle, Camera, CameraFrame, Covariance2, Direction, Icrs, Measurement, PixelPoint, Rotation};
 use nalgebra::Vector3;
 use sim::truth::FrameTruth;
+
+use super::consistency::NormalisedError;
 
 /// What "within one pixel" and "within two" mean: an error counts as within a limit when it is strictly smaller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,6 +99,33 @@ pub struct AnswerError {
     pub centroid_px: Option<[f64; 2]>,
     /// Of its line of sight; `None` when it has none and no attitude is granted.
     pub line_of_sight: Option<LineOfSightError>,
+    /// That of the centroid in units of its covariance; `None` where the answer states none.
+    pub centroid_normalised: Option<NormalisedError>,
+    /// That of a line of sight of its own in units of its covariance; `None` where the answer states none.
+    pub line_of_sight_normalised: Option<NormalisedError>,
+}
+
+impl AnswerError {
+    /// The errors of a measurement, in units of the covariances that it states too.
+    pub fn of(
+        measurement: &Measurement,
+        centroid_px: Option<[f64; 2]>,
+        line_of_sight: Option<LineOfSightError>,
+    ) -> Self {
+        let own = line_of_sight.filter(|error| error.attitude == AttitudeUsed::Own);
+        let normalised = |error: Option<[f64; 2]>, covariance: Option<Covariance2>| {
+            Some(NormalisedError::of(error?, &covariance?))
+        };
+        Self {
+            centroid_px,
+            line_of_sight,
+            centroid_normalised: normalised(centroid_px, measurement.position_covariance),
+            line_of_sight_normalised: normalised(
+                own.map(|error| [error.ra.radians(), error.dec.radians()]),
+                measurement.line_of_sight_covariance,
+            ),
+        }
+    }
 }
 
 /// Error of a measured line of sight: two angles in the true camera frame, measured minus true, each in

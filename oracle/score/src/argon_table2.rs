@@ -127,6 +127,7 @@ mod tests {
             misses: IndexMap::new(),
             wrong: IndexMap::new(),
             wrong_taken: IndexMap::new(),
+            consistency: Vec::new(),
         }
     }
 

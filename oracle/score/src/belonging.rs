@@ -73,6 +73,16 @@ pub(super) fn merged_with<'a>(target: &ObjectTruth, objects: &'a [ObjectTruth]) 
     }))
 }
 
+/// Transmitted electrons of all objects but the target that belong to the cluster at `position`, or whose images touch the target's.
+pub(super) fn other_electrons(position: PixelPoint, target: &ObjectTruth, objects: &[ObjectTruth]) -> f64 {
+    objects
+        .iter()
+        .filter(|other| other.kind != ObjectKind::Target)
+        .filter(|other| holds(position, other) || touch(target, other))
+        .map(transmitted_electrons)
+        .sum()
+}
+
 /// The object with the most transmitted electrons; the first of equals.
 pub(super) fn brightest<'a>(objects: impl Iterator<Item = &'a ObjectTruth>) -> Option<&'a ObjectTruth> {
     objects.reduce(

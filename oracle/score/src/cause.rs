@@ -111,6 +111,11 @@ impl Cause {
         Self::ALL.into_iter().find(|cause| cause.code() == code)
     }
 
+    /// Whether no pipeline could have found the target: it is outside the field, in eclipse, too faint or cut away.
+    pub fn is_beyond_help(self) -> bool {
+        matches!(self, Self::OutsideField | Self::InEclipse | Self::TooFaint | Self::CutByRoi)
+    }
+
     /// Why the target was lost in an image that it shares with a brighter object of this kind.
     pub(super) fn of_outshining(kind: ObjectKind) -> Self {
         match kind {

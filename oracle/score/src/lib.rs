@@ -26,6 +26,7 @@ mod angles;
 mod argon_table2;
 mod belonging;
 mod cause;
+mod consistency;
 mod definition;
 #[allow(
     clippy::indexing_slicing,
@@ -36,6 +37,7 @@ mod figure_spec;
 #[cfg(test)]
 mod hand_made;
 mod report;
+mod settled;
 mod verdict;
 
 pub use accumulate::{FarRangeJudgement, ScoreContext, ScoreError, Scorer, WARM_UP, figures};
@@ -45,6 +47,7 @@ pub use angles::{
 pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
 pub use belonging::belonging_to;
 pub use cause::Cause;
+pub use consistency::{ConsistencyRow, ImageState, NormalisedError};
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 pub use figure_spec::{Better, FigureSpec, Kind, Sense, angle};
 pub use report::{Figure, GroupScore, Score, is_zero, names, warm_up_note};

@@ -5,6 +5,8 @@ use statistics::{
     Interval, below_median, effective_size, mean_interval, median, median_interval, rms_interval, wilson,
 };
 
+use super::consistency::ConsistencyRow;
+
 /// Names of the far-range figures. Rates are fractions from 0 to 1.
 pub mod names {
     /// Detected, of all frames.
@@ -51,6 +53,25 @@ pub mod names {
     pub const CENTROID_Y_MEDIAN_PX: &str = "centroid_y_median_px";
     /// Mean number of identified stars, over the frames whose answer tells it.
     pub const STARS_MEAN: &str = "stars_mean";
+    /// Beginning of the figures of the centroid's covariance, `centroid_nees_mean`, `centroid_within_1sigma_rate`,
+    /// `centroid_within_3sigma_rate`.
+    pub const CENTROID: &str = "centroid";
+    /// Beginning of the same figures of the covariance of the line of sight.
+    pub const LINE_OF_SIGHT: &str = "line_of_sight";
+    /// Mean of eᵀ C⁻¹ e / 2 of the centroid, of the correct with its covariance.
+    pub const CENTROID_NEES_MEAN: &str = "centroid_nees_mean";
+    /// Components of the centroid's error within one standard deviation, of the same.
+    pub const CENTROID_WITHIN_1SIGMA_RATE: &str = "centroid_within_1sigma_rate";
+    /// Components of the centroid's error within three standard deviations, of the same.
+    pub const CENTROID_WITHIN_3SIGMA_RATE: &str = "centroid_within_3sigma_rate";
+    /// Mean of eᵀ C⁻¹ e / 2 of the line of sight, of the correct with its covariance.
+    pub const LINE_OF_SIGHT_NEES_MEAN: &str = "line_of_sight_nees_mean";
+    /// Components of the error of the line of sight within one standard deviation, of the same.
+    pub const LINE_OF_SIGHT_WITHIN_1SIGMA_RATE: &str = "line_of_sight_within_1sigma_rate";
+    /// Components of the error of the line of sight within three standard deviations, of the same.
+    pub const LINE_OF_SIGHT_WITHIN_3SIGMA_RATE: &str = "line_of_sight_within_3sigma_rate";
+    /// Frames before the first 20 correct answers in a row.
+    pub const FRAMES_UNTIL_SETTLED: &str = "frames_until_settled";
     /// Attitude solved from the stars of the frame itself, of all frames.
     pub const ATTITUDE_FROM_STARS_RATE: &str = "attitude_from_stars_rate";
 }
@@ -180,6 +201,10 @@ pub struct Score {
     pub wrong: IndexMap<String, u64>,
     /// Wrong answers, by what was taken: `star`, `planet`, `moon`, `hot_pixel`, `cosmic_ray`, `nothing`.
     pub wrong_taken: IndexMap<String, u64>,
+    /// Honesty of the covariances by the state of the image and by the source of the attitude. Absent where no correct answer has a
+    /// covariance.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub consistency: Vec<ConsistencyRow>,
 }
 
 /// The score of one group of frames.

@@ -9,6 +9,7 @@ use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
 use super::angles::{AnswerError, GrantedAttitude, LineOfSightError};
 use super::belonging::{brightest, members, target, transmitted_electrons};
 use super::cause::{Cause, Detector, cause};
+use super::consistency::{ImageState, NormalisedError};
 
 /// The true camera's inverse projection: the direction whose image is at a point, `None` where there is none.
 pub type Unproject<'a> = dyn Fn(PixelPoint) -> Option<Direction<CameraFrame>> + 'a;
@@ -124,6 +125,8 @@ pub struct FrameVerdict {
     pub is_warm_up: bool,
     /// The verdict.
     pub verdict: Verdict,
+    /// What is left of the target's image; `None` unless the answer is correct.
+    pub image: Option<ImageState>,
     /// Stars that the pipeline identified; `None` when it did not answer the frame.
     pub n_stars: Option<u32>,
     /// Where the attitude of its answer comes from, if it says so.
@@ -140,6 +143,10 @@ impl FrameVerdict {
         };
         let centroid_px = self.verdict.error().and_then(|error| error.centroid_px);
         let error = self.verdict.line_of_sight_error();
+        let centroid = self.verdict.error().and_then(|error| error.centroid_normalised);
+        let direction = self.verdict.error().and_then(|error| error.line_of_sight_normalised);
+        let x = |error: NormalisedError| error.over_sigma[0];
+        let y = |error: NormalisedError| error.over_sigma[1];
         VerdictRow {
             frame: self.frame,
             group: &self.group,
@@ -154,6 +161,13 @@ impl FrameVerdict {
             line_of_sight: error.map(|error| error.attitude.code()),
             n_stars: self.n_stars,
             attitude_source: self.attitude_source.map(AttitudeSource::code),
+            image: self.image.map(ImageState::code),
+            centroid_x_over_sigma: centroid.map(x),
+            centroid_y_over_sigma: centroid.map(y),
+            centroid_nees: centroid.map(|error| error.nees),
+            ra_over_sigma: direction.map(x),
+            dec_over_sigma: direction.map(y),
+            line_of_sight_nees: direction.map(|error| error.nees),
         }
     }
 }
@@ -187,6 +201,20 @@ pub struct VerdictRow<'a> {
     pub n_stars: Option<u32>,
     /// [`AttitudeSource::code`].
     pub attitude_source: Option<&'static str>,
+    /// [`ImageState::code`], when correct.
+    pub image: Option<&'static str>,
+    /// Error of the centroid across columns over its standard deviation, where the answer states one.
+    pub centroid_x_over_sigma: Option<f64>,
+    /// Error of the centroid across rows over its standard deviation.
+    pub centroid_y_over_sigma: Option<f64>,
+    /// eᵀ C⁻¹ e / 2 of the centroid.
+    pub centroid_nees: Option<f64>,
+    /// Error of the line of sight across columns over its standard deviation, where the answer states one.
+    pub ra_over_sigma: Option<f64>,
+    /// Error of the line of sight across rows over its standard deviation.
+    pub dec_over_sigma: Option<f64>,
+    /// eᵀ C⁻¹ e / 2 of the line of sight.
+    pub line_of_sight_nees: Option<f64>,
 }
 
 /// Judges one frame. `objects` are those of this frame; `outcome` is `None` when there is no row for it.
@@ -210,7 +238,7 @@ pub(super) fn judge(
     let centre = target(objects).map(|target| target.position).or(truth.target_position);
     let centroid_px =
         centre.map(|centre| [measurement.position.x - centre.x, measurement.position.y - centre.y]);
-    let error = AnswerError { centroid_px, line_of_sight };
+    let error = AnswerError::of(measurement, centroid_px, line_of_sight);
     match chosen(measurement.position, objects) {
         Chosen::Target => Verdict::Correct { error },
         Chosen::TargetOutshone(by) => {
@@ -375,7 +403,8 @@ mod tests {
             &|_| None,
             GrantedAttitude::True,
         );
-        let error = AnswerError { centroid_px: Some([0.5, 0.0]), line_of_sight: None };
+        let measurement = contract::Measurement::new(right_of_target(0.5), None);
+        let error = AnswerError::of(&measurement, Some([0.5, 0.0]), None);
         assert_eq!(nowhere, Verdict::Correct { error });
     }
 
@@ -457,13 +486,14 @@ mod tests {
             group: "day 1".into(),
             is_warm_up: false,
             verdict,
+            image: None,
             n_stars: Some(12),
             attitude_source: Some(AttitudeSource::Stars),
         };
         let missed = frame_verdict(Verdict::Missed { cause: Cause::TooFaint });
         assert_eq!(
             serde_json::to_string(&missed.row()).unwrap(),
-            r#"{"frame":3,"group":"day 1","verdict":"missed","cause":"too_faint","taken":null,"taken_id":null,"centroid_x_error_px":null,"centroid_y_error_px":null,"ra_error_deg":null,"dec_error_deg":null,"line_of_sight":null,"n_stars":12,"attitude_source":"stars"}"#
+            r#"{"frame":3,"group":"day 1","verdict":"missed","cause":"too_faint","taken":null,"taken_id":null,"centroid_x_error_px":null,"centroid_y_error_px":null,"ra_error_deg":null,"dec_error_deg":null,"line_of_sight":null,"n_stars":12,"attitude_source":"stars","image":null,"centroid_x_over_sigma":null,"centroid_y_over_sigma":null,"centroid_nees":null,"ra_over_sigma":null,"dec_over_sigma":null,"line_of_sight_nees":null}"#
         );
     }
 }

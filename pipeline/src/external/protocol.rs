@@ -4,8 +4,10 @@
 //! without aberration; quaternions are Hamilton's, scalar first, v_cam = q v_sc q*):
 //! ```json
 //! {"boresight_pipeline": 1, "camera": {"columns": 752, "rows": 580, "focal_length_mm": 20.187, "...": 0},
-//!  "q_cam_sc": [1, 0, 0, 0], "bit_depth": 12, "stars": [{"id": 11767, "icrs": [0, 0, 1], "magnitude": 1.97}]}
+//!  "q_cam_sc": [1, 0, 0, 0], "bit_depth": 12, "readout": {"gain_e_per_dn": 10, "...": 0},
+//!  "calibration": {"full_well_e": 40000, "...": 0}, "stars": [{"id": 11767, "icrs": [0, 0, 1], "magnitude": 1.97}]}
 //! ```
+//! (`readout` and `calibration` are left out where they are not known)
 //! and its answer:
 //! ```json
 //! {"boresight_pipeline": 1, "name": "my pipeline"}
@@ -18,10 +20,12 @@
 //!  "exposure_s": 0.25, "q_sc_j2000": [1, 0, 0, 0], "v_orbital_j2000_km_s": [7.5, 0, 0]}}
 //! ```
 //! and its answer, in which a detection has a place in pixels (the centre of the first pixel is 0, 0), and may have a
-//! line of sight, the attitude of the camera and the number of stars identified:
+//! line of sight, the attitude of the camera, the number of stars identified and the covariances of the place, px, and of the line of
+//! sight, degrees, each as two standard deviations and their correlation:
 //! ```json
 //! {"frame": 12, "status": "detected", "x_px": 395.2, "y_px": 288.1, "los_j2000": [1, 0, 0],
-//!  "q_cam_j2000": [1, 0, 0, 0], "n_stars": 14}
+//!  "q_cam_j2000": [1, 0, 0, 0], "n_stars": 14, "sigma_x_px": 0.05, "sigma_y_px": 0.04, "correlation_xy": 0.1,
+//!  "sigma_ra_deg": 0.002, "sigma_dec_deg": 0.002, "correlation_ra_dec": 0}
 //! ```
 //! or no target: `{"frame": 12, "status": "no_target"}`. The other words for it are those of
 //! [`contract::NoSolution::code`], and `failed: ` followed by a reason. A key that is not known makes an answer
@@ -31,8 +35,8 @@
 use std::path::Path;
 
 use contract::{
-    Camera, Direction, FarRange, Frame, Measurement, NoSolution, Outcome, PixelPoint, Rotation, Setup,
-    Solution, Telemetry,
+    Calibration, Camera, Covariance2, Direction, FarRange, Frame, Measurement, NoSolution, OutOfRange,
+    Outcome, PixelPoint, Readout, Rotation, Setup, Solution, Telemetry,
 };
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -52,8 +56,16 @@ struct Greeting<'a> {
     q_cam_sc: [f64; 4],
     bit_depth: u8,
     #[serde(skip_serializing_if = "Option::is_none")]
+    readout: Option<Readout>,
+    #[serde(skip_serializing_if = "is_unknown")]
+    calibration: Calibration,
+    #[serde(skip_serializing_if = "Option::is_none")]
     zero_suppression_dn: Option<u16>,
     stars: Vec<Star>,
+}
+
+fn is_unknown(calibration: &Calibration) -> bool {
+    *calibration == Calibration::default()
 }
 
 #[derive(Serialize)]
@@ -97,6 +109,30 @@ struct Answer {
     los_j2000: Option<[f64; 3]>,
     q_cam_j2000: Option<[f64; 4]>,
     n_stars: Option<u32>,
+    sigma_x_px: Option<f64>,
+    sigma_y_px: Option<f64>,
+    correlation_xy: Option<f64>,
+    sigma_ra_deg: Option<f64>,
+    sigma_dec_deg: Option<f64>,
+    correlation_ra_dec: Option<f64>,
+}
+
+/// The status of an answer that has a target.
+const DETECTED: &str = "detected";
+
+impl Answer {
+    fn position_covariance(&self) -> [Option<f64>; 3] {
+        [self.sigma_x_px, self.sigma_y_px, self.correlation_xy]
+    }
+
+    fn line_of_sight_covariance(&self) -> [Option<f64>; 3] {
+        [self.sigma_ra_deg, self.sigma_dec_deg, self.correlation_ra_dec]
+    }
+
+    fn states_a_covariance(&self) -> bool {
+        let stated = [self.position_covariance(), self.line_of_sight_covariance()];
+        stated.iter().flatten().any(Option::is_some)
+    }
 }
 
 /// Checks the answer to the greeting.
@@ -126,6 +162,8 @@ impl Protocol for FarRange {
             camera: &setup.camera,
             q_cam_sc: setup.camera_from_body.wxyz(),
             bit_depth: setup.bit_depth,
+            readout: setup.readout,
+            calibration: setup.calibration,
             zero_suppression_dn: setup.zero_suppression_dn,
             stars: setup.stars.iter().map(star).collect(),
         })
@@ -172,7 +210,10 @@ pub fn outcome(answer: &[u8], number: u64, size_px: (usize, usize)) -> Result<Ou
         .map(|wxyz| Rotation::from_wxyz(wxyz).map_err(|error| format!("its q_cam_j2000: {error}")))
         .transpose()?;
     let solution = match answer.status.as_str() {
-        "detected" => Solution::Detected(measurement(&answer, size_px)?),
+        status if status != DETECTED && answer.states_a_covariance() => {
+            return Err(format!("it states a covariance with the status `{}`", shortened(status)));
+        }
+        DETECTED => Solution::Detected(measurement(&answer, size_px)?),
         status => match NoSolution::parse(status) {
             None => return Err(format!("its status `{}` is not known", shortened(status))),
             Some(NoSolution::Failed(reason)) => Solution::NoSolution(NoSolution::Failed(shortened(&reason))),
@@ -207,7 +248,45 @@ fn measurement(answer: &Answer, (columns, rows): (usize, usize)) -> Result<Measu
             Some(direction)
         }
     };
-    Ok(Measurement::new(position, line_of_sight))
+    let of_position = answer.position_covariance();
+    let of_line_of_sight = answer.line_of_sight_covariance();
+    if line_of_sight.is_none() && of_line_of_sight.iter().any(Option::is_some) {
+        return Err("it states a covariance of a line of sight, and no los_j2000".to_owned());
+    }
+    let in_px = |[x, y, correlation]: [f64; 3]| Covariance2::from_sigmas(x, y, correlation);
+    Ok(Measurement {
+        position,
+        position_covariance: covariance(["sigma_x_px", "sigma_y_px", "correlation_xy"], of_position, in_px)?,
+        line_of_sight,
+        line_of_sight_covariance: covariance(
+            ["sigma_ra_deg", "sigma_dec_deg", "correlation_ra_dec"],
+            of_line_of_sight,
+            Covariance2::from_degrees,
+        )?,
+    })
+}
+
+/// The covariance that three keys of an answer say, if they say one.
+fn covariance(
+    keys: [&str; 3],
+    said: [Option<f64>; 3],
+    make: impl FnOnce([f64; 3]) -> Result<Covariance2, OutOfRange>,
+) -> Result<Option<Covariance2>, String> {
+    let values = match said {
+        [None, None, None] => return Ok(None),
+        [Some(x), Some(y), Some(correlation)] => [x, y, correlation],
+        _ => return Err(format!("it gave some of {} and not all three", keys.join(", "))),
+    };
+    let refused = |wrong: OutOfRange| {
+        let [x, y, correlation] = keys;
+        let (key, value) = match wrong.path.as_str() {
+            "sigma_x" => (x, values[0]),
+            "sigma_y" => (y, values[1]),
+            _ => (correlation, values[2]),
+        };
+        format!("its {key} is {value}, expected {}", wrong.expected)
+    };
+    make(values).map(Some).map_err(refused)
 }
 
 pub(super) fn line(value: &impl Serialize) -> Result<Vec<u8>, String> {
@@ -273,6 +352,52 @@ mod tests {
         assert_eq!(measurement.position, PixelPoint::new(1.5, 79.5));
         assert_eq!(measurement.line_of_sight, Some(Direction::from_unit(Vector3::z())));
         assert_eq!((got.n_stars, got.camera_from_icrs), (Some(3), None));
+    }
+
+    #[test]
+    fn covariances_are_read_in_the_units_of_their_keys() {
+        let detected = |rest: &str| {
+            format!(
+                r#"{{"frame": 7, "status": "detected", "x_px": 1, "y_px": 2, "los_j2000": [0, 0, 1]{rest}}}"#
+            )
+        };
+        let got = read(&detected(
+            r#", "sigma_x_px": 0.5, "sigma_y_px": 0.25, "correlation_xy": -0.5,
+               "sigma_ra_deg": 90, "sigma_dec_deg": 180, "correlation_ra_dec": 0"#,
+        ));
+        let measurement = *got.unwrap().measurement().unwrap();
+        assert_eq!(measurement.position_covariance.unwrap().matrix(), [0.25, -0.0625, 0.0625]);
+        let pi = std::f64::consts::PI;
+        assert_eq!(measurement.line_of_sight_covariance.unwrap().matrix(), [pi * pi / 4.0, 0.0, pi * pi]);
+        let without = read(&detected(r#", "sigma_x_px": null"#)).unwrap();
+        assert_eq!(without.measurement().unwrap().position_covariance, None);
+    }
+
+    #[test]
+    fn covariances_that_are_none_are_refused_by_their_key() {
+        let refused = |rest: &str, because: &str| {
+            refused(
+                &format!(r#"{{"frame": 7, "status": "detected", "x_px": 1, "y_px": 2, {rest}}}"#),
+                because,
+            )
+        };
+        let px = |x: &str, y: &str, rho: &str| {
+            format!(r#""sigma_x_px": {x}, "sigma_y_px": {y}, "correlation_xy": {rho}"#)
+        };
+        refused(&px("0", "1", "0"), "its sigma_x_px is 0, expected a positive number");
+        refused(&px("1", "-2", "0"), "its sigma_y_px is -2, expected a positive number");
+        refused(&px("1", "2", "1"), "its correlation_xy is 1, expected above -1 to below 1");
+        refused(&px("1", "2", "null"), "some of sigma_x_px, sigma_y_px, correlation_xy and not all three");
+        let degrees = r#""sigma_ra_deg": 1, "sigma_dec_deg": 0, "correlation_ra_dec": 0"#;
+        refused(degrees, "a covariance of a line of sight, and no los_j2000");
+        refused(
+            &format!(r#""los_j2000": [0, 0, 1], {degrees}"#),
+            "its sigma_dec_deg is 0, expected a positive",
+        );
+        self::refused(
+            r#"{"frame": 7, "status": "no_target", "sigma_x_px": 1}"#,
+            "a covariance with the status `no_target`",
+        );
     }
 
     #[test]

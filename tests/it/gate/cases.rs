@@ -102,7 +102,12 @@ fn of_degrees(ra: f64, dec: f64) -> AnswerError {
         dec: Angle::from_degrees(dec),
         attitude: AttitudeUsed::Own,
     };
-    AnswerError { centroid_px: Some([ra / PIXEL_DEG, dec / PIXEL_DEG]), line_of_sight: Some(line_of_sight) }
+    AnswerError {
+        centroid_px: Some([ra / PIXEL_DEG, dec / PIXEL_DEG]),
+        line_of_sight: Some(line_of_sight),
+        centroid_normalised: None,
+        line_of_sight_normalised: None,
+    }
 }
 
 /// A verdict with another error, degrees.
@@ -191,6 +196,7 @@ impl Synthetic {
                     frame: stretch * self.frames + frame,
                     group: std::sync::Arc::clone(&group),
                     verdict,
+                    image: None,
                     n_stars: Some((22.0 + 2.0 * ra).round() as u32),
                     attitude_source: Some(AttitudeSource::Stars),
                 }

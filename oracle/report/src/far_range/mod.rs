@@ -3,6 +3,7 @@
 mod approach;
 mod attitude;
 mod budget;
+mod covariances;
 mod frame_sheet;
 mod image;
 mod injected;
@@ -86,6 +87,7 @@ pub fn far_range_page(run: &FarRangeRun, sheet: &FrameSheet) -> Result<Page, Fai
         series::stars(run),
         attitude::mounting(run),
         attitude::aberration(run)?,
+        covariances::covariances(&run.score),
         causes(run),
         budget::budget(run),
         image::frames(run, sheet)?,

@@ -2,15 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use contract::{FarRange, Outcome};
+use contract::{AttitudeSource, FarRange, Outcome};
 use files::{FileError, FrameCluster, MeasurementWriter, TableWriter};
+use indexmap::IndexMap;
 
+use crate::run_result::AnswerSummary;
 use crate::world::{Answers, paths};
 
 /// Writes measurements, and what clusters were taken for.
 pub struct FrameAnswers {
     measurements: MeasurementWriter,
     clusters: TableWriter<FrameCluster>,
+    attitudes: AttitudeCounts,
 }
 
 impl Answers<FarRange> for FrameAnswers {
@@ -23,16 +26,96 @@ impl Answers<FarRange> for FrameAnswers {
         Ok(Self {
             measurements: MeasurementWriter::create(measurements)?,
             clusters: TableWriter::create(clusters)?,
+            attitudes: AttitudeCounts::default(),
         })
     }
 
     fn add(&mut self, frame: u64, outcome: &Outcome) -> Result<(), FileError> {
         self.measurements.write(frame, outcome)?;
+        self.attitudes.add(outcome.attitude_source);
         self.clusters.write(outcome.clusters.iter().map(|&cluster| FrameCluster { frame, cluster }))
+    }
+
+    fn summary(&self) -> Option<AnswerSummary> {
+        self.attitudes.summary()
     }
 
     fn finish(self) -> Result<(), FileError> {
         self.clusters.finish()?;
         self.measurements.finish()
+    }
+}
+
+/// Where the attitudes of some answers come from.
+#[derive(Default)]
+struct AttitudeCounts {
+    frames: u64,
+    stated: IndexMap<&'static str, u64>,
+}
+
+impl AttitudeCounts {
+    fn add(&mut self, source: Option<AttitudeSource>) {
+        self.frames += 1;
+        if let Some(source) = source {
+            *self.stated.entry(source.code()).or_default() += 1;
+        }
+    }
+
+    /// `attitude from stars in 5 of 8 frames; 2 with too few stars, 1 without a match`; `None` where no answer states a source.
+    fn summary(&self) -> Option<AnswerSummary> {
+        let count = |source: AttitudeSource| self.stated.get(source.code()).copied().unwrap_or(0);
+        let others = AttitudeSource::ALL.into_iter().filter_map(|source| {
+            let words = match source {
+                AttitudeSource::Stars => return None,
+                AttitudeSource::TooFewStars => "with too few stars",
+                AttitudeSource::NoStars => "without a star",
+                AttitudeSource::NoMatch => "without a match",
+            };
+            Some((count(source), words))
+        });
+        let unstated = self.frames - self.stated.values().sum::<u64>();
+        let others: Vec<String> = others
+            .chain([(unstated, "not stated")])
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, words)| format!("{count} {words}"))
+            .collect();
+        let mut text =
+            format!("attitude from stars in {} of {} frames", count(AttitudeSource::Stars), self.frames);
+        if !others.is_empty() {
+            text.push_str("; ");
+            text.push_str(&others.join(", "));
+        }
+        let counts = AttitudeSource::ALL.map(|source| (source.code(), count(source))).into();
+        (!self.stated.is_empty()).then_some(AnswerSummary { key: "attitude", counts, text })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn summary(sources: &[Option<AttitudeSource>]) -> Option<AnswerSummary> {
+        let mut counts = AttitudeCounts::default();
+        sources.iter().for_each(|source| counts.add(*source));
+        counts.summary()
+    }
+
+    #[test]
+    fn the_sources_of_the_attitude_are_told_in_a_line() {
+        use AttitudeSource::{NoMatch, NoStars, Stars, TooFewStars};
+        let sources = [Stars, TooFewStars, Stars, Stars, NoMatch, Stars, TooFewStars, Stars].map(Some);
+        let told = summary(&sources).unwrap();
+        assert_eq!(
+            told.text,
+            "attitude from stars in 5 of 8 frames; 2 with too few stars, 1 without a match"
+        );
+        assert_eq!(
+            told.counts.into_iter().collect::<Vec<_>>(),
+            [("stars", 5), ("too_few_stars", 2), ("no_stars", 0), ("no_match", 1)]
+        );
+        assert_eq!(summary(&[Some(Stars)]).unwrap().text, "attitude from stars in 1 of 1 frames");
+        let none = summary(&[Some(NoStars), None]).unwrap();
+        assert_eq!(none.text, "attitude from stars in 0 of 2 frames; 1 without a star, 1 not stated");
+        assert_eq!(summary(&[None, None]), None);
     }
 }

@@ -41,6 +41,7 @@ impl FrameDataset {
             magnitude_limit: scenario.star_list.magnitude_limit,
             star_epoch_utc: Some(format_utc(star_epoch)),
             readout: Some(scenario.readout()),
+            calibration: scenario.calibration(),
             zero_suppression_dn: scenario.zero_suppression_dn,
             camera: scenario.camera.clone(),
             mounting: scenario.mounting.nominal,

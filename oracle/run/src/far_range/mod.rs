@@ -16,7 +16,8 @@ use contract::{
 };
 use files::{
     Dataset, Expected, Failure, FrameCluster, FrameHeader, ImageFormat, RunDirectory, StarRow, TableReader,
-    TelemetryRow, read_measurements, read_stars, read_telemetry, write_expected, write_frame,
+    TelemetryRow, outcome_as_filed, read_measurements, read_stars, read_telemetry, write_expected,
+    write_frame,
 };
 use indexmap::IndexMap;
 use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
@@ -354,7 +355,7 @@ fn setup_of(directory: &Path, dataset: &Dataset) -> Result<Setup, Failure> {
         camera_from_body: camera.mounting.camera_from_body(),
         bit_depth: camera.bit_depth,
         readout: camera.readout,
-        calibration: Default::default(),
+        calibration: camera.calibration,
         zero_suppression_dn: camera.zero_suppression_dn,
         stars: stars.iter().map(StarRow::listed).collect(),
     })
@@ -395,7 +396,8 @@ impl<'a> Scorer<'a> {
 impl world::Scorer<FarRangeMission> for Scorer<'_> {
     fn add(&mut self, truth: &SceneTruth, telemetry: &Telemetry, outcome: &Outcome) -> Result<(), Failure> {
         let granted = self.granted(Some(telemetry.body_from_icrs)).unwrap_or_default();
-        self.scorer.add(&truth.frame, &truth.objects, Some(outcome), granted).map_err(unscorable)?;
+        let filed = outcome_as_filed(outcome);
+        self.scorer.add(&truth.frame, &truth.objects, Some(&filed), granted).map_err(unscorable)?;
         Ok(())
     }
 

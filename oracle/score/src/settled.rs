@@ -1,0 +1,114 @@
+//! How long a pipeline takes to settle.
+
+use super::figure_spec::{Better, FigureSpec};
+use super::report::{Figure, names};
+use super::verdict::{FrameVerdict, Verdict};
+
+/// Correct answers in a row that show that a pipeline has settled. One that is right in 80 % of the frames by chance has as many in a row
+/// once in a hundred starts, one that is right in 99 % four times in five.
+const SETTLED_FRAMES: usize = 20;
+
+/// What the figure is.
+pub(super) fn spec() -> FigureSpec {
+    FigureSpec::amount(names::FRAMES_UNTIL_SETTLED, "frames until settled", Better::Less)
+}
+
+/// Mean number of frames before the first [`SETTLED_FRAMES`] correct answers in a row, over the sequences that have as many frames at
+/// all. It has no value when one of these never settles: a mean of the others would be too good.
+///
+/// Frames without an answer in which no pipeline could have found the target (outside the field, in eclipse, too faint, cut away) are
+/// left out: they count for nothing and interrupt nothing.
+pub(super) fn figure(sequences: &[&[&FrameVerdict]]) -> Figure {
+    let starts = sequences.iter().map(|frames| answers(frames)).filter(|start| start.len() >= SETTLED_FRAMES);
+    let waits: Option<Vec<Vec<f64>>> =
+        starts.map(|start| wait(&start).map(|frames| vec![frames as f64])).collect();
+    Figure::mean(&waits.unwrap_or_default())
+}
+
+/// Whether each frame was answered correctly, of those that count.
+fn answers(frames: &[&FrameVerdict]) -> Vec<bool> {
+    let is_correct = |frame: &&FrameVerdict| match frame.verdict {
+        Verdict::Missed { cause } if cause.is_beyond_help() => None,
+        Verdict::Correct { .. } => Some(true),
+        Verdict::Missed { .. } | Verdict::Wrong { .. } => Some(false),
+    };
+    frames.iter().filter_map(is_correct).collect()
+}
+
+/// Frames before the first run of correct answers; `None` without one.
+fn wait(correct: &[bool]) -> Option<usize> {
+    correct.windows(SETTLED_FRAMES).position(|run| run.iter().all(|correct| *correct))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::angles::AnswerError;
+    use crate::cause::Cause;
+
+    const CORRECT: Verdict = Verdict::Correct {
+        error: AnswerError {
+            centroid_px: None,
+            line_of_sight: None,
+            centroid_normalised: None,
+            line_of_sight_normalised: None,
+        },
+    };
+    const LOST: Verdict = Verdict::Missed { cause: Cause::LostMotionTest };
+    const ECLIPSE: Verdict = Verdict::Missed { cause: Cause::InEclipse };
+
+    /// The value of sequences of so many frames with a verdict.
+    fn value(sequences: &[&[(usize, Verdict)]]) -> Option<f64> {
+        let frames = |stretches: &&[(usize, Verdict)]| -> Vec<FrameVerdict> {
+            let verdicts =
+                stretches.iter().flat_map(|(count, verdict)| std::iter::repeat_n(*verdict, *count));
+            let frame = |(number, verdict)| FrameVerdict {
+                frame: number,
+                group: Arc::from("day 1"),
+                is_warm_up: false,
+                verdict,
+                image: None,
+                n_stars: None,
+                attitude_source: None,
+            };
+            (0..).zip(verdicts).map(frame).collect()
+        };
+        let frames: Vec<Vec<FrameVerdict>> = sequences.iter().map(frames).collect();
+        let borrowed: Vec<Vec<&FrameVerdict>> = frames.iter().map(|frames| frames.iter().collect()).collect();
+        let sequences: Vec<&[&FrameVerdict]> = borrowed.iter().map(Vec::as_slice).collect();
+        let figure = figure(&sequences);
+        assert_eq!(figure.value.is_some(), figure.of > 0);
+        figure.value
+    }
+
+    #[test]
+    fn the_wait_ends_where_twenty_correct_answers_begin() {
+        assert_eq!(value(&[&[(20, CORRECT)]]), Some(0.0));
+        assert_eq!(value(&[&[(66, LOST), (20, CORRECT), (9, LOST)]]), Some(66.0));
+        assert_eq!(value(&[&[(19, CORRECT), (1, LOST), (20, CORRECT)]]), Some(20.0));
+        assert_eq!(value(&[&[(19, CORRECT), (1, LOST), (19, CORRECT)]]), None);
+    }
+
+    #[test]
+    fn frames_in_which_nobody_could_find_the_target_neither_count_nor_interrupt() {
+        assert_eq!(
+            value(&[&[(30, ECLIPSE), (3, LOST), (10, CORRECT), (30, ECLIPSE), (10, CORRECT)]]),
+            Some(3.0)
+        );
+        // Nor do they make a sequence long enough.
+        assert_eq!(value(&[&[(30, ECLIPSE), (19, CORRECT)]]), None);
+    }
+
+    #[test]
+    fn the_mean_is_over_sequences_and_there_is_none_when_one_never_settles() {
+        let settled: &[(usize, Verdict)] = &[(10, LOST), (40, CORRECT)];
+        let at_once: &[(usize, Verdict)] = &[(40, CORRECT)];
+        let never: &[(usize, Verdict)] = &[(40, LOST)];
+        let short: &[(usize, Verdict)] = &[(5, LOST)];
+        assert_eq!(value(&[settled, at_once, short]), Some(5.0));
+        assert_eq!(value(&[settled, at_once, never]), None);
+        assert_eq!(value(&[]), None);
+    }
+}
