@@ -29,7 +29,7 @@ GROUPS = {
     # Intervals are tried by thousands of samples, which without optimisation takes a minute.
     "statistics": ("boresight-statistics", ["oracle/statistics/src/**"], [], [], ["covers_the_truth", "wild_laws", "cover_the_truth"]),
     # Runs and studies are read by tests of the whole program: read.rs has no mutants here.
-    "gate": ("boresight-gate", ["oracle/gate/src/[!r]*.rs", "oracle/gate/src/rows.rs", "oracle/gate/src/report.rs"], [], [], []),
+    "gate": ("boresight-gate", [f"oracle/gate/src/{glob}.rs" for glob in ("[!r]*", "baseline/*", "comparison/*", "dependence/[!r]*", "report/*")], [], [], []),
     "contract": ("boresight-contract", ["contract/src/camera.rs"], [], ["camera"], []),
     "sim": (
         "boresight-sim",

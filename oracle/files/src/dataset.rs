@@ -10,12 +10,12 @@ use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::Place;
-use super::frame_file::read_image;
-use super::raw_image::Size;
-use super::telemetry::read_with_lines;
-use super::toml_table::{self, TomlTable};
-use super::{FileError, TelemetryRow, parse_utc};
+use crate::error::Place;
+use crate::far_range::telemetry::read_with_lines;
+use crate::frame::file::read_image;
+use crate::frame::raw_image::Size;
+use crate::toml_file::toml_table::{self, TomlTable};
+use crate::{FileError, TelemetryRow, parse_utc};
 
 /// `camera.toml`: what a pipeline knows before the first frame, except the stars themselves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -115,7 +115,7 @@ impl Dataset {
     ///
     /// # Errors
     /// [`FileError::MissingImage`] that names the frame whose image is not named, not there or not inside; the errors
-    /// of [`CameraFile::read`] and [`super::read_telemetry`].
+    /// of [`CameraFile::read`] and [`crate::read_telemetry`].
     pub fn open(directory: &Path) -> Result<Self, FileError> {
         let camera = CameraFile::read(&directory.join("camera.toml"))?;
         let table = directory.join("telemetry.csv");
@@ -157,7 +157,7 @@ impl Dataset {
     /// Reads the image of a frame.
     ///
     /// # Errors
-    /// The errors of [`super::read_frame`]; [`FileError::Value`] for an image whose size is not the camera's.
+    /// The errors of [`crate::read_frame`]; [`FileError::Value`] for an image whose size is not the camera's.
     pub fn read(&self, frame: &DatasetFrame) -> Result<Frame, FileError> {
         self.camera.read_image(&frame.path, &frame.row)
     }
@@ -185,7 +185,7 @@ impl CameraFile {
 }
 
 /// The path of one image that a table names, whatever became of the others; `field` is what messages call it.
-pub(super) fn locate_alone(directory: &Path, file: &str, field: &str) -> Result<PathBuf, FileError> {
+pub(crate) fn locate_alone(directory: &Path, file: &str, field: &str) -> Result<PathBuf, FileError> {
     let root = directory.canonicalize().map_err(|source| FileError::io(directory, "open", source))?;
     locate_image(directory, &root, Some(file)).map_err(|reason| {
         let expected = format!("an image in the dataset's directory; it is {reason}");
@@ -194,7 +194,7 @@ pub(super) fn locate_alone(directory: &Path, file: &str, field: &str) -> Result<
 }
 
 /// Refuses an image that belongs to two frames (or fields, as `what` says), each given by its number.
-pub(super) fn refuse_twice<'a>(
+pub(crate) fn refuse_twice<'a>(
     table: &Path,
     what: &str,
     images: impl Iterator<Item = (u64, &'a Path)>,
@@ -248,7 +248,7 @@ impl DatasetFrame {
 }
 
 /// The path of an image that a row of a table names, or what is wrong with it.
-pub(super) fn locate_image(
+pub(crate) fn locate_image(
     directory: &Path,
     root: &Path,
     file: Option<&str>,

@@ -15,85 +15,43 @@
     )
 )]
 
-mod batch_columns;
-mod checksums;
-mod clusters;
-mod column;
-mod csv_table;
+mod complete;
+mod csv;
 mod dataset;
-mod declared;
-mod directory;
 pub mod docking;
 mod error;
-mod exr;
-pub mod failure;
-mod field;
-mod field_telemetry;
-mod fits;
-mod fits_cards;
-mod frame_file;
-mod frame_header;
-mod image16;
-mod lines;
-mod measurements;
-mod origin;
-mod parquet_claims;
-mod parquet_file;
-mod parquet_table;
-mod parquet_type;
-mod parquet_writer;
-mod partial;
-mod raw_image;
-pub mod sha256;
-mod stars;
+mod every_table;
+mod far_range;
+mod frame;
+mod parquet;
 mod table;
-mod table_column;
-mod table_digest;
-mod tables;
-mod telemetry;
-mod thrift;
-mod time;
 pub mod toml_file;
-mod toml_table;
-mod truth;
-mod unit;
 mod video;
-mod wcs;
-mod whole_file;
-mod whole_table;
-mod windows;
 
-pub use self::exr::{Expected, read_expected, read_radiance, write_expected, write_radiance};
-pub use batch_columns::Columns;
-pub use checksums::{Checksums, file_sha256};
-pub use clusters::FrameCluster;
-pub use column::read_column;
+pub use self::csv::{AnswerOrigin, Lines, line_of, read_column, read_origins};
+pub use self::parquet::{
+    ParquetFile, Row, TableOptions, TableReader, TableWriter, table_sha256, write_table,
+};
+pub use complete::{
+    Checksums, Earlier, PartialFiles, RunDirectory, WholeFile, file_sha256, refuse_unfinished, sha256,
+};
 pub use dataset::{CameraFile, Dataset, DatasetFrame};
-pub use declared::Declared;
-pub use directory::{RunDirectory, refuse_unfinished};
-pub use error::open_regular;
-pub use error::{FileError, Place};
-pub use failure::Failure;
-pub use field_telemetry::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
-pub use frame_file::{ImageFormat, read_frame, write_frame};
-pub use frame_header::FrameHeader;
-pub use lines::Lines;
-pub use measurements::{MeasurementWriter, outcome_as_filed, read_measurements};
-pub use origin::{AnswerOrigin, line_of, read_origins};
-pub use parquet_file::ParquetFile;
-pub use parquet_table::{Row, TableReader, TableWriter};
-pub use parquet_writer::{TableOptions, write_table};
-pub use partial::PartialFiles;
-pub use stars::{StarRow, read_stars, write_stars};
-pub use table_column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};
-pub use table_digest::table_sha256;
-pub use tables::{csv_tables, parquet_tables};
-pub use telemetry::{TelemetryRow, TelemetryWriter, read_telemetry};
-pub use time::{format_utc, parse_utc};
+pub use docking::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
+pub use error::{Failure, FileError, Place, failure, open_regular};
+pub use every_table::{WholeTable, csv_tables, parquet_tables, read_csv_table, read_parquet_table};
+pub use far_range::{
+    FrameCluster, MeasurementWriter, StarRow, TelemetryRow, TelemetryWriter, outcome_as_filed,
+    read_measurements, read_stars, read_telemetry, write_stars,
+};
+pub use frame::{
+    Expected, FrameHeader, ImageFormat, Sip, SipTerm, TanSip, WcsError, read_expected, read_frame,
+    read_radiance, write_expected, write_frame, write_radiance,
+};
+pub use table::{
+    Cell, Cells, Column, ColumnType, ColumnValues, Columns, Declared, Nanoseconds, TextCells, format_utc,
+    parse_utc,
+};
 pub use video::{
     AviCoding, AviWriter, FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions, Y4mWriter,
     read_listed_field, write_field,
 };
-pub use wcs::{Sip, SipTerm, TanSip, WcsError};
-pub use whole_file::{Earlier, WholeFile};
-pub use whole_table::{WholeTable, read_csv_table, read_parquet_table};

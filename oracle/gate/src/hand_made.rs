@@ -3,12 +3,12 @@ use indexmap::IndexMap;
 use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 use toml::Table;
 
-use super::baseline::Baseline;
-use super::compare::compare;
-use super::identity::{Identity, Pairing, SourceKind};
-use super::options::CompareOptions;
-use super::report::{FigureReport, FigureVerdict, GateReport};
-use super::sample::Sample;
+use crate::baseline::Baseline;
+use crate::comparison::compare::compare;
+use crate::comparison::options::CompareOptions;
+use crate::identity::{Identity, Pairing, SourceKind};
+use crate::report::{FigureReport, FigureVerdict, GateReport};
+use crate::sample::Sample;
 
 pub(super) fn identity() -> Identity {
     Identity {

@@ -21,55 +21,23 @@
 )]
 
 mod baseline;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod blocks;
-mod comparable;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod compare;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod effects;
-mod flips;
+mod comparison;
+mod dependence;
 #[cfg(test)]
 mod hand_made;
 mod identity;
-mod influence;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod judge;
-mod junit;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod memory;
-mod notes;
-mod options;
 mod read;
 mod report;
-mod rows;
-mod runs;
 mod sample;
-mod tolerance;
 
 pub use baseline::{Baseline, BaselineFigure, BaselineHeader, BlockRule, Replace};
-pub use blocks::{Blocks, LEAST_BLOCKS};
-pub use compare::compare;
-pub use flips::{Flip, FlipKind, Flips};
+pub use comparison::compare::compare;
+pub use comparison::flips::{Flip, FlipKind, Flips};
+pub use comparison::options::CompareOptions;
+pub use dependence::blocks::{Blocks, LEAST_BLOCKS};
+pub use dependence::runs::LossRun;
 pub use identity::{Identity, Pairing, SourceKind};
-pub use junit::{junit, junit_of_failure};
-pub use options::CompareOptions;
 pub use read::read_result;
+pub use report::junit::{junit, junit_of_failure};
 pub use report::{FigureReport, FigureVerdict, GateReport};
-pub use runs::LossRun;
 pub use sample::Sample;

@@ -13,8 +13,8 @@ use sha2::{Digest, Sha256};
 use study::{CaseFigure, CaseTable, StudyRecord};
 use toml::Table;
 
-use super::identity::{Identity, SourceKind};
-use super::sample::Sample;
+use crate::identity::{Identity, SourceKind};
+use crate::sample::Sample;
 
 /// Reads a run directory (its measurements are scored anew, centroids with `attitude` in place of what the run's scenario says), or the
 /// directory of a study that is complete.

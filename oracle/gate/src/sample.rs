@@ -1,7 +1,7 @@
 //! What was run, and what came of each unit: of a result or of a baseline.
 use score::{Reduction, UnitTable};
 
-use super::identity::Identity;
+use crate::identity::Identity;
 
 /// A result or a baseline: what was run, and what came of each unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,8 +37,8 @@ fn rounded(value: f32) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hand_made::{figure, identity};
     use super::*;
+    use crate::hand_made::{figure, identity};
 
     /// Of numbers from 1 to 2 the last digit kept is 2⁻¹¹.
     #[test]

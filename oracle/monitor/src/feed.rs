@@ -9,9 +9,9 @@ use hifitime::Epoch;
 use run::{AnyFactory, AnyMission, DockingMission, FarRangeMission, World};
 use serde_json::Value;
 
-use super::ground::GroundTrack;
-use super::picture::Stretch;
-use super::session::{Order, Session};
+use crate::ground::GroundTrack;
+use crate::session::picture::Stretch;
+use crate::session::{Order, Session};
 
 /// Most frames of a monitored run: what is known of each is kept, some kilobytes.
 pub const MOST_FRAMES: u64 = 50_000;

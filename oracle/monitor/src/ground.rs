@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use sim::docking::DockingSimulator;
 use sim::truth::{Trajectory, clock, ephemeris, geographic};
 
-use super::report::Ground;
+use crate::report::Ground;
 
 /// Inclination of the station's orbit, degrees: that of the International Space Station.
 const STATION_INCLINATION_DEG: f64 = 51.6;

@@ -16,21 +16,15 @@
     )
 )]
 
-mod assets;
 mod docking;
 mod far_range;
 mod feed;
 mod ground;
-mod guard;
-mod listener;
-mod overview;
-mod painter;
-mod picture;
 mod plan;
 mod report;
 mod server;
 mod session;
 
-pub use assets::{BUILD_COMMAND, is_page_built};
 pub use feed::{Feed, MOST_FRAMES, Measurements};
+pub use server::assets::{BUILD_COMMAND, is_page_built};
 pub use server::serve;

@@ -6,14 +6,14 @@ use std::path::Path;
 use files::Failure;
 use gate::{FigureReport, FigureVerdict, Flip, FlipKind, GateReport, Pairing};
 
-use super::chart::{BESIDE, Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
-use super::data_table::DataTable;
-use super::figures::{cell, significant};
-use super::page::{Page, Section};
-use super::picture::Picture;
-use super::plotly::{Layout, Trace};
-use super::words::{capital, spoken};
-use super::worlds::report_of_world;
+use crate::charts::chart::{BESIDE, Chart, MEASURED, REFERENCE, WRONG, axes, intervals, line, rounded};
+use crate::charts::plotly::{Layout, Trace};
+use crate::figures::words::{capital, spoken};
+use crate::figures::{cell, significant};
+use crate::page::data_table::DataTable;
+use crate::page::picture::Picture;
+use crate::page::{Page, Section};
+use crate::worlds::report_of_world;
 
 /// Flipped frames that are shown as pictures, at most.
 const MOST_PICTURES: usize = 12;
@@ -230,7 +230,7 @@ fn differences(shown: &[Compared<'_>], unit: fn(&FigureReport) -> f64, axis: &st
         limit(1.0, "tolerance"),
         limit(-1.0, "−tolerance"),
         of(&|verdict| verdict.is_worse(), "worse", WRONG),
-        of(&|verdict| verdict == FigureVerdict::Better, "better", super::chart::TRUTH),
+        of(&|verdict| verdict == FigureVerdict::Better, "better", crate::charts::chart::TRUTH),
         of(&|verdict| verdict == FigureVerdict::Changed, "changed", BESIDE),
         of(
             &|verdict| {

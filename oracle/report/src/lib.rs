@@ -19,11 +19,7 @@
     )
 )]
 
-#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
-mod chart;
-#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
-mod colours;
-mod data_table;
+mod charts;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 mod docking;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
@@ -31,37 +27,27 @@ mod far_range;
 mod figures;
 mod gate;
 mod page;
-#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
-mod picture;
-mod plotly;
-mod plotly_js;
 mod read;
-mod run_page;
-mod script_safe;
-#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
-mod sky_map;
 #[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
 mod study;
-mod thin;
 mod visibility;
-mod words;
 mod worlds;
 
 use std::path::{Path, PathBuf};
 
-pub use chart::Chart;
-pub use data_table::DataTable;
+pub use charts::chart::Chart;
 pub use docking::{DockingRun, FieldSheet, PortionReport, docking_page};
 pub use far_range::{FarRangeRun, FrameSheet, InjectedRun, far_range_page, kept_budget};
 pub use gate::{FlippedFrames, gate_page};
+pub use page::data_table::DataTable;
+pub use page::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
 pub use page::{Block, Page, Section};
-pub use picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
 pub use read::ResultKind;
 pub use study::{StudyResult, study_page};
 pub use visibility::{read_visibility, visibility_page};
 
+use self::figures::run_page::run_page;
 use self::read::is_far_range_run;
-use self::run_page::run_page;
 use self::worlds::report_of_world;
 use files::{Checksums, Earlier, Failure, WholeFile, refuse_unfinished};
 use run::{AnyJudgement, NotFlown, world_of_run};

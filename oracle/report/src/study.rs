@@ -9,17 +9,17 @@ use run::figure_called;
 use score::{Better, attitude_note, warm_up_note};
 use study::{CaseTable, Estimate, FigureSummary, Summary, Waited};
 
-use super::chart::{
+use crate::charts::chart::{
     BESIDE, Chart, MEASURED, REFERENCE, TRUTH, WRONG, axes, cloud, intervals, intervals_across, plain,
     points, rounded,
 };
-use super::data_table::DataTable;
-use super::figures::significant;
-use super::page::{Page, Section};
-use super::plotly::{Axis, ColourScale, Layout, Mode, Trace};
-use super::read::read_json;
-use super::thin::{bins, drawn, summary as summed};
-use super::words::capital;
+use crate::charts::plotly::{Axis, ColourScale, Layout, Mode, Trace};
+use crate::charts::thin::{bins, drawn, summary as summed};
+use crate::figures::significant;
+use crate::figures::words::capital;
+use crate::page::data_table::DataTable;
+use crate::page::{Page, Section};
+use crate::read::read_json;
 
 /// Cases that a chart shows one by one in the table behind it; of more, a summary.
 const TABLE_BINS: usize = 60;

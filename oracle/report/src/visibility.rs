@@ -5,17 +5,17 @@ use std::path::Path;
 use files::Failure;
 use visibility::{Simulated, VisibilityReport, read_sky};
 
-use super::chart::{
+use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, axes, dashed, intervals, line, log_axis, rounded,
     stacked,
 };
-use super::data_table::DataTable;
-use super::figures::{cell, probability, significant};
-use super::page::{Page, Section};
-use super::plotly::{Axis, Layout, Marker, Mode, Symbol};
-use super::read::read_json;
-use super::sky_map::sky_map;
-use super::thin::{bins, summary};
+use crate::charts::plotly::{Axis, Layout, Marker, Mode, Symbol};
+use crate::charts::sky_map::sky_map;
+use crate::charts::thin::{bins, summary};
+use crate::figures::{cell, probability, significant};
+use crate::page::data_table::DataTable;
+use crate::page::{Page, Section};
+use crate::read::read_json;
 
 /// Reads the directory that `boresight visibility --out` wrote.
 ///

@@ -5,9 +5,9 @@ use std::path::Path;
 use files::Failure;
 use run::{AnyJudgement, DockingMission, FarRangeMission, World};
 
-use super::page::Page;
-use super::picture::Rendered;
-use super::{docking, far_range};
+use crate::page::Page;
+use crate::page::picture::Rendered;
+use crate::{docking, far_range};
 
 /// What the report of a world has of its own.
 pub(crate) struct WorldReport {

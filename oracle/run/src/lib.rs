@@ -13,28 +13,25 @@
 
 pub mod any_world;
 mod by_number;
-mod derived;
+mod check;
+mod choice;
 pub mod docking;
-mod erased;
 pub mod far_range;
 pub mod flight;
-pub mod pipeline_choice;
 mod provenance;
-mod renderer_choice;
 mod run_result;
-mod slips;
-mod source;
 pub mod world;
 pub mod worlds;
 
+pub use any_world::erased::Of;
+pub use any_world::source::world_of_run;
 pub use any_world::{AnyFactory, AnyJudgement, AnyMission, AnyScenario, AnyWorld, Options, ScenarioSource};
+pub use choice::pipeline_choice;
+pub use choice::renderer_choice::RendererChoice;
 pub use docking::DockingMission;
-pub use erased::Of;
 pub use far_range::{FarRangeMission, SceneTruth};
 pub use flight::{Expectation, Flight};
-pub use renderer_choice::RendererChoice;
 pub use run_result::{AnswerSummary, FirstFailure, NotFlown, RunResult};
-pub use source::world_of_run;
 pub use world::{
     AnswerCount, FrameAnswer, Judgement, OpenDataset, World, process, process_into, refuse_attitude,
 };

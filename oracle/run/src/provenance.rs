@@ -11,8 +11,8 @@ use scenario::run_file::RunFile;
 use sim::truth::clock;
 use toml::{Table, Value};
 
+use crate::any_world::source::world_of_run;
 use crate::any_world::{AnyJudgement, AnyScenario, AnyWorld};
-use crate::source::world_of_run;
 
 /// How far a time in a table of answers may be off, s: half of a millisecond is rounded away by whoever writes three decimals.
 const TIME_TOLERANCE_S: f64 = 1e-3;

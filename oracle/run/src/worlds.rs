@@ -8,7 +8,7 @@ use schemars::{Schema, SchemaGenerator, json_schema};
 use score::FigureSpec;
 
 use crate::any_world::AnyWorld;
-use crate::erased::Of;
+use crate::any_world::erased::Of;
 use crate::{DockingMission, FarRangeMission};
 
 /// The world of a scenario that names none.

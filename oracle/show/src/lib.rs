@@ -18,24 +18,15 @@
 )]
 
 mod canvas;
-mod class;
-mod colour;
 mod error;
-mod label;
 mod layout;
-mod legend;
 mod panel;
 mod png_file;
-mod raster;
-mod scale_bar;
-mod stretch;
-mod text;
-mod view;
 
-pub use class::Class;
 pub use error::{MOST_PANELS, ShowError};
+pub use layout::view::Placement;
 pub use layout::{PanelPlace, Picture, picture};
+pub use panel::class::Class;
+pub use panel::stretch::Stretch;
 pub use panel::{Mark, Panel, Pixels, PlateScale, Reduction, Shape, Table, Tone, Verdict};
 pub use png_file::{encode, is_own_picture};
-pub use stretch::Stretch;
-pub use view::Placement;

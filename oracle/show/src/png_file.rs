@@ -6,9 +6,9 @@ use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Limits};
 
-use super::ShowError;
-use super::colour::{ACCENTS, BACKGROUND, NO_DATA, Rgb};
-use super::layout::Picture;
+use crate::ShowError;
+use crate::canvas::colour::{ACCENTS, BACKGROUND, NO_DATA, Rgb};
+use crate::layout::Picture;
 
 /// Keyword of the chunk, one of those of the PNG standard.
 const KEYWORD: &str = "Software";
@@ -113,8 +113,8 @@ fn palette() -> Vec<Rgb> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::colour::ORANGE;
     use super::*;
+    use crate::canvas::colour::ORANGE;
 
     fn picture(rgb: Vec<Rgb>, width: usize) -> Picture {
         Picture { width, height: rgb.len() / width, rgb, panels: Vec::new() }

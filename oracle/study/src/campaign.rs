@@ -5,15 +5,15 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use files::Failure;
 
-use super::cases::{CaseRow, CaseTable};
-use super::definition::{MOST_FAILED_CASES, Study};
-use super::engine::{Workers, run_cases};
-use super::evaluate::Evaluated;
-use super::record::StudyRecord;
-use super::shard::{Plan, ShardManifest, ShardStore};
-use super::stopping::Stopping;
-use super::summary::Summary;
-use super::tried::StudyPipeline;
+use crate::cases::{CaseRow, CaseTable};
+use crate::definition::{MOST_FAILED_CASES, Study};
+use crate::evaluate::Evaluated;
+use crate::evaluate::engine::{Workers, run_cases};
+use crate::evaluate::tried::StudyPipeline;
+use crate::findings::stopping::Stopping;
+use crate::findings::summary::Summary;
+use crate::shard::record::StudyRecord;
+use crate::shard::{Plan, ShardManifest, ShardStore};
 
 /// A study, the pipeline that it tries, and the folder of its results.
 pub struct Campaign<'a> {

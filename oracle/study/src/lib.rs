@@ -26,49 +26,27 @@
 mod campaign;
 mod cases;
 mod definition;
-mod design;
-mod engine;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod estimate;
 mod evaluate;
-mod file;
-mod journal;
-mod law;
-mod overlay;
-mod record;
-mod requirement;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod sensitivity;
+mod findings;
 mod shard;
-mod stopping;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod summary;
-mod tried;
 
 pub use campaign::{Campaign, Known};
 pub use cases::{CaseFigure, CaseRow, CaseTable, Drawn};
+pub use definition::design::DesignKind;
+pub use definition::file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};
+pub use definition::law::Law;
+pub use definition::overlay::{value_at, with_overlay};
 pub use definition::{Case, Study};
-pub use design::DesignKind;
-pub use engine::Workers;
-pub use estimate::{Estimate, overall};
+pub use evaluate::engine::Workers;
 pub use evaluate::{Evaluated, evaluate};
-pub use file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};
-pub use law::Law;
-pub use overlay::{value_at, with_overlay};
-pub use record::StudyRecord;
-pub use requirement::{Limit, RequiredOf, RequirementResult, RequirementVerdict, StudyRequirement};
-pub use sensitivity::{RankCorrelation, SobolIndex};
+pub use findings::estimate::{Estimate, overall};
+pub use findings::requirement::{Limit, RequiredOf, RequirementResult, RequirementVerdict, StudyRequirement};
+pub use findings::sensitivity::{RankCorrelation, SobolIndex};
+pub use shard::record::StudyRecord;
 
+pub use evaluate::tried::{StudyPipeline, command_line};
+pub use findings::stopping::Waited;
+pub use findings::summary::{
+    CaseError, CauseSummary, FigureSummary, Summary, SweepDifference, SweepPoint, WorstCase,
+};
 pub use shard::{Plan, ShardManifest, ShardStore};
-pub use stopping::Waited;
-pub use summary::{CaseError, CauseSummary, FigureSummary, Summary, SweepDifference, SweepPoint, WorstCase};
-pub use tried::{StudyPipeline, command_line};

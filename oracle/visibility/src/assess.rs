@@ -9,15 +9,15 @@ use sim::catalog::CatalogSource;
 use sim::optics::PsfConfig;
 use statistics::clopper_pearson;
 
-use super::binding::binding_of;
-use super::confirm::{Bench, StarFrame};
-use super::curves;
-use super::definition::Requirements;
-use super::design::{Design, Reached, design_with};
-use super::inverse::{FoundValue, Search, search};
-use super::report::{Found, Simulated, Status, Verdict, VisibilityReport};
-use super::requirement::{Demand, Find, Over, Parameter, Requirement, Want};
-use super::sky::Pointing;
+use crate::confirm::{Bench, StarFrame};
+use crate::design::binding::binding_of;
+use crate::design::inverse::{FoundValue, Search, search};
+use crate::design::{Design, Reached, design_with};
+use crate::report::curves;
+use crate::report::{Found, Simulated, Status, Verdict, VisibilityReport};
+use crate::requirement::definition::Requirements;
+use crate::requirement::{Demand, Find, Over, Parameter, Requirement, Want};
+use crate::sky::Pointing;
 
 /// Factor of a step by which a value is moved that all boresights do not agree with, and most of such steps.
 const POLISH: f64 = 1.005;

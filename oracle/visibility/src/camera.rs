@@ -13,8 +13,8 @@ use sim::scene::{Background, BackgroundConfig};
 use sim::sensor::{Sensor, SensorConfig};
 use sim::truth::EARTH_GM_KM3_S2;
 
-use super::pixel::PixelThreshold;
-use super::requirement::{MotionTable, Parameter};
+use crate::law::pixel::PixelThreshold;
+use crate::requirement::{MotionTable, Parameter};
 
 /// A camera as the simulator is told of it.
 #[derive(Debug, Clone, PartialEq)]

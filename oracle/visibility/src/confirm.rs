@@ -18,11 +18,11 @@ use sim::truth::{
 };
 use sim::{Simulation, Simulator};
 
-use super::camera::{CameraConfig, CameraModel, mean_motion_rad_s};
-use super::requirement::{DetectionRule, MotionGuidance, MotionTable};
-use super::sky::Pointing;
-use super::star_count::{Curves, star_trail_px};
-use super::target::{Aspect, Setting, along_track};
+use crate::camera::{CameraConfig, CameraModel, mean_motion_rad_s};
+use crate::requirement::{DetectionRule, MotionGuidance, MotionTable};
+use crate::sky::Pointing;
+use crate::sky::star_count::{Curves, star_trail_px};
+use crate::target::{Aspect, Setting, along_track};
 
 /// A cluster belongs to an object whose true place is at most this far from its centre, px, half of the object's trail besides.
 const MATCH_PX: f64 = 2.5;

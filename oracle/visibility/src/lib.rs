@@ -30,66 +30,38 @@
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod assess;
-mod binding;
 mod camera;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"
 )]
 mod confirm;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod curves;
-mod definition;
 mod design;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod detection;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod inverse;
-mod pixel;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod poisson_binomial;
+mod law;
 mod report;
 mod requirement;
 mod sky;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "indices are computed from the lengths of arrays made here; no input is read"
-)]
-mod star_count;
 mod target;
-mod write;
 
 pub use assess::{assess, digits};
-pub use binding::{binding, binding_of};
 pub use camera::{CameraConfig, CameraModel, mean_motion_rad_s};
 pub use confirm::{Bench, StarFrame, StarTrial};
-pub use definition::{BUILT_IN_REQUIREMENTS, Requirements};
+pub use design::binding::{binding, binding_of};
+pub use design::inverse::{FoundValue, Search, resolvable, search};
 pub use design::{AspectGroup, Design, Reached, between};
-pub use detection::{DetectionCurve, FrameThresholds, ImageShares, background_e, is_flooded};
-pub use inverse::{FoundValue, Search, resolvable, search};
-pub use pixel::{PixelThreshold, readout_e};
-pub use poisson_binomial::at_least;
+pub use law::detection::{DetectionCurve, FrameThresholds, ImageShares, background_e, is_flooded};
+pub use law::pixel::{PixelThreshold, readout_e};
+pub use law::poisson_binomial::at_least;
+pub use report::write::{read_sky, write_report};
 pub use report::{
     CameraFigures, DetectionPoint, Found, LimitPoint, PointingStars, RangeByPhase, Simulated, SimulatedPoint,
     SkySummary, StarsLost, Status, Verdict, VisibilityReport, WindowPoint,
 };
+pub use requirement::definition::{BUILT_IN_REQUIREMENTS, Requirements};
 pub use requirement::{
     CameraTable, ConfirmTable, Demand, DetectionRule, ExposureTable, Find, MotionGuidance, MotionTable, Over,
     Parameter, Requirement, RequirementFile, SkyTable, SkyTime, TargetLight, TargetTable, Want,
 };
+pub use sky::star_count::{Curves, Seen, over_sky, star_trail_px};
 pub use sky::{Excluded, Field, Pointing, Sky, SkyStar};
-pub use star_count::{Curves, Seen, over_sky, star_trail_px};
 pub use target::{Aspect, Setting, Sight, TargetModel, Watch};
-pub use write::{read_sky, write_report};

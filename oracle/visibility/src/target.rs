@@ -9,9 +9,9 @@ use sim::optics::ImagePoint;
 use sim::scene::{Appearance, Lighting, Spacecraft, TargetConfig};
 use sim::truth::{Observer, OrbitConfig, RelativeElements, Schedule, States, Trajectory, shadow};
 
-use super::camera::{CameraModel, moving_point};
-use super::detection::{ImageShares, background_e, is_flooded};
-use super::requirement::{DetectionRule, ExposureTable, MotionGuidance, MotionTable, TargetLight};
+use crate::camera::{CameraModel, moving_point};
+use crate::law::detection::{ImageShares, background_e, is_flooded};
+use crate::requirement::{DetectionRule, ExposureTable, MotionGuidance, MotionTable, TargetLight};
 
 /// Astronomical unit, km (IAU 2012 Resolution B2).
 const AU_KM: f64 = 149_597_870.7;

@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix6, Vector6};
 
-use super::super::FileError;
-use super::super::csv_table::CsvRow;
+use crate::FileError;
+use crate::csv::table::CsvRow;
 
 /// Cells of the upper triangle.
 pub(super) const CELLS: usize = 21;

@@ -3,7 +3,7 @@
 
 use contract::docking::{Circle, Features};
 
-use super::super::table::{nullable, table};
+use crate::table::declaration::{nullable, table};
 
 table! {
     /// A feature and the field it was found in.

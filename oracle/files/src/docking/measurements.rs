@@ -7,13 +7,13 @@ use contract::docking::{
 };
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use super::super::FileError;
-use super::super::csv_table::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use super::super::field::Atom;
-use super::super::origin;
-use super::super::table::{optional, table};
 use super::covariance::{self, CELLS};
 use super::pose::{self, POSE};
+use crate::FileError;
+use crate::csv::origin;
+use crate::csv::table::{CsvLine, CsvReader, CsvRow, CsvWriter};
+use crate::table::declaration::{optional, table};
+use crate::table::field::Atom;
 
 const SIGMA: [&str; 6] =
     ["sigma_d1_m", "sigma_d2_m", "sigma_d3_m", "sigma_phi1_deg", "sigma_phi2_deg", "sigma_phi3_deg"];

@@ -6,6 +6,7 @@ mod measurements;
 mod motion;
 mod pose;
 mod setup;
+pub(crate) mod telemetry;
 mod truth;
 
 pub use features::FeatureRow;
@@ -14,5 +15,6 @@ pub use measurements::{FieldMeasurementWriter, outcome_as_filed, read_field_meas
 pub(super) use motion::MotionLine;
 pub use motion::{MotionWriter, read_motion, report_as_filed};
 pub use setup::SetupFile;
+pub use telemetry::{FieldRow, FieldTelemetryWriter, read_field_telemetry};
 pub(super) use truth::FieldTruthRow;
 pub use truth::truth_as_filed;

@@ -7,11 +7,11 @@ use contract::docking::{Motion, MotionReport, Pose};
 use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 use score::docking::Shown;
 
-use super::super::FileError;
-use super::super::csv_table::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use super::super::table::{optional, table};
 use super::covariance::{self, CELLS, upper_triangle};
 use super::pose::{self, angle_as_filed};
+use crate::FileError;
+use crate::csv::table::{CsvLine, CsvReader, CsvRow, CsvWriter};
+use crate::table::declaration::{optional, table};
 
 const SIGMA: [&str; 7] = [
     "sigma_rho_m",

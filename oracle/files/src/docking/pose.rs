@@ -3,7 +3,7 @@
 use contract::docking::Pose;
 use nalgebra::Vector3;
 
-use super::super::field::value;
+use crate::table::field::value;
 
 /// Its columns.
 pub(super) const POSE: [&str; 6] = ["d1_m", "d2_m", "d3_m", "phi1_deg", "phi2_deg", "phi3_deg"];

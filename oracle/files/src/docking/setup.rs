@@ -8,8 +8,8 @@ use pipeline::docking::DockingConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::super::FileError;
-use super::super::toml_table::{self, TomlTable};
+use crate::FileError;
+use crate::toml_file::toml_table::{self, TomlTable};
 
 /// The cameras, the target's dimensions, and parameters of the built-in pipeline.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -7,10 +7,10 @@ use nalgebra::Vector3;
 use sim::docking::{FieldTruth, GlintImage};
 use sim::television::VideoTruth;
 
-use super::super::field::{value, words};
-use super::super::table::table;
-use super::super::{Column, Columns, FileError, Row};
 use super::pose::{self, POSE};
+use crate::table::declaration::table;
+use crate::table::field::{value, words};
+use crate::{Column, Columns, FileError, Row};
 
 /// The truth as it comes back from the file: angles have changed their unit twice, which may move their last bit. A score
 /// of the run is made of these, so that one of the files is the same to the bit.

@@ -8,11 +8,11 @@ use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
 use zune_jpeg::zune_core::options::DecoderOptions;
 
-use super::super::FileError;
 use super::avi_header::{self, Coding, VideoStream};
 use super::input::Input;
 use super::riff::{Chunk, Item, Walker};
 use super::whole_frame::WholeFrame;
+use crate::FileError;
 
 /// The frames of an AVI file.
 pub(super) struct AviReader {

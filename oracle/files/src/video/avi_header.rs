@@ -1,8 +1,8 @@
 //! The header of an AVI file: which stream is the video, how large, how fast, in what pixels.
 
-use super::super::FileError;
 use super::luma::{Layout, Uncompressed, grey_of_bgr};
 use super::riff::{Chunk, FourCc, Item, Walker};
+use crate::FileError;
 
 /// How a frame is stored.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,9 +8,9 @@ use contract::docking::Field;
 use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
 
-use super::super::error::{Place, create_new};
-use super::super::{FileError, PartialFiles};
 use super::weaver::Weaver;
+use crate::error::{Place, create_new};
+use crate::{FileError, PartialFiles};
 
 /// How frames are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +62,7 @@ pub(super) fn check_frames(
     (columns, rows): (usize, usize),
     frame_rate_hz: f64,
 ) -> Result<(), FileError> {
-    super::super::raw_image::checked_size(path, columns as u64, rows as u64, None)?;
+    crate::frame::raw_image::checked_size(path, columns as u64, rows as u64, None)?;
     if (0.001..=1000.0).contains(&frame_rate_hz) {
         return Ok(());
     }

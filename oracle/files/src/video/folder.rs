@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use contract::Camera;
 use contract::docking::{DockingSetup, Field, FieldTelemetry};
 
-use super::super::FileError;
-use super::super::dataset::{locate_alone, locate_image, refuse_twice};
-use super::super::error::Place;
-use super::super::field_telemetry::FieldRow;
-use super::super::frame_file::read_image;
-use super::super::raw_image::Size;
 use super::whole_frame::{Format, WholeFrame};
+use crate::FileError;
+use crate::dataset::{locate_alone, locate_image, refuse_twice};
+use crate::docking::telemetry::FieldRow;
+use crate::error::Place;
+use crate::frame::file::read_image;
+use crate::frame::raw_image::Size;
 
 /// A field of a folder, not read yet.
 pub(super) struct ListedField {

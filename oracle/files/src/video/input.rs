@@ -3,8 +3,8 @@
 use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-use super::super::FileError;
-use super::super::error::open_regular;
+use crate::FileError;
+use crate::error::open_regular;
 
 /// A source of bytes that is read once, from front to back.
 pub(super) struct Input {

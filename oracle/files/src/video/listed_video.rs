@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use contract::Frame;
 use contract::docking::{DockingSetup, Field, FieldTelemetry, Lines};
 
-use super::super::FileError;
-use super::super::error::Place;
-use super::super::field_telemetry::FieldRow;
 use super::folder::camera_of;
 use super::whole_frame::{WholeFrame, take_rows};
+use crate::FileError;
+use crate::docking::telemetry::FieldRow;
+use crate::error::Place;
 
 /// What a video with telemetry may be called, in the order in which they are looked for.
 const NAMES: [&str; 2] = ["fields.avi", "fields.y4m"];

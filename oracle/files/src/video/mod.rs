@@ -33,7 +33,8 @@ use std::path::Path;
 
 use contract::docking::Field;
 
-use super::{FileError, image16};
+use crate::FileError;
+use crate::frame::image16;
 
 /// Writes the image of a field as grey PNG: of 8 bits where its digitiser has no more, otherwise of 16; values in DN
 /// and not stretched.

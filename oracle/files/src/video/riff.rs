@@ -3,8 +3,8 @@
 //! A size is believed only as far as the list around it goes, so no chunk reaches out of its list, and nothing is
 //! allocated here: who wants a chunk's bytes knows how many they may be.
 
-use super::super::FileError;
 use super::input::Input;
+use crate::FileError;
 
 /// Four letters that name a chunk or a kind of list.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -6,15 +6,15 @@ use std::str::FromStr;
 
 use contract::docking::{Digitiser, DockingSetup, Field, FieldTelemetry};
 
-use super::super::FileError;
-use super::super::error::Place;
-use super::super::field_telemetry::{FieldRow, read_with_lines};
 use super::avi::AviReader;
 use super::folder;
 use super::input::Input;
 use super::listed_video::{ListedVideo, video_of};
 use super::stream::StreamReader;
 use super::whole_frame::{FieldOrder, Format, Scan, WholeFrame};
+use crate::FileError;
+use crate::docking::telemetry::{FieldRow, read_with_lines};
+use crate::error::Place;
 
 /// Frames a second of a sequence that does not say: 625-line television.
 const DEFAULT_RATE_HZ: f64 = 25.0;
@@ -76,7 +76,7 @@ pub struct FieldSource(Box<dyn Iterator<Item = Result<(Field, FieldTelemetry), F
 impl FieldSource {
     /// Opens a sequence:
     ///
-    /// - a folder with a `telemetry.csv` ([`super::super::FieldRow`]): the fields that it lists, their images or, where it names
+    /// - a folder with a `telemetry.csv` ([`crate::FieldRow`]): the fields that it lists, their images or, where it names
     ///   none, those of `fields.avi` or `fields.y4m`; `options` do not apply to it;
     /// - another folder: its images `*.png`, whole frames, in the order of their names;
     /// - `-`: standard input, Y4M or, with `options.raw`, raw frames; live: a field is given as soon as the last byte

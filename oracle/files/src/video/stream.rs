@@ -1,9 +1,9 @@
 //! Frames without a container: YUV4MPEG2 (Y4M) and raw bytes. Both can be live: a frame is given as soon as its last
 //! byte has arrived, and nothing beyond it is waited for.
 
-use super::super::FileError;
 use super::input::Input;
 use super::whole_frame::WholeFrame;
+use crate::FileError;
 
 /// The frames of a Y4M stream (8 bits, mono, 4:2:0, 4:2:2 or 4:4:4) or of raw grey bytes. Of Y4M the plane Y is
 /// taken as it is.

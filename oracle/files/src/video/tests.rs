@@ -13,9 +13,9 @@ use contract::{Camera, Frame};
 use proptest::prelude::*;
 use tempfile::tempdir;
 
-use super::super::{FieldRow, FieldTelemetryWriter, FileError};
 use super::input::Input;
 use super::*;
+use crate::{FieldRow, FieldTelemetryWriter, FileError};
 
 type Item = Result<(Field, FieldTelemetry), FileError>;
 

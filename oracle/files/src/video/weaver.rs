@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use contract::docking::{Field, Lines};
 
-use super::super::FileError;
-use super::super::error::Place;
 use super::whole_frame::weave;
+use crate::FileError;
+use crate::error::Place;
 
 /// Weaves fields, which come in pairs of an even and an odd one in either order, into frames of 8 bits.
 pub(super) struct Weaver {

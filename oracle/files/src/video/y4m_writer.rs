@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use contract::docking::{Field, Lines};
 
-use super::super::error::create_new;
-use super::super::{FileError, PartialFiles};
 use super::avi_writer::check_frames;
 use super::weaver::Weaver;
+use crate::error::create_new;
+use crate::{FileError, PartialFiles};
 
 /// Writes fields as Y4M, two of a frame woven into one image.
 pub struct Y4mWriter {

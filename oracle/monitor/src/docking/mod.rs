@@ -20,12 +20,12 @@ use serde_json::{Value, json};
 use sim::docking::FieldTruth;
 
 use self::report::DockingReporter;
-use super::feed::{Measurements, Monitored, Serve, Surroundings, frames, optional};
-use super::ground::GroundTrack;
-use super::overview::camera;
-use super::picture::Stretch;
-use super::plan::Plan;
-use super::session::Session;
+use crate::feed::{Measurements, Monitored, Serve, Surroundings, frames, optional};
+use crate::ground::GroundTrack;
+use crate::plan::Plan;
+use crate::server::overview::camera;
+use crate::session::Session;
+use crate::session::picture::Stretch;
 
 /// Least half width of the corridor, m/s.
 const MARGIN_M_S: f64 = 0.05;

@@ -12,12 +12,12 @@ use serde_json::{Value, json};
 use sim::truth::{FrameTruth, ObjectTruth, Trajectory};
 
 use self::report::{FarRangeReporter, range_and_rate};
-use super::feed::{Measurements, Monitored, Serve, Surroundings, frames, optional};
-use super::ground::GroundTrack;
-use super::overview::camera;
-use super::picture::Stretch;
-use super::plan::Plan;
-use super::session::Session;
+use crate::feed::{Measurements, Monitored, Serve, Surroundings, frames, optional};
+use crate::ground::GroundTrack;
+use crate::plan::Plan;
+use crate::server::overview::camera;
+use crate::session::Session;
+use crate::session::picture::Stretch;
 
 /// Frames a second at which a sequence is played: its own cadence is many seconds a frame.
 const RATE_HZ: f64 = 25.0;

@@ -4,11 +4,11 @@ use contract::docking::DockingOutcome;
 
 use super::limits::{limits, outside, told_outside};
 use super::run::DockingRun;
-use crate::chart::{Chart, MEASURED, Panel, WRONG, cloud, crosses, points, rounded, stacked};
-use crate::data_table::DataTable;
+use crate::charts::chart::{Chart, MEASURED, Panel, WRONG, cloud, crosses, points, rounded, stacked};
+use crate::charts::plotly::Axis;
+use crate::charts::thin::{bins, drawn, sampled, summary};
 use crate::page::Section;
-use crate::plotly::Axis;
-use crate::thin::{bins, drawn, sampled, summary};
+use crate::page::data_table::DataTable;
 
 /// Rows of the table behind the chart.
 const TABLE_BINS: usize = 60;

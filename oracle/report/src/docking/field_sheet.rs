@@ -12,9 +12,9 @@ use run::docking::simulator;
 use sim::docking::{DockingSimulator, FieldTruth};
 
 use super::DockingRun;
-use crate::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
+use crate::figures::words::{capital, spoken};
+use crate::page::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch};
 use crate::read::rows_of_each;
-use crate::words::{capital, spoken};
 
 /// Smallest side of a picture across columns, px.
 const LEAST_COLUMNS: f64 = 160.0;

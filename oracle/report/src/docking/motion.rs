@@ -6,13 +6,13 @@ use score::docking::Shown;
 
 use super::limits::{limits, outside, told_outside};
 use super::run::{DockingRun, PortionReport};
-use crate::chart::{
+use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, band, cloud, line, points, rounded, stacked,
 };
-use crate::data_table::DataTable;
+use crate::charts::plotly::{Axis, Trace};
+use crate::charts::thin::{bins, drawn, summary, thinned};
 use crate::page::Section;
-use crate::plotly::{Axis, Trace};
-use crate::thin::{bins, drawn, summary, thinned};
+use crate::page::data_table::DataTable;
 
 /// Rows of the tables behind the charts.
 const TABLE_BINS: usize = 60;

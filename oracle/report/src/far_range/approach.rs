@@ -4,11 +4,11 @@ use files::Failure;
 use sim::truth::Trajectory;
 
 use super::run::{FarRangeRun, shown_time};
-use crate::chart::{Chart, MEASURED, Panel, line, rounded, stacked};
-use crate::data_table::DataTable;
+use crate::charts::chart::{Chart, MEASURED, Panel, line, rounded, stacked};
+use crate::charts::plotly::Axis;
+use crate::charts::thin::{bins, evenly};
 use crate::page::Section;
-use crate::plotly::Axis;
-use crate::thin::{bins, evenly};
+use crate::page::data_table::DataTable;
 
 /// Rows of the table behind the chart.
 const TABLE_BINS: usize = 60;

@@ -5,10 +5,12 @@ use files::Failure;
 use sim::truth::Observer;
 
 use super::run::{FarRangeRun, broken, by_bins, shown_time_ms, time_axis};
-use crate::chart::{BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, cloud, line, points, rounded, stacked};
-use crate::data_table::DataTable;
+use crate::charts::chart::{
+    BESIDE, Chart, MEASURED, Panel, REFERENCE, TRUTH, cloud, line, points, rounded, stacked,
+};
+use crate::charts::thin::{bins, drawn, thinned};
 use crate::page::Section;
-use crate::thin::{bins, drawn, thinned};
+use crate::page::data_table::DataTable;
 
 /// Rows of the table behind the correction of aberration.
 const TABLE_BINS: usize = 60;

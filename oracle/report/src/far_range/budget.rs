@@ -4,11 +4,11 @@ use run::figure_called;
 use score::{Score, names};
 
 use super::FarRangeRun;
-use crate::chart::{BESIDE, Chart, MEASURED, axes, intervals, rounded};
-use crate::data_table::DataTable;
+use crate::charts::chart::{BESIDE, Chart, MEASURED, axes, intervals, rounded};
+use crate::charts::plotly::Trace;
 use crate::figures::{cell, percent_cell};
 use crate::page::Section;
-use crate::plotly::Trace;
+use crate::page::data_table::DataTable;
 
 /// What each stage costs.
 pub(super) fn budget(run: &FarRangeRun) -> Section {

@@ -4,10 +4,10 @@ use indexmap::IndexMap;
 use run::figure_called;
 use score::{Figure, Score, names};
 
-use super::super::data_table::DataTable;
 use super::super::figures::{cell, percent_cell};
 use super::super::page::Section;
-use super::super::words::spoken;
+use crate::figures::words::spoken;
+use crate::page::data_table::DataTable;
 
 /// The figures of consistency, in the order of the columns.
 const FIGURES: [&str; 6] = [

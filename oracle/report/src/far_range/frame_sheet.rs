@@ -12,9 +12,9 @@ use sim::{Exposure, Simulator};
 
 use super::run::{FarRangeRun, shown_time};
 use crate::figures::least_to_most;
-use crate::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch, window_around};
+use crate::figures::words::spoken;
+use crate::page::picture::{Mark, Picture, Pixels, RowPlace, Shape, Stretch, window_around};
 use crate::read::rows_of_each;
-use crate::words::spoken;
 
 /// The simulator of a run, and what the pipeline told of its clusters.
 pub struct FrameSheet {

@@ -10,10 +10,10 @@ use sim::truth::{Elements, State};
 
 use super::FrameSheet;
 use super::run::{FarRangeRun, by_bins};
-use crate::chart::{Chart, MEASURED, TRUTH, WRONG, cloud, crosses, line, points, rounded};
+use crate::charts::chart::{Chart, MEASURED, TRUTH, WRONG, cloud, crosses, line, points, rounded};
+use crate::charts::plotly::{Axis, Layout, Trace};
+use crate::charts::thin::{bins, drawn, evenly, sampled};
 use crate::page::Section;
-use crate::plotly::{Axis, Layout, Trace};
-use crate::thin::{bins, drawn, evenly, sampled};
 
 /// Room about the detector, so that a mark at its edge is whole, px.
 const ROOM_PX: f64 = 8.0;

@@ -23,10 +23,10 @@ use score::{FrameVerdict, Score};
 use sim::truth::{FrameTruth, clock};
 
 use super::injected::InjectedRun;
-use crate::data_table::DataTable;
-use crate::plotly::Axis;
+use crate::charts::plotly::Axis;
+use crate::charts::thin::{bins, summary};
+use crate::page::data_table::DataTable;
 use crate::read::{missing, read_json};
-use crate::thin::{bins, summary};
 
 /// Rows of the table behind a long series.
 const TABLE_BINS: usize = 60;

@@ -4,11 +4,11 @@ use run::far_range::limits;
 use score::{Verdict, angle};
 
 use super::run::{FarRangeRun, axis_time, broken, by_bins, time_axis};
-use crate::chart::{
+use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, cloud, crosses, dashed, line, points, rounded, stacked,
 };
+use crate::charts::thin::{drawn, sampled, thinned};
 use crate::page::Section;
-use crate::thin::{drawn, sampled, thinned};
 
 /// Images that the mean of Fig. 7 is taken over.
 const MEAN_OF: usize = 100;

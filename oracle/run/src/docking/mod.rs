@@ -35,7 +35,7 @@ use self::dataset::{FieldDataset, FieldImages};
 use self::renderer::DockingRenderer;
 use crate::any_world::{Options, ScenarioSource};
 use crate::by_number::ByNumber;
-use crate::derived::{View, size};
+use crate::check::derived::{View, size};
 use crate::flight::{Expectation, Flight, in_order};
 use crate::world::{self, OpenDataset, World, refuse_attitude, unscorable};
 

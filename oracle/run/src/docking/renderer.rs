@@ -6,7 +6,7 @@ use mitsuba::{MitsubaOptions, MitsubaRenderer, VARIANT, VERSION};
 use scenario::run_file::MitsubaRecord;
 use sim::docking::{DockingSimulator, DockingWorkspace, FieldExposure};
 
-use crate::renderer_choice::RendererChoice;
+use crate::choice::renderer_choice::RendererChoice;
 
 /// What draws the light that falls on the detector. The television chain after it is the same, draw by draw.
 #[derive(Debug, Default)]

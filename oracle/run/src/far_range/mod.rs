@@ -39,7 +39,7 @@ use self::inject::InjectedPipeline;
 use self::star_list::star_list;
 use crate::any_world::{Options, ScenarioSource};
 use crate::by_number::ByNumber;
-use crate::derived::{View, size};
+use crate::check::derived::{View, size};
 use crate::flight::{Expectation, Flight};
 use crate::world::{self, InformedPipeline, OpenDataset, World, unscorable};
 

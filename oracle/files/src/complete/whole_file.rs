@@ -1,0 +1,256 @@
+//! Files that appear whole or not at all: written under a name of their own, synced, and then given theirs.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+use tempfile::NamedTempFile;
+
+use crate::FileError;
+
+/// How the names of files begin that are being written, or were left by a process that was killed.
+pub(crate) const PARTIAL: &str = ".partial-";
+
+/// A file that is being written grows. One that has not for so long was left by a process that was killed.
+const ABANDONED: Duration = Duration::from_secs(3600);
+
+/// Bytes in which a file says of what kind it is.
+const BEGINNING_BYTES: u64 = 1 << 16;
+
+/// A kind of files, of which a later one may take the place of an earlier one.
+#[derive(Clone, Copy)]
+pub struct Earlier<'a> {
+    /// What it is: `an earlier report`.
+    pub what: &'a str,
+    /// Whether a file that begins so is one.
+    pub is: &'a dyn Fn(&[u8]) -> bool,
+}
+
+impl Earlier<'_> {
+    /// Refuses a path where something else is: a folder, a link, a device, a file of another kind, or one that may not be written.
+    ///
+    /// # Errors
+    /// [`FileError::NotReplaced`]; [`FileError::Io`] when it cannot be read.
+    pub fn check(&self, path: &Path) -> Result<(), FileError> {
+        let refused = |reason: &str| {
+            let (path, expected) = (path.to_owned(), format!("a free name, or that of {}", self.what));
+            Err(FileError::NotReplaced { path, reason: reason.to_owned(), expected })
+        };
+        let error = |source| FileError::io(path, "open", source);
+        let metadata = match path.symlink_metadata() {
+            Ok(metadata) => metadata,
+            // Of a folder that is missing or no folder, the writer tells.
+            Err(source) if matches!(source.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                return Ok(());
+            }
+            Err(source) => return Err(error(source)),
+        };
+        if !metadata.is_file() {
+            return refused("exists and is not a regular file");
+        }
+        let mut beginning = Vec::new();
+        let file = sim::regular_file::open(path).map_err(error)?;
+        file.take(BEGINNING_BYTES).read_to_end(&mut beginning).map_err(error)?;
+        if !(self.is)(&beginning) {
+            return refused("exists and is another file");
+        }
+        if metadata.permissions().readonly() { refused("exists and may not be written") } else { Ok(()) }
+    }
+}
+
+/// A file that is being written; gone unless it is given its name.
+#[derive(Debug)]
+pub struct WholeFile {
+    file: NamedTempFile,
+    path: PathBuf,
+}
+
+impl WholeFile {
+    /// A file that will be `path`, empty so far, which all may read.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when it cannot be made in the folder of `path`.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut builder = tempfile::Builder::new();
+        // As any other file of a folder, and not for its owner alone.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        // Its name says whose part it is, and does not end as that of a whole file does: nobody who looks for tables takes it for one.
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let file = builder.prefix(&format!("{PARTIAL}{name}-")).tempfile_in(folder);
+        let file = file.map_err(|source| FileError::io(path, "create", source))?;
+        Ok(Self { file, path: path.to_owned() })
+    }
+
+    /// [`WholeFile::create`], of a path that is not there yet.
+    ///
+    /// # Errors
+    /// [`FileError::OutputTaken`] when it is; [`FileError::Io`] when the file cannot be made.
+    pub fn create_new(path: &Path) -> Result<Self, FileError> {
+        if path.symlink_metadata().is_ok() {
+            return Err(taken(path));
+        }
+        Self::create(path)
+    }
+
+    /// A file that will be `path`, with this in it.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when it cannot be written.
+    pub fn with_text(path: &Path, text: &str) -> Result<Self, FileError> {
+        let mut file = Self::create(path)?;
+        file.file.write_all(text.as_bytes()).map_err(|source| FileError::io(path, "write", source))?;
+        Ok(file)
+    }
+
+    /// The same file, which will be another path of the same folder.
+    pub fn named(self, path: &Path) -> Self {
+        Self { path: path.to_owned(), ..self }
+    }
+
+    /// What is to be written to.
+    pub fn file(&self) -> &File {
+        self.file.as_file()
+    }
+
+    /// Where it is meanwhile.
+    pub fn place(&self) -> &Path {
+        self.file.path()
+    }
+
+    /// Whether a file of this name is one that has none yet.
+    pub fn is_partial(path: &Path) -> bool {
+        path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(PARTIAL))
+    }
+
+    /// Gives the file its name, unless there is a file of that name: then this one is given back.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when it cannot be synced or named.
+    pub fn commit(self) -> Result<Option<Self>, FileError> {
+        self.sync()?;
+        let Self { file, path } = self;
+        match file.persist_noclobber(&path) {
+            Ok(_) => Ok(None),
+            Err(error) if error.error.kind() == ErrorKind::AlreadyExists => {
+                Ok(Some(Self { file: error.file, path }))
+            }
+            Err(error) => Err(FileError::io(&path, "create", error.error)),
+        }
+    }
+
+    /// Gives the file its name, which no other may have.
+    ///
+    /// # Errors
+    /// [`FileError::OutputTaken`] when one has, [`FileError::Io`] when it cannot be synced or named.
+    pub fn commit_new(self) -> Result<(), FileError> {
+        match self.commit()? {
+            None => Ok(()),
+            Some(Self { path, .. }) => Err(taken(&path)),
+        }
+    }
+
+    /// Gives the file its name, in the place of an earlier one of its kind.
+    ///
+    /// # Errors
+    /// Those of [`Earlier::check`]; [`FileError::Io`] when it cannot be synced or named.
+    pub fn replace(self, earlier: Earlier<'_>) -> Result<(), FileError> {
+        earlier.check(&self.path)?;
+        self.sync()?;
+        let Self { file, path } = self;
+        file.persist(&path).map(drop).map_err(|error| FileError::io(&path, "create", error.error))
+    }
+
+    /// Removes what processes that were killed left in a folder, an hour after they last wrote to it. That it cannot be done is no
+    /// matter: nobody reads it.
+    pub fn remove_abandoned(folder: &Path) {
+        Self::remove_abandoned_of(folder, Self::is_partial);
+    }
+
+    /// [`WholeFile::remove_abandoned`], of files with other names.
+    pub fn remove_abandoned_of(folder: &Path, is: impl Fn(&Path) -> bool) {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        for path in entries.map(|entry| entry.path()).filter(|path| is(path)) {
+            let modified = path.symlink_metadata().and_then(|metadata| metadata.modified());
+            let age = modified.ok().and_then(|modified| SystemTime::now().duration_since(modified).ok());
+            if age.is_some_and(|age| age > ABANDONED) {
+                let _ = std::fs::remove_file(path);
+            }
+        }
+    }
+
+    fn sync(&self) -> Result<(), FileError> {
+        self.file.as_file().sync_all().map_err(|source| FileError::io(&self.path, "write", source))
+    }
+}
+
+/// That a file stands where another one should be.
+pub(crate) fn taken(path: &Path) -> FileError {
+    FileError::OutputTaken { path: path.to_owned(), reason: "exists; nothing is overwritten" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_there_when_it_is_committed_and_replaces_none_unasked() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        drop(WholeFile::with_text(&path, "lost").unwrap());
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+        assert!(WholeFile::with_text(&path, "first").unwrap().commit().unwrap().is_none());
+        let second = WholeFile::with_text(&path, "second").unwrap().commit().unwrap().unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "first");
+        let earlier = |beginning: &'static [u8]| move |bytes: &[u8]| bytes == beginning;
+        let foreign = Earlier { what: "an earlier one", is: &earlier(b"zeroth") };
+        let refused = foreign.check(&path).unwrap_err().to_string();
+        assert!(
+            refused.contains("another file, expected a free name, or that of an earlier one"),
+            "{refused}"
+        );
+        assert!(foreign.check(folder.path()).unwrap_err().to_string().contains("not a regular file"));
+        let first = Earlier { what: "an earlier one", is: &earlier(b"first") };
+        let set_readonly = |readonly| {
+            let mut permissions = std::fs::metadata(&path).unwrap().permissions();
+            permissions.set_readonly(readonly);
+            std::fs::set_permissions(&path, permissions).unwrap();
+        };
+        set_readonly(true);
+        assert!(first.check(&path).unwrap_err().to_string().contains("may not be written"));
+        #[allow(clippy::permissions_set_readonly_false, reason = "in a folder of this test")]
+        set_readonly(false);
+        second.replace(first).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "second");
+        let taken = WholeFile::with_text(&path, "third").unwrap().commit_new().unwrap_err();
+        assert!(taken.to_string().contains("nothing is overwritten"), "{taken}");
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_was_left_an_hour_ago_is_removed_and_what_is_being_written_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        std::fs::write(&path, "whole").unwrap();
+        let [old, new] = [(); 2].map(|()| WholeFile::with_text(&path, "part").unwrap());
+        for file in [old.file(), &File::options().append(true).open(&path).unwrap()] {
+            file.set_modified(SystemTime::now() - ABANDONED - Duration::from_secs(1)).unwrap();
+        }
+        WholeFile::remove_abandoned(folder.path());
+        assert_eq!([old.place().exists(), new.place().exists(), path.exists()], [false, true, true]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn others_may_read_it_as_any_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let [whole, plain] = ["whole", "plain"].map(|name| folder.path().join(name));
+        WholeFile::with_text(&whole, "").unwrap().commit_new().unwrap();
+        std::fs::write(&plain, "").unwrap();
+        let mode = |path: &Path| std::fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(&whole), mode(&plain));
+    }
+}

@@ -1,0 +1,10 @@
+//! Tables as text (CSV), of our writing or anybody's.
+
+pub(crate) mod column;
+pub(crate) mod lines;
+pub(crate) mod origin;
+pub(crate) mod table;
+
+pub use column::read_column;
+pub use lines::Lines;
+pub use origin::{AnswerOrigin, line_of, read_origins};

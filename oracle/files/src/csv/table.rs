@@ -1,0 +1,262 @@
+//! A CSV table whose columns are known by name, and whose errors name line and column.
+
+use std::fs::File;
+use std::io::Write;
+use std::marker::PhantomData;
+use std::path::{Path, PathBuf};
+
+use super::lines::Lines;
+use crate::error::{Place, open_regular};
+use crate::table::declared::Table;
+use crate::table::field::Atom;
+use crate::{FileError, WholeFile};
+
+/// A row of a CSV, as [`crate::table::declaration::table`] declares it.
+pub trait CsvLine: Table {
+    /// Its cells, in the order of the columns.
+    fn cells(&self) -> Vec<String>;
+
+    /// Reads it.
+    fn read(row: &CsvRow<'_>) -> Result<Self, FileError>;
+}
+
+/// A column that a kind of table has.
+struct CsvColumn {
+    name: &'static str,
+    is_optional: bool,
+    /// Where the file has it.
+    position: Option<usize>,
+}
+
+/// A table being read, row by row.
+pub(crate) struct CsvReader {
+    path: PathBuf,
+    columns: Vec<CsvColumn>,
+    reader: csv::Reader<Lines<File>>,
+    record: csv::StringRecord,
+}
+
+impl CsvReader {
+    /// Opens a table and checks its header: every required column, no unknown one, none twice.
+    pub(crate) fn open<T: Table>(path: &Path) -> Result<Self, FileError> {
+        Self::open_with::<T>(path, &[])
+    }
+
+    /// [`CsvReader::open`] of a table that may have the columns `others` as well.
+    pub(crate) fn open_with<T: Table>(path: &Path, others: &[&'static str]) -> Result<Self, FileError> {
+        let file = Lines::new(open_regular(path)?);
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(file);
+        let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
+        let column = |(name, is_optional)| CsvColumn { name, is_optional, position: None };
+        let mut columns: Vec<CsvColumn> =
+            layout::<T>().chain(others.iter().map(|name| (*name, true))).map(column).collect();
+        for (position, name) in header.iter().enumerate() {
+            let Some(column) = columns.iter_mut().find(|column| column.name == name) else {
+                return Err(unknown_column(path, name, &columns));
+            };
+            if column.position.replace(position).is_some() {
+                return Err(FileError::value(path, Place::Line(1), "header", name, "each column once"));
+            }
+        }
+        if let Some(missing) = columns.iter().find(|column| !column.is_optional && column.position.is_none())
+        {
+            return Err(FileError::MissingColumn {
+                path: path.to_owned(),
+                column: missing.name.to_owned(),
+                found: header.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
+            });
+        }
+        Ok(Self { path: path.to_owned(), columns, reader, record: csv::StringRecord::new() })
+    }
+
+    /// All rows; `parse` is given the row before too.
+    pub(crate) fn read_rows<T>(
+        mut self,
+        parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
+    ) -> Result<Vec<T>, FileError> {
+        let mut rows = Vec::new();
+        while let Some(row) = self.next_row()? {
+            rows.push(parse(&row, rows.last())?);
+        }
+        Ok(rows)
+    }
+
+    /// All rows, each with its line in the file; `parse` is given the row before too. A table without rows is an error.
+    pub(crate) fn read_all<T>(
+        self,
+        parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
+    ) -> Result<Vec<(u64, T)>, FileError> {
+        let path = self.path.clone();
+        let with_line = |row: &CsvRow<'_>, previous: Option<&(u64, T)>| {
+            parse(row, previous.map(|(_, previous)| previous)).map(|parsed| (row.line, parsed))
+        };
+        let rows = self.read_rows(with_line)?;
+        if rows.is_empty() {
+            return Err(FileError::value(&path, Place::Header, "number of rows", 0, "at least 1"));
+        }
+        Ok(rows)
+    }
+
+    /// The next row; `None` at the end.
+    pub(crate) fn next_row(&mut self) -> Result<Option<CsvRow<'_>>, FileError> {
+        let more =
+            self.reader.read_record(&mut self.record).map_err(|error| csv_error(&self.path, &error))?;
+        let line = self.record.position().map_or(0, csv::Position::line);
+        Ok(more.then_some(CsvRow { table: self, line }))
+    }
+}
+
+/// The columns of a kind of table, in the order in which they are written, and whether a file may lack them.
+fn layout<T: Table>() -> impl Iterator<Item = (&'static str, bool)> {
+    let fields = T::declared().into_iter();
+    fields.flat_map(|field| field.names.into_iter().map(move |name| (name, field.is_optional)))
+}
+
+/// One row of a table.
+pub struct CsvRow<'a> {
+    table: &'a CsvReader,
+    pub(crate) line: u64,
+}
+
+impl CsvRow<'_> {
+    /// The cell of a column as it stands; empty when the file has no such column.
+    pub(crate) fn text(&self, column: &str) -> &str {
+        let declared = self.table.columns.iter().find(|declared| declared.name == column);
+        debug_assert!(declared.is_some(), "`{column}` is not declared");
+        let position = declared.and_then(|declared| declared.position);
+        position.and_then(|i| self.table.record.get(i)).unwrap_or("")
+    }
+
+    /// What the cell of a column holds.
+    pub(crate) fn cell<'r, T: Atom<'r>>(&'r self, column: &'static str) -> Result<T, FileError> {
+        T::parse(self.text(column)).ok_or_else(|| self.error(column, T::EXPECTED))
+    }
+
+    /// The error of a cell that is not what was `expected`.
+    pub(crate) fn error(&self, column: &'static str, expected: impl Into<String>) -> FileError {
+        FileError::value(&self.table.path, Place::Line(self.line), column, self.text(column), expected)
+    }
+
+    /// Refuses the number of the row's frame, field or star unless it is larger than that of the row before.
+    pub(crate) fn check_ascends(
+        &self,
+        column: &'static str,
+        number: u64,
+        previous: Option<u64>,
+    ) -> Result<(), FileError> {
+        match previous {
+            Some(previous) if number <= previous => Err(self.error(
+                column,
+                format!("more than {previous}, that of the row before (each {column} once, ascending)"),
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses a value where the row's status has none: counted as a miss, it would be lost in silence.
+    pub(crate) fn check_empty(
+        &self,
+        columns: impl IntoIterator<Item = &'static str>,
+    ) -> Result<(), FileError> {
+        let full = columns.into_iter().find(|column| !self.text(column).trim().is_empty());
+        let nothing = || format!("nothing, as the status is `{}`", self.text("status"));
+        full.map_or(Ok(()), |column| Err(self.error(column, nothing())))
+    }
+
+    /// Refuses standard deviations below 0.
+    pub(crate) fn check_sigmas<const N: usize>(
+        &self,
+        columns: [&'static str; N],
+        sigmas: Option<[f64; N]>,
+    ) -> Result<(), FileError> {
+        let negative = sigmas.iter().flatten().zip(columns).find(|(sigma, _)| **sigma < 0.0);
+        negative.map_or(Ok(()), |(_, column)| Err(self.error(column, "0 or greater")))
+    }
+}
+
+/// A table being written: a file that has its name when it is complete, or a stream.
+pub struct CsvWriter<T> {
+    path: PathBuf,
+    writer: csv::Writer<Box<dyn Write>>,
+    /// None of a stream.
+    file: Option<WholeFile>,
+    row: PhantomData<T>,
+}
+
+impl<T: CsvLine> CsvWriter<T> {
+    /// Creates the table and writes its header.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when the file exists or cannot be created.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        let file = WholeFile::create_new(path)?;
+        let out = file.file().try_clone().map_err(|source| FileError::io(path, "create", source))?;
+        Self::headed(path, Box::new(out), Some(file))
+    }
+
+    /// Writes the table to a stream that goes by `name` in messages, header first, each row as soon as it is there.
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn stream(name: &str, out: impl Write + 'static) -> Result<Self, FileError> {
+        Self::headed(Path::new(name), Box::new(out), None)
+    }
+
+    fn headed(path: &Path, out: Box<dyn Write>, file: Option<WholeFile>) -> Result<Self, FileError> {
+        let writer = csv::Writer::from_writer(out);
+        let mut writer = Self { path: path.to_owned(), writer, file, row: PhantomData };
+        writer.record(layout::<T>().map(|(name, _)| name))?;
+        Ok(writer)
+    }
+
+    /// Writes a row. Numbers are written so that they read back to the same bits.
+    pub(crate) fn line(&mut self, row: &T) -> Result<(), FileError> {
+        self.record(row.cells())
+    }
+
+    fn record(&mut self, cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Result<(), FileError> {
+        self.writer.write_record(cells).map_err(|error| csv_error(&self.path, &error))?;
+        // A row of a stream goes out at once.
+        if self.file.is_none() { self.flush() } else { Ok(()) }
+    }
+
+    fn flush(&mut self) -> Result<(), FileError> {
+        self.writer.flush().map_err(|source| FileError::io(&self.path, "write", source))
+    }
+
+    /// Writes what is buffered, and gives the file its name.
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn finish(mut self) -> Result<(), FileError> {
+        self.flush()?;
+        self.file.take().map_or(Ok(()), WholeFile::commit_new)
+    }
+}
+
+fn unknown_column(path: &Path, column: &str, known: &[CsvColumn]) -> FileError {
+    let distance = |known: &&CsvColumn| strsim::damerau_levenshtein(known.name, column);
+    let nearest = known.iter().min_by_key(distance).map_or("", |known| known.name);
+    FileError::UnknownColumn { path: path.to_owned(), column: column.to_owned(), nearest: nearest.to_owned() }
+}
+
+pub(crate) fn csv_error(path: &Path, error: &csv::Error) -> FileError {
+    let line =
+        |position: &Option<csv::Position>| Place::Line(position.as_ref().map_or(0, csv::Position::line));
+    match error.kind() {
+        csv::ErrorKind::Io(source) => {
+            FileError::io(path, "read or write", std::io::Error::new(source.kind(), source.to_string()))
+        }
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => FileError::value(
+            path,
+            line(pos),
+            "number of cells",
+            len,
+            format!("{expected_len}, as many as the header has"),
+        ),
+        csv::ErrorKind::Utf8 { pos, err } => {
+            FileError::value(path, line(pos), format!("cell {}", err.field() + 1), "bytes", "text in UTF-8")
+        }
+        _ => FileError::format(path, "CSV", error),
+    }
+}

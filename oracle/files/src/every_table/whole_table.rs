@@ -1,0 +1,110 @@
+//! Tables as columns in memory, whole, for whoever hands them on.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use super::list::csv_tables;
+use crate::FileError;
+use crate::csv::lines::Lines;
+use crate::csv::table::csv_error;
+use crate::error::{Place, open_regular};
+use crate::parquet::file::ParquetFile;
+use crate::table::column::{Column, ColumnType};
+use crate::table::declared::Declared;
+
+/// Rows of a part of a table that is handed on.
+const PART_ROWS: usize = 8192;
+
+/// A table in memory.
+#[derive(Debug, Clone)]
+pub struct WholeTable {
+    /// The columns without rows.
+    pub header: Vec<Column>,
+    /// The rows, in parts, each with the columns of the header.
+    pub parts: Vec<Vec<Column>>,
+}
+
+/// Reads a Parquet table with all its columns.
+///
+/// # Errors
+/// [`FileError`] for a file that cannot be read, is none or is damaged, or has a column of a type that no table of ours has.
+pub fn read_parquet_table(path: &Path) -> Result<WholeTable, FileError> {
+    let file = ParquetFile::open(path)?;
+    let names: Vec<String> = file.columns().iter().map(|column| column.name.clone()).collect();
+    let batches = file.batches(&names, PART_ROWS)?;
+    let header = batches.header();
+    Ok(WholeTable { header, parts: batches.collect::<Result<_, _>>()? })
+}
+
+/// Reads one of our CSV tables, each column of the type that its name has in them: 64-bit counts, texts, or floating-point numbers, as
+/// which others are read too. An empty cell is null.
+///
+/// # Errors
+/// [`FileError`] for a file that cannot be read, or a cell that is no number where its column holds numbers.
+pub fn read_csv_table(path: &Path) -> Result<Vec<Column>, FileError> {
+    let file = Lines::new(open_regular(path)?);
+    let mut reader = csv::Reader::from_reader(file);
+    let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
+    let rows: Result<Vec<csv::StringRecord>, _> = reader.records().collect();
+    let rows = rows.map_err(|error| csv_error(path, &error))?;
+    let fields: Vec<Declared> = csv_tables().into_iter().flat_map(|(_, fields)| fields).collect();
+    let column = |(index, name): (usize, &str)| {
+        let cells = rows.iter().map(|row| row.get(index).filter(|cell| !cell.is_empty()));
+        let is_of_name = |field: &&Declared| field.names.contains(&name);
+        Ok(match fields.iter().find(is_of_name).map(|field| field.column_type) {
+            Some(ColumnType::UInt32 | ColumnType::UInt64) => {
+                Column::nullable(name, numbers::<u64>(path, name, cells)?)
+            }
+            Some(ColumnType::Utf8) => Column::nullable_texts(name, cells),
+            _ => Column::nullable(name, numbers::<f64>(path, name, cells)?),
+        })
+    };
+    header.iter().enumerate().map(column).collect()
+}
+
+/// The cells of a column that holds numbers.
+fn numbers<'a, T: FromStr>(
+    path: &Path,
+    name: &str,
+    cells: impl Iterator<Item = Option<&'a str>>,
+) -> Result<Vec<Option<T>>, FileError> {
+    let number = |(row, cell): (usize, Option<&str>)| {
+        cell.map(|cell| {
+            let wrong = || FileError::value(path, Place::Row(row as u64), name, cell, "a number or nothing");
+            cell.trim().parse().map_err(|_| wrong())
+        })
+        .transpose()
+    };
+    cells.enumerate().map(number).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::column::ColumnValues;
+
+    #[test]
+    fn columns_have_the_types_of_their_names_and_every_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("measurements.csv");
+        std::fs::write(&path, "frame,status,x_px\n3,detected,0.1\n9,no_target,\n").unwrap();
+        let columns = read_csv_table(&path).unwrap();
+        let [ColumnValues::UInt64(frames), ColumnValues::Utf8(words), ColumnValues::Float64(x)] =
+            [0, 1, 2].map(|index| columns[index].values())
+        else {
+            panic!("{columns:?}")
+        };
+        assert_eq!((frames.get(1), words.get(0)), (Some(9), Some("detected")));
+        assert_eq!((x.get(0), x.get(1)), (Some(0.1), None));
+        assert!(columns.iter().all(Column::is_nullable), "{columns:?}");
+    }
+
+    #[test]
+    fn a_word_among_numbers_is_refused_by_row_and_column() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("measurements.csv");
+        std::fs::write(&path, "frame,x_px\n3,1\n4,here\n").unwrap();
+        let message = read_csv_table(&path).unwrap_err().to_string();
+        assert!(message.contains("row 1: `x_px` is `here`, expected a number"), "{message}");
+    }
+}

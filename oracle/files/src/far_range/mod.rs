@@ -1,0 +1,12 @@
+//! The tables of the far range: answers, evidence, truth, and what a pipeline knows of stars and frames.
+
+pub(crate) mod clusters;
+pub(crate) mod measurements;
+pub(crate) mod stars;
+pub(crate) mod telemetry;
+mod truth;
+
+pub use clusters::FrameCluster;
+pub use measurements::{MeasurementWriter, outcome_as_filed, read_measurements};
+pub use stars::{StarRow, read_stars, write_stars};
+pub use telemetry::{TelemetryRow, TelemetryWriter, read_telemetry};

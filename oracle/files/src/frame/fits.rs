@@ -1,0 +1,516 @@
+//! Frames as FITS images, on the card and sample layers of `fitsio-pure`.
+//!
+//! Its upper layers are not used: `compat` writes no comments and no COMMENT cards of a chosen place, and
+//! `parse_fits` wants the whole file in memory and adds offsets unchecked, which a lying header can overflow.
+
+use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::path::Path;
+
+use contract::{Frame, Window};
+use fitsio_pure::BLOCK_SIZE;
+use fitsio_pure::checksum::{checksum_blocks, stamp_checksum};
+use fitsio_pure::header::{Card, parse_header_blocks};
+use fitsio_pure::image_writer::ImageWriter;
+use fitsio_pure::primary::build_primary_header;
+use fitsio_pure::value::Value;
+
+use super::fits_cards;
+use super::raw_image::{RawImage, Size, Told, checked_size, dn_of_all};
+use crate::error::{Place, create_new, open_regular};
+use crate::table::time::parse_utc;
+use crate::table::windows;
+use crate::{FileError, FrameHeader};
+
+/// Longest header read, in blocks of 36 cards: no frame needs a hundredth of it.
+const MAX_HEADER_BLOCKS: usize = 1024;
+
+/// Writes a frame as unsigned 16-bit FITS. The first row of the frame is the first of the file, as in every
+/// array: viewers that put it at the bottom show the image upside down, and the world coordinates with it.
+pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<(), FileError> {
+    let cards = fits_cards::of_frame(path, frame, header)?;
+    let error = |error: fitsio_pure::Error| match error {
+        fitsio_pure::Error::Io(source) => FileError::io(path, "write", source),
+        other => FileError::format(path, "FITS", other),
+    };
+    // u16 minus 32768 as i16 is the flip of the highest bit.
+    let samples = || frame.dn().iter().map(|&dn| (dn ^ 0x8000) as i16);
+    let mut header = build_primary_header(16, &[frame.columns(), frame.rows()]).map_err(error)?;
+    header.extend(cards);
+    let header = stamp_checksum(&header, &samples().flat_map(i16::to_be_bytes).collect::<Vec<u8>>());
+    let file = BufWriter::new(create_new(path)?);
+    let mut writer = ImageWriter::new(file, &header).map_err(error)?;
+    writer.write_iter(samples()).map_err(error)?;
+    writer.finish().map_err(error)?;
+    Ok(())
+}
+
+/// Reads the first two-dimensional image of a FITS file: samples of 8, 16, 32 or 64 bits or floating point, BSCALE
+/// and BZERO honoured, converted by the rule of [`crate::frame::raw_image::dn`]; BLANK pixels and NaN are refused.
+/// Tile-compressed images are not read.
+pub(crate) fn read(path: &Path, size: Option<Size<'_>>) -> Result<RawImage, FileError> {
+    let io = |source| FileError::io(path, "read", source);
+    let file = open_regular(path)?;
+    let length = file.metadata().map_err(io)?.len();
+    let mut reader = BufReader::new(file);
+    let mut offset = 0_u64;
+    loop {
+        let start = offset;
+        let cards = read_header(path, &mut reader, offset == 0)?;
+        let header = Header { path, cards: &cards };
+        header.check_once()?;
+        offset = reader.stream_position().map_err(io)?;
+        let bytes = header.data_bytes()?;
+        let end = offset.checked_add(bytes).filter(|&end| end <= length).ok_or_else(|| {
+            let left = length.saturating_sub(offset);
+            header.error("bytes of data", bytes, format!("at most {left}, as the file ends there"))
+        })?;
+        if header.is_image()? {
+            let image = read_image(&header, &mut reader, bytes, size)?;
+            check_sums(&header, &mut reader, start..end, offset)?;
+            return Ok(image);
+        }
+        offset = end.next_multiple_of(BLOCK_SIZE as u64);
+        if offset >= length {
+            return Err(FileError::format(path, "FITS", "it holds no two-dimensional image"));
+        }
+        reader.seek(SeekFrom::Start(offset)).map_err(io)?;
+    }
+}
+
+fn read_header(path: &Path, reader: &mut impl Read, first: bool) -> Result<Vec<Card>, FileError> {
+    let mut header = Vec::new();
+    while header.len() < MAX_HEADER_BLOCKS * BLOCK_SIZE {
+        let mut block = [0; BLOCK_SIZE];
+        reader.read_exact(&mut block).map_err(|source| match source.kind() {
+            std::io::ErrorKind::UnexpectedEof => {
+                FileError::format(path, "FITS", "the file ends within a header")
+            }
+            _ => FileError::io(path, "read", source),
+        })?;
+        header.extend_from_slice(&block);
+        let mandatory: &[u8] = if first { b"SIMPLE  " } else { b"XTENSION" };
+        if !header.starts_with(mandatory) {
+            let keyword = String::from_utf8_lossy(mandatory);
+            let reason = format!("a header does not begin with {}", keyword.trim_end());
+            return Err(FileError::format(path, "FITS", reason));
+        }
+        if block.chunks_exact(80).any(|card| card.starts_with(b"END     ")) {
+            return parse_header_blocks(&header).map_err(|error| FileError::format(path, "FITS", error));
+        }
+    }
+    Err(FileError::format(path, "FITS", format!("a header without END in {MAX_HEADER_BLOCKS} blocks")))
+}
+
+/// The cards of one header, read by keyword.
+struct Header<'a> {
+    path: &'a Path,
+    cards: &'a [Card],
+}
+
+impl Header<'_> {
+    fn error(&self, keyword: &str, value: impl ToString, expected: impl Into<String>) -> FileError {
+        FileError::value(self.path, Place::Header, keyword, value, expected)
+    }
+
+    fn value(&self, keyword: &str) -> Option<&Value> {
+        self.cards.iter().find(|card| card.keyword_str() == keyword).and_then(|card| card.value.as_ref())
+    }
+
+    /// Refuses a keyword that says how the pixels are stored and stands there twice: which of the two other readers believe is their affair.
+    fn check_once(&self) -> Result<(), FileError> {
+        const STORED: [&str; 7] = ["BITPIX", "NAXIS", "NAXIS1", "NAXIS2", "BSCALE", "BZERO", "BLANK"];
+        let count = |keyword: &str| self.cards.iter().filter(|card| card.keyword_str() == keyword).count();
+        match STORED.into_iter().find(|keyword| count(keyword) > 1) {
+            Some(keyword) => Err(self.error(keyword, format!("there {} times", count(keyword)), "once")),
+            None => Ok(()),
+        }
+    }
+
+    /// A whole number; `None` when the keyword is not there.
+    fn whole(&self, keyword: &str) -> Result<Option<i64>, FileError> {
+        match self.value(keyword) {
+            None | Some(Value::Undefined) => Ok(None),
+            Some(Value::Integer(number)) => Ok(Some(*number)),
+            Some(other) => Err(self.error(keyword, format!("{other:?}"), "a whole number")),
+        }
+    }
+
+    /// A count: a whole number from 0.
+    fn count(&self, keyword: &str, default: Option<u64>) -> Result<u64, FileError> {
+        let number = self.whole(keyword)?;
+        match (number.map(u64::try_from), default) {
+            (Some(Ok(count)), _) => Ok(count),
+            (None, Some(default)) => Ok(default),
+            _ => {
+                let value = number.map_or_else(|| "missing".to_owned(), |n| n.to_string());
+                Err(self.error(keyword, value, "a whole number, 0 or greater"))
+            }
+        }
+    }
+
+    fn number(&self, keyword: &str, default: f64) -> Result<f64, FileError> {
+        match self.value(keyword) {
+            None | Some(Value::Undefined) => Ok(default),
+            Some(Value::Integer(number)) => Ok(*number as f64),
+            Some(Value::Float(number)) if number.is_finite() => Ok(*number),
+            Some(other) => Err(self.error(keyword, format!("{other:?}"), "a finite number")),
+        }
+    }
+
+    fn axes(&self) -> Result<Vec<u64>, FileError> {
+        let count = self.count("NAXIS", None)?;
+        if count > 999 {
+            return Err(self.error("NAXIS", count, "at most 999"));
+        }
+        (1..=count).map(|axis| self.count(&format!("NAXIS{axis}"), None)).collect()
+    }
+
+    fn bytes_per_sample(&self) -> Result<u64, FileError> {
+        match self.whole("BITPIX")? {
+            Some(bits @ (8 | 16 | 32 | 64 | -32 | -64)) => Ok(bits.unsigned_abs() / 8),
+            Some(other) => Err(self.error("BITPIX", other, "8, 16, 32, 64, -32 or -64")),
+            None => Err(self.error("BITPIX", "missing", "8, 16, 32, 64, -32 or -64")),
+        }
+    }
+
+    /// Bytes of data: |BITPIX|/8 · GCOUNT · (PCOUNT + Π NAXISn) (FITS standard 4.0, Eq. 2).
+    fn data_bytes(&self) -> Result<u64, FileError> {
+        let axes = self.axes()?;
+        let samples = match axes.as_slice() {
+            [] => Some(0),
+            axes => axes.iter().try_fold(1_u64, |product, &n| product.checked_mul(n)),
+        };
+        let (groups, parameters) = (self.count("GCOUNT", Some(1))?, self.count("PCOUNT", Some(0))?);
+        let bytes_per_sample = self.bytes_per_sample()?;
+        samples
+            .and_then(|n| n.checked_add(parameters))
+            .and_then(|n| n.checked_mul(groups))
+            .and_then(|n| n.checked_mul(bytes_per_sample))
+            .ok_or_else(|| self.error("NAXISn", format!("{axes:?}"), "axes whose product fits 64 bits"))
+    }
+
+    /// Whether this unit holds an image with at least two axes; axes of length 1 beyond them are ignored.
+    fn is_image(&self) -> Result<bool, FileError> {
+        if self.value("ZIMAGE") == Some(&Value::Logical(true)) {
+            return Err(FileError::format(
+                self.path,
+                "FITS",
+                "its image is tile-compressed, which is not supported; funpack it",
+            ));
+        }
+        let image = match self.value("XTENSION") {
+            None => self.value("GROUPS") != Some(&Value::Logical(true)),
+            Some(Value::String(name)) => name.trim() == "IMAGE",
+            Some(_) => false,
+        };
+        let axes = self.axes()?;
+        match axes.as_slice() {
+            [columns, rows, others @ ..] if image && *columns > 0 && *rows > 0 => {
+                if others.iter().all(|&n| n == 1) {
+                    Ok(true)
+                } else {
+                    Err(self.error("NAXISn", format!("{axes:?}"), "a two-dimensional image"))
+                }
+            }
+            _ => Ok(false),
+        }
+    }
+
+    fn bit_depth(&self) -> Result<Option<u8>, FileError> {
+        let depth = self.whole("BITDEPTH")?;
+        depth
+            .map(|bits| {
+                u8::try_from(bits)
+                    .ok()
+                    .filter(|bits| (1..=16).contains(bits))
+                    .ok_or_else(|| self.error("BITDEPTH", bits, "1 to 16"))
+            })
+            .transpose()
+    }
+
+    /// What it tells of its frame, if times are UTC.
+    fn told(&self) -> Result<Told, FileError> {
+        let frame = self.whole("FRAMENO")?.map(|_| self.count("FRAMENO", None)).transpose()?;
+        let is_utc = match self.value("TIMESYS") {
+            Some(Value::String(scale)) => scale.trim() == "UTC",
+            _ => true,
+        };
+        let time = match self.value("DATE-AVG").filter(|_| is_utc) {
+            Some(Value::String(text)) => {
+                let time = parse_utc(&format!("{}Z", text.trim().trim_end_matches('Z')));
+                Some(time.map_err(|expected| self.error("DATE-AVG", text, expected))?)
+            }
+            _ => None,
+        };
+        let exposure_s = self.value("EXPTIME").map(|_| self.number("EXPTIME", 0.0)).transpose()?;
+        Ok(Told {
+            frame: frame.map(|frame| ("FRAMENO", frame)),
+            time: time.map(|time| ("DATE-AVG", time)),
+            exposure_s: exposure_s.map(|exposure_s| ("EXPTIME", exposure_s)),
+        })
+    }
+
+    /// The transmitted regions, as [`write`] tells them.
+    fn windows(&self) -> Result<Option<Vec<Window>>, FileError> {
+        if self.whole("NROI")?.is_none() {
+            return Ok(None);
+        }
+        let count = self.count("NROI", None)?;
+        let region = |number: u64| {
+            let keyword = format!("ROI{number}");
+            match self.value(&keyword) {
+                Some(Value::String(text)) => windows::parse_one(text)
+                    .ok_or_else(|| self.error(&keyword, text, "`x y columns rows` within the detector")),
+                _ => Err(self.error(&keyword, "missing", format!("a region, as NROI is {count}"))),
+            }
+        };
+        // Ends at the first that is missing, so a lying NROI costs nothing.
+        (1..=count).map(region).collect::<Result<_, _>>().map(Some)
+    }
+}
+
+/// Holds header and data, `place` in the file, against the keyword CHECKSUM (FITS standard 4.0, 4.4.2.7 and appendix J: their sum in ones'
+/// complement is minus nought), and the data, from `data_at` on, against DATASUM, where there are such.
+fn check_sums(
+    header: &Header<'_>,
+    reader: &mut (impl Read + Seek),
+    place: Range<u64>,
+    data_at: u64,
+) -> Result<(), FileError> {
+    // Nothing is the standard's word for a sum that is not known.
+    let told = |keyword: &str| match header.value(keyword) {
+        Some(Value::String(text)) if !text.trim().is_empty() => Some(text),
+        _ => None,
+    };
+    let (sum, data_sum) = (told("CHECKSUM"), told("DATASUM"));
+    if (sum.is_none() && data_sum.is_none()) || place.is_empty() {
+        return Ok(());
+    }
+    let io = |source| FileError::io(header.path, "read", source);
+    reader.seek(SeekFrom::Start(place.start)).map_err(io)?;
+    let mut unit = Vec::new();
+    let length = (place.end - place.start).next_multiple_of(BLOCK_SIZE as u64);
+    reader.take(length).read_to_end(&mut unit).map_err(io)?;
+    // A last block that is cut short, be it by noughts alone, is not what was written.
+    let is_whole = unit.len() as u64 == length;
+    let refused = |keyword: &str, told: &str, of: &str| {
+        let expected = format!(
+            "the sum of {of}: the file was damaged, or changed by a program that left the keyword as it was"
+        );
+        Err(header.error(keyword, told, expected))
+    };
+    if let Some(told) = sum.filter(|_| !is_whole || !matches!(checksum_blocks(&unit), 0 | u32::MAX)) {
+        return refused("CHECKSUM", told, "header and data");
+    }
+    let data = unit.get((data_at - place.start) as usize..).unwrap_or_default();
+    // Nought and minus nought are the same.
+    let is_sum = |text: &str| {
+        text.trim().parse::<u32>().is_ok_and(|told| told % u32::MAX == checksum_blocks(data) % u32::MAX)
+    };
+    match data_sum.filter(|told| !is_whole || !is_sum(told)) {
+        Some(told) => refused("DATASUM", told, "the data"),
+        None => Ok(()),
+    }
+}
+
+fn read_image(
+    header: &Header<'_>,
+    reader: &mut impl Read,
+    bytes: u64,
+    size: Option<Size<'_>>,
+) -> Result<RawImage, FileError> {
+    let path = header.path;
+    let [columns, rows, ..] = *header.axes()? else {
+        return Err(FileError::format(path, "FITS", "it holds no two-dimensional image"));
+    };
+    let (columns, rows) = checked_size(path, columns, rows, size)?;
+    let (scale, zero) = (header.number("BSCALE", 1.0)?, header.number("BZERO", 0.0)?);
+    if scale == 0.0 {
+        return Err(header.error("BSCALE", scale, "another number: with it all pixels are the same"));
+    }
+    let width = header.bytes_per_sample()? as usize;
+    let pixel_bytes = columns * rows * width;
+    if bytes != pixel_bytes as u64 {
+        return Err(header.error(
+            "PCOUNT and GCOUNT",
+            bytes,
+            format!("{pixel_bytes} bytes of data, as of the image"),
+        ));
+    }
+    // The size is bounded twice: by the largest detector, and by the length of the file, checked by the caller.
+    let mut data = vec![0; pixel_bytes];
+    reader.read_exact(&mut data).map_err(|source| FileError::io(path, "read", source))?;
+
+    let blank = header.whole("BLANK")?;
+    let integer = |stored: i64| if blank == Some(stored) { f64::NAN } else { zero + scale * stored as f64 };
+    let float = |stored: f64| zero + scale * stored;
+    let samples = data.chunks_exact(width);
+    let dn = match header.whole("BITPIX")? {
+        Some(8) => dn_of_all(path, columns, samples.map(|b| integer(i64::from(u8::from_be_bytes(fixed(b)))))),
+        Some(16) => {
+            dn_of_all(path, columns, samples.map(|b| integer(i64::from(i16::from_be_bytes(fixed(b))))))
+        }
+        Some(32) => {
+            dn_of_all(path, columns, samples.map(|b| integer(i64::from(i32::from_be_bytes(fixed(b))))))
+        }
+        Some(64) => dn_of_all(path, columns, samples.map(|b| integer(i64::from_be_bytes(fixed(b))))),
+        Some(-32) => {
+            dn_of_all(path, columns, samples.map(|b| float(f64::from(f32::from_be_bytes(fixed(b))))))
+        }
+        _ => dn_of_all(path, columns, samples.map(|b| float(f64::from_be_bytes(fixed(b))))),
+    }?;
+    let (bit_depth, windows, told) = (header.bit_depth()?, header.windows()?, header.told()?);
+    Ok(RawImage { columns, rows, dn, bit_depth, windows, told })
+}
+
+/// The bytes of one sample; `chunks_exact` gives exactly as many.
+fn fixed<const N: usize>(bytes: &[u8]) -> [u8; N] {
+    std::array::from_fn(|i| bytes.get(i).copied().unwrap_or(0))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use proptest::prelude::*;
+    use tempfile::tempdir;
+
+    use super::*;
+    use crate::frame::file::tests::{header, ramp};
+
+    /// A FITS file of these cards and this data.
+    fn file(cards: &[&str], data: &[u8]) -> Vec<u8> {
+        let mut bytes: Vec<u8> =
+            cards.iter().chain(&["END"]).flat_map(|c| format!("{c:80}").into_bytes()).collect();
+        bytes.resize(bytes.len().next_multiple_of(BLOCK_SIZE), b' ');
+        bytes.extend(data);
+        bytes.resize(bytes.len().next_multiple_of(BLOCK_SIZE), 0);
+        bytes
+    }
+
+    fn read_bytes(bytes: &[u8]) -> Result<RawImage, FileError> {
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("a.fits");
+        fs::write(&path, bytes).unwrap();
+        read(&path, None)
+    }
+
+    fn image(bitpix: i64, more: &[&str], data: &[u8]) -> Result<RawImage, FileError> {
+        let bitpix = format!("BITPIX  = {bitpix:20}");
+        let cards = ["SIMPLE  =                    T", &bitpix, "NAXIS   = 2", "NAXIS1  = 2", "NAXIS2  = 1"];
+        read_bytes(&file(&[&cards, more].concat(), data))
+    }
+
+    fn check_refused(result: Result<RawImage, FileError>, parts: &[&str]) {
+        let message = result.unwrap_err().to_string();
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+
+    /// A file with holes claims 2 GiB of doubles and has them: it is the camera that says no, before memory is reserved.
+    #[test]
+    fn an_image_of_another_size_than_the_cameras_is_refused_before_it_is_read() {
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("a.fits");
+        let header: String =
+            ["SIMPLE  = T", "BITPIX  = -64", "NAXIS   = 2", "NAXIS1  = 16384", "NAXIS2  = 16384", "END"]
+                .map(|card| format!("{card:80}"))
+                .concat();
+        fs::write(&path, format!("{header:2880}")).unwrap();
+        let file = fs::File::options().write(true).open(&path).unwrap();
+        file.set_len(2880 + 8 * 16384 * 16384).unwrap();
+        let size = Size { columns: 752, rows: 580, whose: "that of the camera" };
+        let message = read(&path, Some(size)).unwrap_err().to_string();
+        assert!(
+            message.contains("16384 × 16384") && message.contains("752 × 580, that of the camera"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn every_kind_of_sample_is_read() {
+        let be = |a: &[u8], b: &[u8]| [a, b].concat();
+        let signed = ["BZERO   = 32768", "BSCALE  = 1.0"];
+        assert_eq!(image(8, &[], &[3, 255]).unwrap().dn, [3, 255]);
+        assert_eq!(image(16, &[], &be(&(-5_i16).to_be_bytes(), &7_i16.to_be_bytes())).unwrap().dn, [0, 7]);
+        let extremes = be(&i16::MIN.to_be_bytes(), &i16::MAX.to_be_bytes());
+        assert_eq!(image(16, &signed, &extremes).unwrap().dn, [0, 65535]);
+        assert_eq!(image(32, &[], &be(&9_i32.to_be_bytes(), &70_i32.to_be_bytes())).unwrap().dn, [9, 70]);
+        assert_eq!(image(64, &[], &be(&9_i64.to_be_bytes(), &70_i64.to_be_bytes())).unwrap().dn, [9, 70]);
+        assert_eq!(image(-32, &[], &be(&0.4_f32.to_be_bytes(), &2.6_f32.to_be_bytes())).unwrap().dn, [0, 3]);
+        let scaled = image(-64, &["BSCALE  = 2.0"], &be(&0.4_f64.to_be_bytes(), &2.6_f64.to_be_bytes()));
+        assert_eq!(scaled.unwrap().dn, [1, 5]);
+    }
+
+    #[test]
+    fn an_image_in_an_extension_is_found() {
+        let mut bytes = file(&["SIMPLE  =                    T", "BITPIX  = 8", "NAXIS   = 0"], &[]);
+        let cards = [
+            "XTENSION= 'IMAGE   '",
+            "BITPIX  = 8",
+            "NAXIS   = 3",
+            "NAXIS1  = 2",
+            "NAXIS2  = 1",
+            "NAXIS3  = 1",
+            "PCOUNT  = 0",
+            "GCOUNT  = 1",
+        ];
+        bytes.extend(file(&cards, &[1, 2]));
+        assert_eq!(read_bytes(&bytes).unwrap().dn, [1, 2]);
+    }
+
+    #[test]
+    fn pixels_without_a_value_are_refused_by_place() {
+        let nan = [1.0_f32.to_be_bytes(), f32::NAN.to_be_bytes()].concat();
+        check_refused(image(-32, &[], &nan), &["pixel (1, 0)", "NaN"]);
+        check_refused(image(8, &["BLANK   = 9"], &[9, 1]), &["pixel (0, 0)", "NaN"]);
+        check_refused(image(32, &[], &[0, 1, 0, 0, 0, 0, 0, 0]), &["pixel (0, 0)", "65536"]);
+    }
+
+    #[test]
+    fn a_lying_header_is_refused_before_anything_is_allocated() {
+        let image = |axes: [&str; 2]| {
+            read_bytes(&file(
+                &["SIMPLE  =                    T", "BITPIX  = -64", "NAXIS   = 2", axes[0], axes[1]],
+                &[],
+            ))
+        };
+        check_refused(image(["NAXIS1  = 16000", "NAXIS2  = 16000"]), &["bytes of data", "2048000000"]);
+        check_refused(image(["NAXIS1  = 9223372036854775807", "NAXIS2  = 9"]), &["NAXISn"]);
+        check_refused(image(["NAXIS1  = -4", "NAXIS2  = 9"]), &["NAXIS1", "-4"]);
+        check_refused(image(["NAXIS1  = 'many'", "NAXIS2  = 9"]), &["NAXIS1", "many"]);
+        check_refused(image(["NAXIS1  = 0", "NAXIS2  = 9"]), &["no two-dimensional image"]);
+        check_refused(image(["COMMENT", "NAXIS2  = 9"]), &["NAXIS1", "missing"]);
+    }
+
+    #[test]
+    fn what_is_not_supported_says_so() {
+        check_refused(read_bytes(b"P5 2 2 255 abcd"), &["not a readable FITS file"]);
+        check_refused(read_bytes(&[b'x'; 2880]), &["does not begin with SIMPLE"]);
+        check_refused(image(7, &[], &[0, 0]), &["BITPIX", "`7`"]);
+        check_refused(image(8, &["BITDEPTH= 17"], &[0, 0]), &["BITDEPTH", "1 to 16"]);
+        check_refused(image(8, &["BZERO   = 'x'"], &[0, 0]), &["BZERO"]);
+        check_refused(image(8, &["NROI    = 4000000000"], &[0, 0]), &["ROI1", "missing"]);
+        check_refused(image(8, &["ZIMAGE  =                    T"], &[0, 0]), &["funpack"]);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(256))]
+        #[test]
+        fn no_damage_makes_it_panic(
+            changes in prop::collection::vec((0_usize..9000, any::<u8>()), 1..20), cut in 0_usize..9000,
+        ) {
+            let directory = tempdir().unwrap();
+            let path = directory.path().join("a.fits");
+            write(&path, &ramp(16, 9, None), &header()).unwrap();
+            let mut bytes = fs::read(&path).unwrap();
+            for (place, value) in changes {
+                let place = place % bytes.len();
+                bytes[place] = value;
+            }
+            let _ = read_bytes(&bytes);
+            bytes.truncate(cut);
+            let _ = read_bytes(&bytes);
+        }
+    }
+}

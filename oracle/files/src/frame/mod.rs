@@ -1,0 +1,15 @@
+//! A frame in a file: FITS with its world coordinates, PNG, TIFF, OpenEXR.
+
+mod exr;
+pub(crate) mod file;
+mod fits;
+mod fits_cards;
+mod header;
+pub(crate) mod image16;
+pub(crate) mod raw_image;
+pub(crate) mod wcs;
+
+pub use self::exr::{Expected, read_expected, read_radiance, write_expected, write_radiance};
+pub use file::{ImageFormat, read_frame, write_frame};
+pub use header::FrameHeader;
+pub use wcs::{Sip, SipTerm, TanSip, WcsError};

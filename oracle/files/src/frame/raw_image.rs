@@ -1,0 +1,194 @@
+//! An image as a file gives it, on its way to a frame.
+
+use std::path::Path;
+
+use contract::{Camera, Frame, Window};
+use hifitime::Epoch;
+
+use crate::error::Place;
+use crate::table::time::format_utc;
+use crate::{FileError, TelemetryRow};
+
+/// Pixels and what the file itself says about them.
+#[derive(Debug)]
+pub(crate) struct RawImage {
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+    /// Digital numbers, row by row.
+    pub(crate) dn: Vec<u16>,
+    /// Bits of the converter, if the file tells.
+    pub(crate) bit_depth: Option<u8>,
+    /// Regions that were transmitted, if the file tells.
+    pub(crate) windows: Option<Vec<Window>>,
+    /// What else the file tells of its frame.
+    pub(crate) told: Told,
+}
+
+/// What an image tells of its frame, each with the keyword that tells it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Told {
+    pub(crate) frame: Option<(&'static str, u64)>,
+    /// Middle of the exposure.
+    pub(crate) time: Option<(&'static str, Epoch)>,
+    pub(crate) exposure_s: Option<(&'static str, f64)>,
+}
+
+impl Told {
+    /// Most by which the times may differ, s: other cameras write milliseconds.
+    const TIME_S: f64 = 1e-3;
+    /// Most by which the exposure times may differ, in parts of them: of a number with six digits.
+    const EXPOSURE: f64 = 1e-5;
+
+    /// Holds it against a row of the telemetry: names of files can be swapped, and images with them.
+    pub(crate) fn check(&self, path: &Path, row: &TelemetryRow) -> Result<(), FileError> {
+        let refused = |field: &str, found: String, expected: String| {
+            let expected = format!("{expected}, that of frame {} in the telemetry which names it", row.frame);
+            Err(FileError::value(path, Place::Header, field, found, expected))
+        };
+        let telemetry = &row.telemetry;
+        if let Some((field, frame)) = self.frame.filter(|(_, frame)| *frame != row.frame) {
+            return refused(field, frame.to_string(), row.frame.to_string());
+        }
+        if let Some((field, time)) = self.time
+            && (time - telemetry.time).to_seconds().abs() > Self::TIME_S
+        {
+            return refused(field, format_utc(time), format_utc(telemetry.time));
+        }
+        let is_other =
+            |told: f64| (told - telemetry.exposure_s).abs() > Self::EXPOSURE * telemetry.exposure_s;
+        match self.exposure_s.filter(|(_, told)| is_other(*told)) {
+            Some((field, told)) => refused(field, told.to_string(), telemetry.exposure_s.to_string()),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The size that an image must have.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Size<'a> {
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+    /// Whose it is: `that of camera.toml`.
+    pub(crate) whose: &'a str,
+}
+
+impl RawImage {
+    /// The frame. What the file says of bit depth comes before the camera's; what telemetry says of the regions
+    /// comes before the file. A value above the full scale is refused: the bit depth is wrong, and every
+    /// threshold that a pipeline takes from it would be too.
+    pub(crate) fn into_frame(
+        self,
+        path: &Path,
+        number: u64,
+        bit_depth: u8,
+        windows: Option<Vec<Window>>,
+    ) -> Result<Frame, FileError> {
+        if let Some(own) = self.bit_depth.filter(|own| *own != bit_depth) {
+            let expected = format!("{bit_depth}, that of the camera");
+            return Err(FileError::value(path, Place::Header, "bit depth", own, expected));
+        }
+        let columns = self.columns.max(1);
+        let frame = Frame::new(number, self.columns, self.rows, bit_depth, self.dn, windows.or(self.windows))
+            .map_err(|source| FileError::contract(path, source))?;
+        let full_scale = frame.full_scale_dn();
+        match frame.dn().iter().enumerate().find(|(_, dn)| **dn > full_scale) {
+            None => Ok(frame),
+            Some((i, dn)) => Err(FileError::value(
+                path,
+                Place::Pixel { x: i % columns, y: i / columns },
+                "DN",
+                dn,
+                format!("at most {full_scale}, the full scale of {} bits", frame.bit_depth()),
+            )),
+        }
+    }
+}
+
+/// The digital number of a value: rounded to the nearest, halves away from zero; below zero it is 0, as
+/// calibrated images have noise about zero. `None` for NaN, infinities and what does not fit 16 bits: no digital
+/// number stands for them.
+pub(crate) fn dn(value: f64) -> Option<u16> {
+    let rounded = value.round();
+    (rounded.is_finite() && rounded <= f64::from(u16::MAX)).then(|| rounded.max(0.0) as u16)
+}
+
+/// [`dn`] of every value, row by row.
+pub(crate) fn dn_of_all(
+    path: &Path,
+    columns: usize,
+    values: impl Iterator<Item = f64>,
+) -> Result<Vec<u16>, FileError> {
+    let columns = columns.max(1);
+    let convert = |(i, value)| {
+        dn(value).ok_or_else(|| {
+            let place = Place::Pixel { x: i % columns, y: i / columns };
+            FileError::value(path, place, "DN", value, "a finite number of at most 65535")
+        })
+    };
+    values.enumerate().map(convert).collect()
+}
+
+/// Columns and rows as a header claims them, if they are those of `size`, or without it 1 to [`Camera::MAX_SIDE_PX`]. It is asked before
+/// memory is reserved for the pixels.
+pub(crate) fn checked_size(
+    path: &Path,
+    columns: u64,
+    rows: u64,
+    size: Option<Size<'_>>,
+) -> Result<(usize, usize), FileError> {
+    let side = |n: u64| usize::try_from(n).ok().filter(|n| (1..=Camera::MAX_SIDE_PX).contains(n));
+    let found = side(columns).zip(side(rows));
+    let is_right = |found: &(usize, usize)| size.is_none_or(|size| *found == (size.columns, size.rows));
+    found.filter(is_right).ok_or_else(|| {
+        let found = format!("{columns} × {rows}");
+        let expected = match size {
+            Some(Size { columns, rows, whose }) => format!("{columns} × {rows}, {whose}"),
+            None => format!("1 to {} pixels a side", Camera::MAX_SIDE_PX),
+        };
+        FileError::value(path, Place::Header, "image size", found, expected)
+    })
+}
+
+/// Refuses a compressed file that claims more than any compression of the formats read here can have packed into
+/// its length: deflate packs at most 1032 bytes into one, LZW of 12 bits 2731.
+pub(crate) fn check_claim(path: &Path, claimed_bytes: u64) -> Result<(), FileError> {
+    const MOST_FROM_ONE_BYTE: u64 = 4096;
+    let length = std::fs::metadata(path).map_err(|source| FileError::io(path, "open", source))?.len();
+    if claimed_bytes > length.saturating_mul(MOST_FROM_ONE_BYTE) {
+        let expected = format!("no more than a file of {length} bytes can hold");
+        Err(FileError::value(path, Place::Header, "bytes of pixels", claimed_bytes, expected))
+    } else {
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_rounded_and_noise_below_zero_is_zero() {
+        assert_eq!(
+            [-3.0, 0.49, 0.5, 1.5, 65535.4].map(dn),
+            [Some(0), Some(0), Some(1), Some(2), Some(65535)]
+        );
+        assert_eq!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 65535.5].map(dn), [None; 4]);
+    }
+
+    #[test]
+    fn a_value_above_full_scale_names_its_pixel() {
+        let raw = RawImage {
+            columns: 2,
+            rows: 2,
+            dn: vec![0, 0, 0, 1024],
+            bit_depth: None,
+            windows: None,
+            told: Told::default(),
+        };
+        let message = raw.into_frame(Path::new("a.png"), 1, 10, None).unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "a.png, pixel (1, 1): `DN` is `1024`, expected at most 1023, the full scale of 10 bits"
+        );
+    }
+}

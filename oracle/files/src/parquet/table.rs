@@ -1,0 +1,202 @@
+//! Parquet tables of rows that belong to frames, written and read in memory that does not grow with the table.
+
+use std::collections::VecDeque;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use super::file::{Batches, ParquetFile};
+use super::writer::{ParquetWriter, TableOptions};
+use crate::error::Place;
+use crate::table::batch::Columns;
+use crate::table::column::Column;
+use crate::{FileError, WholeFile};
+
+/// Rows held before they are encoded, and read at a time.
+const BATCH_ROWS: usize = 8192;
+/// Rows whose encoded bytes are held before they are written.
+const ROW_GROUP_ROWS: usize = 131_072;
+
+/// A row of a table that is kept as Parquet.
+pub trait Row: Sized {
+    /// The columns of some rows, units in their names. Always the same names and types, for no rows as well.
+    fn columns(rows: &[Self]) -> Vec<Column>;
+
+    /// The rows of a batch that has those columns.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for a cell that is not as it should be.
+    fn rows(columns: &Columns<'_>) -> Result<Vec<Self>, FileError>;
+
+    /// The frame, or the field, that the row belongs to.
+    fn frame(&self) -> u64;
+
+    /// The column that holds it.
+    const FRAME: &'static str = "frame";
+}
+
+/// Writes a table, in row groups as it goes: memory stays the same however long the table. The file has its name when it is complete.
+pub struct TableWriter<R> {
+    file: WholeFile,
+    writer: ParquetWriter<File>,
+    waiting: Vec<R>,
+}
+
+impl<R: Row> TableWriter<R> {
+    /// Creates the table.
+    ///
+    /// # Errors
+    /// [`FileError::Io`] when the file exists or cannot be created.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        let options = TableOptions { row_group_rows: ROW_GROUP_ROWS, ..TableOptions::default() };
+        let file = WholeFile::create_new(path)?;
+        let out = file.file().try_clone().map_err(|source| FileError::io(path, "create", source))?;
+        let writer = ParquetWriter::new(out, path, &R::columns(&[]), options)?;
+        Ok(Self { file, writer, waiting: Vec::new() })
+    }
+
+    /// Adds rows. Frames must come in ascending order; a reader relies on it.
+    ///
+    /// # Errors
+    /// [`FileError::Io`], [`FileError::Format`].
+    pub fn write(&mut self, rows: impl IntoIterator<Item = R>) -> Result<(), FileError> {
+        self.waiting.extend(rows);
+        if self.waiting.len() >= BATCH_ROWS { self.encode() } else { Ok(()) }
+    }
+
+    /// Completes the file. Without it there is none.
+    ///
+    /// # Errors
+    /// [`FileError::Io`], [`FileError::Format`].
+    pub fn finish(mut self) -> Result<(), FileError> {
+        self.encode()?;
+        self.writer.finish()?;
+        self.file.commit_new()
+    }
+
+    fn encode(&mut self) -> Result<(), FileError> {
+        let columns = R::columns(&self.waiting);
+        self.waiting.clear();
+        self.writer.write(&columns)
+    }
+}
+
+/// Reads a table, frame by frame: an iterator over (number of the frame, its rows), frames ascending, in memory
+/// that holds one batch.
+///
+/// A frame without rows is not met; [`TableReader::rows_of`] answers it with none.
+pub struct TableReader<R> {
+    path: PathBuf,
+    batches: Batches,
+    rows_read: u64,
+    waiting: VecDeque<R>,
+    last_frame: Option<u64>,
+    failed: bool,
+}
+
+impl<R: Row> TableReader<R> {
+    /// Opens a table and checks that it has every column, of the right type. Other columns are ignored.
+    ///
+    /// # Errors
+    /// [`FileError::Io`]; [`FileError::Format`] for a file that is not Parquet or is cut short;
+    /// [`FileError::MissingColumn`]; [`FileError::Value`] for a column of another type.
+    pub fn open(path: &Path) -> Result<Self, FileError> {
+        let file = ParquetFile::open(path)?;
+        let expected = R::columns(&[]);
+        check_columns(path, &file, &expected)?;
+        let names: Vec<&str> = expected.iter().map(Column::name).collect();
+        let batches = file.batches(&names, BATCH_ROWS)?;
+        Ok(Self {
+            path: path.to_owned(),
+            batches,
+            rows_read: 0,
+            waiting: VecDeque::new(),
+            last_frame: None,
+            failed: false,
+        })
+    }
+
+    /// The rows of one frame, none if it has none. Frames before it are passed over, so calls must ascend.
+    ///
+    /// # Errors
+    /// As the iterator.
+    pub fn rows_of(&mut self, frame: u64) -> Result<Vec<R>, FileError> {
+        while let Some(next) = self.peek_frame()? {
+            match next.cmp(&frame) {
+                std::cmp::Ordering::Less => {
+                    self.take_frame(next)?;
+                }
+                std::cmp::Ordering::Equal => return self.take_frame(frame),
+                std::cmp::Ordering::Greater => break,
+            }
+        }
+        Ok(Vec::new())
+    }
+
+    /// The frame of the next row.
+    fn peek_frame(&mut self) -> Result<Option<u64>, FileError> {
+        while self.waiting.is_empty() {
+            let Some(batch) = self.batches.next().transpose()? else { return Ok(None) };
+            let columns = Columns { path: &self.path, batch: &batch, first_row: self.rows_read };
+            let rows = R::rows(&columns)?;
+            for (i, row) in rows.iter().enumerate() {
+                let frame = row.frame();
+                if let Some(last) = self.last_frame.filter(|&last| frame < last) {
+                    let expected = format!("{last} or more, as rows are ordered by frame");
+                    return Err(columns.error(i, R::FRAME, frame, expected));
+                }
+                self.last_frame = Some(frame);
+            }
+            self.rows_read += rows.len() as u64;
+            self.waiting = rows.into();
+        }
+        Ok(self.waiting.front().map(Row::frame))
+    }
+
+    fn take_frame(&mut self, frame: u64) -> Result<Vec<R>, FileError> {
+        let mut rows = Vec::new();
+        while self.peek_frame()? == Some(frame) {
+            rows.extend(self.waiting.pop_front());
+        }
+        Ok(rows)
+    }
+}
+
+impl<R: Row> Iterator for TableReader<R> {
+    type Item = Result<(u64, Vec<R>), FileError>;
+
+    /// After an error there is nothing more.
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.failed {
+            return None;
+        }
+        let frame = match self.peek_frame() {
+            Ok(None) => return None,
+            Ok(Some(frame)) => self.take_frame(frame).map(|rows| (frame, rows)),
+            Err(error) => Err(error),
+        };
+        self.failed = frame.is_err();
+        Some(frame)
+    }
+}
+
+fn check_columns(path: &Path, file: &ParquetFile, expected: &[Column]) -> Result<(), FileError> {
+    for column in expected {
+        let Some(found) = file.column(column.name()) else {
+            let names = file.columns().iter().map(|found| format!("`{}`", found.name));
+            return Err(FileError::MissingColumn {
+                path: path.to_owned(),
+                column: column.name().to_owned(),
+                found: names.collect::<Vec<_>>().join(", "),
+            });
+        };
+        let wanted = column.values().column_type();
+        let other = match &found.column_type {
+            Ok(found) if *found == wanted => continue,
+            Ok(found) => found.to_string(),
+            Err(name) => name.clone(),
+        };
+        let wanted = format!("type {wanted}");
+        return Err(FileError::value(path, Place::Header, column.name(), other, wanted));
+    }
+    Ok(())
+}

@@ -1,0 +1,68 @@
+//! The columns of a batch of rows.
+
+use std::path::Path;
+
+use super::column::{Cell, Cells, Column, ColumnValues, TextCells};
+use crate::FileError;
+use crate::error::Place;
+
+/// The columns of a batch, by name.
+pub struct Columns<'a> {
+    pub(crate) path: &'a Path,
+    pub(crate) batch: &'a [Column],
+    pub(crate) first_row: u64,
+}
+
+impl Columns<'_> {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.batch.first().map_or(0, |column| column.values().len())
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The error of a cell, `row` counted within the batch.
+    pub fn error(
+        &self,
+        row: usize,
+        column: &str,
+        value: impl ToString,
+        expected: impl Into<String>,
+    ) -> FileError {
+        FileError::value(self.path, Place::Row(self.first_row + row as u64), column, value, expected)
+    }
+
+    /// A column of a type.
+    pub(crate) fn cells<T: Cell>(&self, name: &str) -> Result<&Cells<T>, FileError> {
+        let cells = T::cells(self.values(name)?).ok_or_else(|| self.damaged(name))?;
+        // At a null stands 0.
+        match cells.values().iter().position(|value| !value.is_sound()) {
+            Some(row) => {
+                let shown = format!("{:?}", cells.get(row).unwrap_or_default());
+                Err(self.error(row, name, shown, T::EXPECTED))
+            }
+            None => Ok(cells),
+        }
+    }
+
+    /// A column of texts.
+    pub(crate) fn texts(&self, name: &str) -> Result<&TextCells, FileError> {
+        match self.values(name)? {
+            ColumnValues::Utf8(texts) => Ok(texts),
+            _ => Err(self.damaged(name)),
+        }
+    }
+
+    fn values(&self, name: &str) -> Result<&ColumnValues, FileError> {
+        let column = self.batch.iter().find(|column| column.name() == name);
+        column.map(Column::values).ok_or_else(|| self.damaged(name))
+    }
+
+    /// The names and types were checked when the file was opened; a batch with others is a damaged file.
+    fn damaged(&self, name: &str) -> FileError {
+        FileError::format(self.path, "Parquet", format!("column `{name}` is damaged"))
+    }
+}

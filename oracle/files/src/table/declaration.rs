@@ -1,0 +1,292 @@
+//! Tables that are declared once: a row is a struct, its fields say what the columns are called and what they mean. The
+//! header of a CSV, its reading and writing, the columns of a Parquet file and the tables of `docs/formats.md` come from it.
+
+use super::column::Column;
+use super::declared::Declared;
+use super::field::{Atom, Field, Value};
+use crate::csv::table::CsvRow;
+use crate::{Columns, FileError};
+
+/// Columns of one field of a row.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Names<const N: usize> {
+    pub(crate) names: [&'static str; N],
+    is_optional: bool,
+    is_nullable: bool,
+    is_seldom_repeating: bool,
+}
+
+impl<const N: usize> From<[&'static str; N]> for Names<N> {
+    fn from(names: [&'static str; N]) -> Self {
+        Self { names, is_optional: false, is_nullable: false, is_seldom_repeating: false }
+    }
+}
+
+/// Columns that a CSV may lack.
+pub(crate) fn optional<const N: usize>(names: [&'static str; N]) -> Names<N> {
+    Names { is_optional: true, ..names.into() }
+}
+
+/// Columns of a Parquet file that are declared nullable although every row has a value.
+pub(crate) fn nullable<const N: usize>(names: [&'static str; N]) -> Names<N> {
+    Names { is_nullable: true, ..names.into() }
+}
+
+/// Columns of a Parquet file whose values seldom repeat ([`Column::seldom_repeating`]).
+pub(crate) fn seldom_repeating<const N: usize>(names: [&'static str; N]) -> Names<N> {
+    Names { is_seldom_repeating: true, ..names.into() }
+}
+
+impl<const N: usize> Names<N> {
+    /// What the table says of the field.
+    pub(crate) fn declared<F: Field<N>>(&self, meaning: &str) -> Declared {
+        Declared {
+            names: self.names.to_vec(),
+            column_type: CellOf::<'static, F, N>::TYPE,
+            is_nullable: F::IS_NULLABLE || self.is_nullable,
+            is_optional: self.is_optional,
+            meaning: meaning.trim().to_owned(),
+        }
+    }
+
+    /// The columns of a Parquet file.
+    pub(crate) fn columns<'a, F: Field<N> + 'a>(&self, fields: impl Iterator<Item = &'a F>) -> Vec<Column> {
+        let cells: Vec<Option<[CellOf<'a, F, N>; N]>> =
+            fields.map(|field| field.value().map(Value::to_cells)).collect();
+        let column = |(i, name)| {
+            let cells = cells.iter().map(|cells| cells.as_ref()?.get(i).copied());
+            let column = Column::of(name, F::IS_NULLABLE || self.is_nullable, Atom::values(cells));
+            if self.is_seldom_repeating { column.seldom_repeating() } else { column }
+        };
+        self.names.into_iter().enumerate().map(column).collect()
+    }
+
+    /// The field of each row of a Parquet file: absent where one of its cells is null.
+    pub(crate) fn read_columns<F: Field<N>>(&self, columns: &Columns<'_>) -> Result<Vec<F>, FileError> {
+        let mut parts = Vec::with_capacity(N);
+        for name in self.names {
+            parts.push(CellOf::<'_, F, N>::cells(columns, name)?);
+        }
+        let mut fields = Vec::with_capacity(columns.len());
+        for row in 0..columns.len() {
+            let mut null = None;
+            let cells = std::array::from_fn(|i| {
+                let cell = parts.get(i).and_then(|cells| Atom::get(*cells, row));
+                null = null.or(cell.is_none().then_some(i));
+                cell.unwrap_or_default()
+            });
+            let value = match null {
+                None => Some(F::Value::of_cells(cells).map_err(|expected| {
+                    let cells = cells.map(|cell| cell.text()).join(", ");
+                    let shown = if N == 1 { cells } else { format!("[{cells}]") };
+                    columns.error(row, self.name(0), shown, expected)
+                })?),
+                Some(_) => None,
+            };
+            let missing =
+                || columns.error(row, self.name(null.unwrap_or_default()), "null", "a value in every row");
+            fields.push(F::of(value).ok_or_else(missing)?);
+        }
+        Ok(fields)
+    }
+
+    /// The cells of the field in a row of a CSV.
+    pub(crate) fn texts(&self, field: &impl Field<N>) -> [String; N] {
+        field.value().map_or_else(
+            || std::array::from_fn(|_| String::new()),
+            |value| value.to_cells().map(|cell| cell.text()),
+        )
+    }
+
+    /// Reads the field from a row of a CSV: all cells of it, or none where it may be absent.
+    pub(crate) fn read_texts<F: Field<N>>(&self, row: &CsvRow<'_>) -> Result<F, FileError> {
+        let is_absent = F::IS_NULLABLE && self.names.iter().all(|name| row.text(name).trim().is_empty());
+        let mut cells = [Default::default(); N];
+        for (cell, name) in cells.iter_mut().zip(self.names).filter(|_| !is_absent) {
+            *cell = row.cell(name)?;
+        }
+        let value = (!is_absent).then(|| F::Value::of_cells(cells)).transpose();
+        let value = value.map_err(|expected| row.error(self.name(0), expected))?;
+        F::of(value).ok_or_else(|| row.error(self.name(0), "a value"))
+    }
+
+    /// The name of a column; errors of the whole field name the first.
+    fn name(&self, i: usize) -> &'static str {
+        self.names.get(i).copied().unwrap_or_default()
+    }
+}
+
+/// What the cells of a field hold.
+type CellOf<'a, F, const N: usize> = <<F as Field<N>>::Value as Value<N>>::Cell<'a>;
+
+/// Declares a table: either a new struct, or one that there is (`for`). Each field has its meaning as a comment, its type, and the names
+/// of its columns, where these are not the field's own name. `csv` makes it a row of a CSV; `parquet(FIELD)` one of a Parquet
+/// file, ordered by a field that is the number of the frame or field.
+macro_rules! table {
+    ($(#[$meta:meta])* $vis:vis struct $row:ident: $kind:ident $(($frame:ident))? {
+        $($(#[doc = $meaning:literal])+ $field:ident: $type:ty $(= $names:expr)?,)+
+    }) => {
+        $(#[$meta])*
+        $vis struct $row { $($(#[doc = $meaning])+ $vis $field: $type,)+ }
+        $crate::table::declaration::table!(for $row: $kind $(($frame))? {
+            $($(#[doc = $meaning])+ $field: $type $(= $names)?,)+
+        });
+    };
+    (for $row:ident: $kind:ident $(($frame:ident))? {
+        $($(#[doc = $meaning:literal])+ $field:ident: $type:ty $(= $names:expr)?,)+
+    }) => {
+        impl $crate::table::declared::Table for $row {
+            fn declared() -> Vec<$crate::table::declared::Declared> {
+                vec![$($crate::table::declaration::names!($field $($names)?).declared::<$type>(concat!($($meaning),+))),+]
+            }
+        }
+        $crate::table::declaration::table!(@$kind $row $($frame)? { $($field: $type = $crate::table::declaration::names!($field $($names)?),)+ });
+    };
+    (@csv $row:ident { $($field:ident: $type:ty = $names:expr,)+ }) => {
+        impl $crate::csv::table::CsvLine for $row {
+            fn cells(&self) -> Vec<String> {
+                let mut cells = Vec::new();
+                $(cells.extend($names.texts(&self.$field));)+
+                cells
+            }
+
+            fn read(row: &$crate::csv::table::CsvRow<'_>) -> Result<Self, $crate::FileError> {
+                Ok(Self { $($field: $names.read_texts(row)?),+ })
+            }
+        }
+    };
+    (@parquet $row:ident $frame:ident { $($field:ident: $type:ty = $names:expr,)+ }) => {
+        impl $crate::Row for $row {
+            const FRAME: &'static str = stringify!($frame);
+
+            fn columns(rows: &[Self]) -> Vec<$crate::Column> {
+                let mut columns = Vec::new();
+                $(columns.extend($names.columns(rows.iter().map(|row| &row.$field)));)+
+                columns
+            }
+
+            fn rows(columns: &$crate::Columns<'_>) -> Result<Vec<Self>, $crate::FileError> {
+                $(let mut $field = $names.read_columns(columns)?.into_iter();)+
+                let mut rows = Vec::with_capacity(columns.len());
+                rows.extend(std::iter::from_fn(|| Some(Self { $($field: $field.next()?),+ })));
+                Ok(rows)
+            }
+
+            fn frame(&self) -> u64 {
+                self.$frame
+            }
+        }
+    };
+}
+
+/// The columns of a field: those that are given, or the one of its own name.
+macro_rules! names {
+    ($field:ident) => {
+        $crate::table::declaration::Names::from([stringify!($field)])
+    };
+    ($field:ident $names:expr) => {
+        $crate::table::declaration::Names::from($names)
+    };
+}
+
+pub(crate) use {names, table};
+
+#[cfg(test)]
+mod tests {
+    use std::fs::File;
+
+    use contract::docking::Lines;
+    use contract::{Body, Icrs, Rotation};
+
+    use super::*;
+    use crate::table::declared::Table;
+    use crate::{ColumnType, Row, TableOptions, TableReader, write_table};
+
+    table! {
+        /// A row with a field of every kind.
+        #[derive(Debug, Clone, PartialEq)]
+        struct Turn: parquet(frame) {
+            /// number of the frame
+            frame: u64,
+            /// a turn,
+            /// of four columns
+            turn: Rotation<Body, Icrs> = ["w", "x", "y", "z"],
+            /// rows of a field
+            lines: Lines,
+            /// a place, or none
+            place: Option<[f64; 2]> = seldom_repeating(["x_px", "y_px"]),
+            /// a number
+            number: f64 = nullable(["number"]),
+        }
+    }
+
+    fn rows() -> Vec<Turn> {
+        let turn = Rotation::from_wxyz([0.6, 0.0, 0.8, 0.0]).unwrap();
+        let row = |frame| {
+            let place = (frame == 2).then_some([0.1, 0.2]);
+            Turn { frame, turn, lines: Lines::Odd, place, number: 1.5 }
+        };
+        (1..4).map(row).collect()
+    }
+
+    /// Reads the rows back, one column of them exchanged for others.
+    fn read(other: Option<Column>) -> Result<Vec<Turn>, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.parquet");
+        let mut columns = Turn::columns(&rows());
+        if let Some(other) = other {
+            let place = columns.iter().position(|column| column.name() == other.name()).unwrap();
+            columns[place] = other;
+        }
+        write_table(File::create_new(&path).unwrap(), &path, &columns, TableOptions::default()).unwrap();
+        let frames = TableReader::<Turn>::open(&path).map_err(|error| error.to_string())?;
+        let frames: Result<Vec<_>, _> = frames.collect();
+        Ok(frames.map_err(|error| error.to_string())?.into_iter().flat_map(|(_, rows)| rows).collect())
+    }
+
+    #[test]
+    fn rows_come_back_in_columns_of_their_names_and_types() {
+        assert_eq!(read(None).unwrap(), rows());
+        let columns = Turn::columns(&[]);
+        let found: Vec<_> = columns.iter().map(|column| (column.name(), column.is_nullable())).collect();
+        let required = ["frame", "w", "x", "y", "z", "lines"].map(|name| (name, false));
+        assert_eq!(found[..6], required);
+        assert_eq!(found[6..], ["x_px", "y_px", "number"].map(|name| (name, true)));
+    }
+
+    #[test]
+    fn a_wrong_cell_is_named_by_row_and_column() {
+        let one = |name, values: [f64; 3]| Some(Column::new(name, values));
+        for (other, message) in [
+            (one("w", [0.6, 0.7, 0.6]), "row 1: `w` is `[0.7, 0.0, 0.8, 0.0]`, expected a unit quaternion"),
+            (one("y", [0.8, f64::INFINITY, 0.8]), "row 1: `y` is `inf`, expected a finite number"),
+            (
+                Some(Column::nullable("z", [Some(0.0), Some(0.0), None])),
+                "row 2: `z` is `null`, expected a value in every row",
+            ),
+            (
+                Some(Column::texts("lines", ["odd", "upper", "odd"])),
+                "row 1: `lines` is `upper`, expected one of the words of this column",
+            ),
+        ] {
+            let error = read(other).unwrap_err();
+            assert!(error.contains(message), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_place_of_which_a_part_is_null_is_none() {
+        let rows = read(Some(Column::nullable("y_px", [None, None, Some(0.2)]))).unwrap();
+        assert!(rows.iter().all(|row| row.place.is_none()), "{rows:?}");
+    }
+
+    #[test]
+    fn a_declaration_says_what_the_columns_are() {
+        let [_, turn, _, place, _] = <[Declared; 5]>::try_from(Turn::declared()).unwrap();
+        assert_eq!(
+            (turn.names, turn.meaning),
+            (vec!["w", "x", "y", "z"], "a turn, of four columns".to_owned())
+        );
+        assert_eq!((place.column_type, place.is_nullable), (ColumnType::Float64, true));
+    }
+}

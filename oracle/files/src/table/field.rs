@@ -1,0 +1,206 @@
+//! What a field of a row is in a table: a cell, or several of a kind that stand together.
+
+use contract::{Angle, Direction, Icrs, PixelPoint, Rotation};
+use hifitime::Epoch;
+use nalgebra::Vector3;
+use sim::truth::clock;
+
+use super::batch::Columns;
+use super::column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};
+use super::unit;
+use crate::FileError;
+
+/// What a cell holds, as long as `'a` lives.
+pub(crate) trait Atom<'a>: Copy + Default {
+    /// Type of its column.
+    const TYPE: ColumnType;
+    /// What the cell of a CSV must be.
+    const EXPECTED: &'static str;
+    /// The cells of a column.
+    type Cells: 'a;
+    /// The values of a column.
+    fn values(cells: impl Iterator<Item = Option<Self>>) -> ColumnValues;
+    /// The column of a name.
+    fn cells(columns: &'a Columns<'_>, name: &str) -> Result<&'a Self::Cells, FileError>;
+    /// The cell of a row; `None` if it is null.
+    fn get(cells: &'a Self::Cells, row: usize) -> Option<Self>;
+    /// As it stands in a CSV and in messages: of a number the shortest text that reads back to the same bits.
+    fn text(self) -> String;
+    /// Reads the cell of a CSV; `None` when it is not as [`Atom::EXPECTED`].
+    fn parse(text: &'a str) -> Option<Self>;
+}
+
+impl<'a, T: Cell + 'a> Atom<'a> for T {
+    const TYPE: ColumnType = <T as Cell>::TYPE;
+    const EXPECTED: &'static str = <T as Cell>::EXPECTED;
+    type Cells = Cells<T>;
+
+    fn values(cells: impl Iterator<Item = Option<Self>>) -> ColumnValues {
+        <T as Cell>::values(cells.collect())
+    }
+
+    fn cells(columns: &'a Columns<'_>, name: &str) -> Result<&'a Cells<T>, FileError> {
+        columns.cells(name)
+    }
+
+    #[inline]
+    fn get(cells: &'a Cells<T>, row: usize) -> Option<Self> {
+        cells.get(row)
+    }
+
+    fn text(self) -> String {
+        format!("{self:?}")
+    }
+
+    fn parse(text: &'a str) -> Option<Self> {
+        text.trim().parse().ok().filter(T::is_sound)
+    }
+}
+
+impl<'a> Atom<'a> for &'a str {
+    const TYPE: ColumnType = ColumnType::Utf8;
+    const EXPECTED: &'static str = "text";
+    type Cells = TextCells;
+
+    fn values(cells: impl Iterator<Item = Option<Self>>) -> ColumnValues {
+        Column::nullable_texts("", cells).into_values()
+    }
+
+    fn cells(columns: &'a Columns<'_>, name: &str) -> Result<&'a TextCells, FileError> {
+        columns.texts(name)
+    }
+
+    fn get(cells: &'a TextCells, row: usize) -> Option<Self> {
+        cells.get(row)
+    }
+
+    fn text(self) -> String {
+        self.to_owned()
+    }
+
+    fn parse(text: &'a str) -> Option<Self> {
+        Some(text)
+    }
+}
+
+/// A value that takes `N` cells of a kind.
+pub(crate) trait Value<const N: usize>: Sized {
+    /// What each of them holds.
+    type Cell<'a>: Atom<'a>;
+    /// The cells.
+    fn to_cells(&self) -> [Self::Cell<'_>; N];
+    /// The value of its cells, or what was expected of them.
+    fn of_cells(cells: [Self::Cell<'_>; N]) -> Result<Self, String>;
+}
+
+/// A field of a row: a value, or one that may be absent; then its cells are empty, or null.
+pub(crate) trait Field<const N: usize>: Sized {
+    /// The value.
+    type Value: Value<N>;
+    /// Whether it may be absent.
+    const IS_NULLABLE: bool;
+    /// The value, if there is one.
+    fn value(&self) -> Option<&Self::Value>;
+    /// The field that has the value; `None` where it must have one.
+    fn of(value: Option<Self::Value>) -> Option<Self>;
+}
+
+impl<V: Value<N>, const N: usize> Field<N> for V {
+    type Value = V;
+    const IS_NULLABLE: bool = false;
+
+    fn value(&self) -> Option<&V> {
+        Some(self)
+    }
+
+    fn of(value: Option<V>) -> Option<Self> {
+        value
+    }
+}
+
+impl<V: Value<N>, const N: usize> Field<N> for Option<V> {
+    type Value = V;
+    const IS_NULLABLE: bool = true;
+
+    fn value(&self) -> Option<&V> {
+        self.as_ref()
+    }
+
+    fn of(value: Self) -> Option<Self> {
+        Some(value)
+    }
+}
+
+/// Says how a type is made of cells: `$to` gives them, `$of` makes the value of them, or says what was expected.
+macro_rules! value {
+    (
+        $type:ty: [$cell:ty; $n:literal] $(for<$($parameter:ident),+>)?,
+        |$value:ident| $to:expr, |$cells:pat_param| $of:expr
+    ) => {
+        impl$(<$($parameter),+>)? $crate::table::field::Value<$n> for $type {
+            type Cell<'a> = $cell;
+
+            fn to_cells(&self) -> [Self::Cell<'_>; $n] {
+                let $value = self;
+                $to
+            }
+
+            fn of_cells($cells: [Self::Cell<'_>; $n]) -> Result<Self, String> {
+                $of
+            }
+        }
+    };
+}
+
+/// Types with a word for each of their values: `code`, and `parse`, which reads it.
+macro_rules! words {
+    ($($type:ty),+) => {
+        $($crate::table::field::value!($type: [&'a str; 1], |value| [value.code()], |[word]| {
+            <$type>::parse(word).ok_or_else(|| "one of the words of this column".to_owned())
+        });)+
+    };
+}
+
+pub(crate) use {value, words};
+
+value!(bool: [bool; 1], |flag| [*flag], |[flag]| Ok(flag));
+value!(u32: [u32; 1], |count| [*count], |[count]| Ok(count));
+value!(u64: [u64; 1], |count| [*count], |[count]| Ok(count));
+value!(f64: [f64; 1], |number| [*number], |[number]| Ok(number));
+value!(String: [&'a str; 1], |text| [text], |[text]| Ok(text.to_owned()));
+// A place in a list, of at most 32 bits.
+value!(usize: [u32; 1], |index| [*index as u32], |[index]| Ok(index as usize));
+// UTC; leap seconds are not counted.
+value!(
+    Epoch: [Nanoseconds; 1],
+    |time| [Nanoseconds(clock::unix_ns(*time))],
+    |[Nanoseconds(since_1970)]| Ok(clock::from_unix_ns(since_1970))
+);
+value!(Vector3<f64>: [f64; 3], |vector| (*vector).into(), |xyz| Ok(xyz.into()));
+value!(PixelPoint: [f64; 2], |point| [point.x, point.y], |[x, y]| Ok(Self::new(x, y)));
+// Its quaternion, scalar first.
+value!(Rotation<To, From>: [f64; 4] for<To, From>, |rotation| rotation.wxyz(), |wxyz| {
+    Self::from_wxyz(wxyz).map_err(|error| format!("a unit quaternion: {error}"))
+});
+// Components of its unit vector.
+value!(Direction<F>: [f64; 3] for<F>, |direction| (*direction.vector()).into(), |xyz| {
+    unit::direction(xyz).ok_or_else(|| unit::EXPECTED.to_owned())
+});
+// Right ascension and declination, degrees.
+value!(
+    Direction<Icrs>: [f64; 2],
+    |direction| [direction.ra().degrees(), direction.dec().degrees()],
+    |[ra, dec]| Ok(Self::from_ra_dec(Angle::from_degrees(ra), Angle::from_degrees(dec)))
+);
+
+impl<const N: usize> Value<N> for [f64; N] {
+    type Cell<'a> = f64;
+
+    fn to_cells(&self) -> Self {
+        *self
+    }
+
+    fn of_cells(cells: Self) -> Result<Self, String> {
+        Ok(cells)
+    }
+}

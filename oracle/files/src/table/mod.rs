@@ -1,0 +1,15 @@
+//! A table in memory, declared once: its columns, and how the fields of a row become cells.
+
+pub(crate) mod batch;
+pub(crate) mod column;
+pub(crate) mod declaration;
+pub(crate) mod declared;
+pub(crate) mod field;
+pub(crate) mod time;
+pub(crate) mod unit;
+pub(crate) mod windows;
+
+pub use batch::Columns;
+pub use column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};
+pub use declared::Declared;
+pub use time::{format_utc, parse_utc};

@@ -1,0 +1,61 @@
+//! Transmitted regions as text: `x y columns rows`, separated by `;`.
+
+use contract::{Camera, Window};
+
+/// The text of the regions; empty when the whole image was transmitted, `none` when nothing was.
+pub(crate) fn format(windows: Option<&[Window]>) -> String {
+    match windows {
+        None => String::new(),
+        Some([]) => "none".to_owned(),
+        Some(windows) => windows.iter().map(format_one).collect::<Vec<_>>().join(";"),
+    }
+}
+
+/// One region as `x y columns rows`.
+pub(crate) fn format_one(window: &Window) -> String {
+    format!("{} {} {} {}", window.x, window.y, window.columns, window.rows)
+}
+
+/// What [`parse`] expects, for messages.
+pub(crate) const EXPECTED: &str =
+    "regions `x y columns rows` separated by `;`, `none`, or nothing for the whole image";
+
+/// Reads [`format`]'s text; the inner `Option` is `None` when the whole image was transmitted.
+pub(crate) fn parse(text: &str) -> Result<Option<Vec<Window>>, &'static str> {
+    match text.trim() {
+        "" => Ok(None),
+        "none" => Ok(Some(Vec::new())),
+        list => list.split(';').map(parse_one).collect::<Option<_>>().map(Some).ok_or(EXPECTED),
+    }
+}
+
+/// Reads one region. No number is larger than a detector, so that sums of them cannot overflow.
+pub(crate) fn parse_one(text: &str) -> Option<Window> {
+    let mut numbers = text
+        .split_ascii_whitespace()
+        .map(|word| word.parse::<usize>().ok().filter(|&n| n <= Camera::MAX_SIDE_PX));
+    let mut next = || numbers.next().flatten();
+    let window = Window { x: next()?, y: next()?, columns: next()?, rows: next()? };
+    numbers.next().is_none().then_some(window)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regions_come_back() {
+        let window = |x| Window { x, y: 2, columns: 64, rows: 32 };
+        for windows in [None, Some(vec![]), Some(vec![window(0)]), Some(vec![window(7), window(100)])] {
+            assert_eq!(parse(&format(windows.as_deref())), Ok(windows));
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_region_is_refused() {
+        for text in ["1 2 3", "1 2 3 4 5", "1 2 3 -4", "a b c d", "1 2 3 4;", ";", "0 99999999999999999 1 1"]
+        {
+            assert_eq!(parse(text), Err(EXPECTED), "{text}");
+        }
+    }
+}

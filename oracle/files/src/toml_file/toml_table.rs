@@ -1,0 +1,41 @@
+//! TOML files that are one table of ours: read and checked, checked and written.
+
+use std::path::Path;
+
+use contract::OutOfRange;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::error::Place;
+use crate::toml_file;
+use crate::{FileError, WholeFile};
+
+/// A table that is a file of its own.
+pub(crate) trait TomlTable: Serialize + DeserializeOwned {
+    /// Checks every value.
+    fn check(&self) -> Result<(), OutOfRange>;
+}
+
+/// Reads and checks a file.
+///
+/// # Errors
+/// [`FileError::Io`]; [`FileError::Toml`] with line and column for what is not TOML, for a wrong, unknown or missing field,
+/// and for a value that is not allowed.
+pub(crate) fn read<T: TomlTable>(path: &Path) -> Result<T, FileError> {
+    let text = toml_file::read_text(path).map_err(|source| FileError::io(path, "read", source))?;
+    let table: T = toml_file::parse(path, &text).map_err(FileError::Toml)?;
+    table.check().map_err(|error| FileError::Toml(toml_file::out_of_range(path, &text, &error)))?;
+    Ok(table)
+}
+
+/// Writes a file, at once or not at all.
+///
+/// # Errors
+/// [`FileError::Io`] when it exists or cannot be written; [`FileError::Value`] for what could not be read back.
+pub(crate) fn write<T: TomlTable>(table: &T, path: &Path) -> Result<(), FileError> {
+    table.check().map_err(|OutOfRange { path: key, value, expected }| {
+        FileError::value(path, Place::Whole, key, value, expected)
+    })?;
+    let text = toml::to_string(table).map_err(|error| FileError::format(path, "TOML", error))?;
+    WholeFile::with_text(path, &text)?.commit_new()
+}

@@ -1,0 +1,584 @@
+//! A baseline: what was good enough once, kept to be compared with.
+//!
+//! A folder with two files: `baseline.toml`, readable in a diff, says what was run, by which pipeline, why this is the baseline, how it is
+//! cut into blocks, and the figures; `rows.parquet` has a row a unit. The one holds the SHA-256 of the other.
+//!
+//! Two files cannot be replaced at once. New rows wait under a name of their hash until the header is there that holds it, and then get
+//! theirs; a reader takes those that the header means. So whenever it is killed, the old baseline is there, or the new one.
+
+pub(crate) mod rows;
+pub(crate) mod tolerance;
+use std::path::{Path, PathBuf};
+
+use files::sha256::sha256_hex;
+use files::{Checksums, Earlier, Failure, FileError, WholeFile, toml_file};
+use indexmap::IndexMap;
+use score::{FigureTerms, Reduction};
+use serde::{Deserialize, Serialize};
+
+use crate::baseline::tolerance::default_tolerance;
+use crate::dependence::blocks::{Blocks, LEAST_BLOCKS, length_for, length_for_other_frames};
+use crate::dependence::effects::value;
+use crate::dependence::memory::{Memory, memory};
+use crate::identity::Identity;
+use crate::sample::Sample;
+
+/// Version of the form of these files.
+const FORMAT: u32 = 2;
+/// Largest `rows.parquet` that is read, bytes.
+const MOST_BYTES: u64 = 1 << 28;
+
+/// The files of a baseline.
+const NAMES: [&str; 2] = ["baseline.toml", "rows.parquet"];
+
+/// What a later one replaces.
+const HEADERS: Earlier<'static> = Earlier {
+    what: "the baseline.toml of an earlier baseline",
+    is: &|beginning| beginning.starts_with(b"format = "),
+};
+const ROWS: Earlier<'static> =
+    Earlier { what: "the rows of an earlier baseline", is: &|beginning| beginning.starts_with(b"PAR1") };
+/// What becomes of a baseline that is there already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Replace {
+    /// It stays, and making another in its place is an error.
+    Refuse,
+    /// It is replaced.
+    Allow,
+}
+
+/// `baseline.toml`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BaselineHeader {
+    /// Version of the form of these files.
+    pub format: u32,
+    /// Why this is the baseline.
+    pub reason: String,
+    /// SHA-256 of `rows.parquet`.
+    pub rows_sha256: String,
+    /// Number of rows: frames, fields or cases.
+    pub units: u64,
+    /// How it is cut.
+    pub blocks: BlockRule,
+    /// Figures by name.
+    pub figures: IndexMap<String, BaselineFigure>,
+    /// What was run.
+    pub run: Identity,
+}
+
+/// How a baseline is cut into blocks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BlockRule {
+    /// How many there are.
+    pub count: u64,
+    /// Units of a block, about; blocks do not cross gaps, and are shorter where a sequence is.
+    pub length: u64,
+    /// Whether `--block-length` gave it: then it holds for results of other frames too, which have longer blocks otherwise.
+    pub is_given: bool,
+    /// The longest autocorrelation time of the figures, units.
+    pub memory: f64,
+    /// The figure that has it; empty when none remembers anything.
+    pub memory_of: String,
+}
+
+/// A figure of a baseline.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BaselineFigure {
+    /// How the values of the units are summed up: `rate`, `mean`, `rms`, `median`.
+    pub by: String,
+    /// The value; absent when it is counted over nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    /// How many values it is counted over.
+    pub of: u64,
+    /// By how much a result may be worse and pass, in the unit of the figure.
+    pub tolerance: f64,
+    /// Of a rate of errors "within" something: the limit, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit_deg: Option<f64>,
+    /// Of a figure of lines of sight: the attitude that they rest on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude: Option<String>,
+}
+
+/// A baseline in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Baseline {
+    /// `baseline.toml`.
+    pub header: BaselineHeader,
+    /// What was run and what came of each unit.
+    pub sample: Sample,
+    /// The block of each unit.
+    pub blocks: Blocks,
+}
+
+impl Baseline {
+    /// A baseline of a sample, cut into blocks of about `length` units; without it, ten times as long as its figures remember, but not
+    /// so long that there are fewer than twenty, and not shorter than thirty units.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for an empty reason, or fewer blocks than can show anything.
+    pub fn new(sample: Sample, reason: &str, length: Option<u64>) -> Result<Self, Failure> {
+        let reason = reason.trim();
+        if reason.is_empty() {
+            return Err(Failure::Usage(
+                "--reason is empty, expected why this result is what later ones are held against".to_owned(),
+            ));
+        }
+        let Identity { kind, world, .. } = &sample.identity;
+        let (kind, units) = (*kind, sample.table.units.len());
+        let Memory { units: remembered, figure } = memory(kind, world, &sample.table);
+        let is_given = length.is_some();
+        let length = length.map_or_else(|| length_for(remembered, units), |length| length as usize);
+        let blocks = Blocks::cut(kind, world, &sample.table, length);
+        if blocks.count() < LEAST_BLOCKS {
+            return Err(Failure::Usage(format!(
+                "the result has {units} {} in {} blocks, expected at least {LEAST_BLOCKS} blocks: fewer cannot show anything. A longer run, or --block-length, gives more",
+                kind.units(world),
+                blocks.count()
+            )));
+        }
+        let figures = sample.table.figures.iter().map(|figure| (figure.name.clone(), told_of(figure)));
+        let header = BaselineHeader {
+            format: FORMAT,
+            reason: reason.to_owned(),
+            rows_sha256: String::new(),
+            units: units as u64,
+            blocks: BlockRule {
+                count: blocks.count() as u64,
+                length: length as u64,
+                is_given,
+                memory: (remembered * 10.0).round() / 10.0,
+                memory_of: figure,
+            },
+            figures: figures.collect(),
+            run: sample.identity.clone(),
+        };
+        Ok(Self { header, sample, blocks })
+    }
+
+    /// The same with tolerances of its own for some figures, in their units.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] for a figure that it does not have.
+    pub fn with_tolerances(mut self, tolerances: &IndexMap<String, f64>) -> Result<Self, Failure> {
+        for (name, tolerance) in tolerances {
+            match self.header.figures.get_mut(name) {
+                Some(figure) => figure.tolerance = *tolerance,
+                None => return Err(unknown_figure("--tolerance", name, self.header.figures.keys())),
+            }
+        }
+        Ok(self)
+    }
+
+    /// The blocks for a result of other frames.
+    pub(crate) fn blocks_for_other_frames(&self) -> Blocks {
+        let BlockRule { memory, is_given, .. } = self.header.blocks;
+        if is_given {
+            return self.blocks.clone();
+        }
+        let Sample { identity, table } = &self.sample;
+        let length = length_for_other_frames(memory, table.units.len());
+        Blocks::cut(identity.kind, &identity.world, table, length)
+    }
+
+    /// Writes the files into a folder, which is made when it is not there. Each gets its name when both are complete.
+    ///
+    /// # Errors
+    /// [`Failure`] when there is a baseline already and `replace` refuses it, when the folder has other files of these names or checksums
+    /// of other files, or when a file cannot be written.
+    pub fn write(&mut self, folder: &Path, replace: Replace) -> Result<(), Failure> {
+        let [header, rows] = paths(folder);
+        HEADERS.check(&header)?;
+        ROWS.check(&rows)?;
+        for path in [&header, &rows] {
+            if replace == Replace::Refuse && path.exists() {
+                return Err(Failure::Usage(format!(
+                    "{}: exists; a baseline is replaced with --replace alone",
+                    path.display()
+                )));
+            }
+        }
+        Checksums::check_own(folder, &NAMES)?;
+        std::fs::create_dir_all(folder).map_err(|source| FileError::io(folder, "create", source))?;
+        let new_rows = WholeFile::create(&rows)?;
+        rows::write(new_rows.file(), &rows, &self.sample.table, |unit| self.blocks.of(unit))?;
+        self.header.rows_sha256 = file_sha256(new_rows.place())?;
+        let text = toml::to_string(&self.header)
+            .map_err(|error| Failure::Usage(format!("the baseline cannot be written: {error}")))?;
+        let new_header = WholeFile::with_text(&header, &text)?;
+        let waiting = waiting_rows(folder, &self.header.rows_sha256);
+        new_rows.named(&waiting).replace(ROWS)?;
+        // Those of the earlier baseline, which would say that the new header is damaged.
+        Checksums::remove(folder)?;
+        match replace {
+            Replace::Allow => new_header.replace(HEADERS)?,
+            Replace::Refuse => new_header.commit_new()?,
+        }
+        std::fs::rename(&waiting, &rows).map_err(|source| FileError::io(&rows, "create", source))?;
+        WholeFile::remove_abandoned_of(folder, is_waiting);
+        Ok(Checksums::write(folder, &NAMES)?)
+    }
+
+    /// Reads a baseline.
+    ///
+    /// # Errors
+    /// [`Failure`] for a folder that holds none, or one that was damaged.
+    pub fn read(folder: &Path) -> Result<Self, Failure> {
+        let [path, rows_path] = paths(folder);
+        if !path.is_file() {
+            return Err(Failure::Usage(format!(
+                "{}: there is no `baseline.toml`, expected a folder that `boresight gate baseline` wrote",
+                folder.display()
+            )));
+        }
+        let text = toml_file::read_text(&path).map_err(|source| FileError::io(&path, "read", source))?;
+        let refuse = |at: &str, message: String| Failure::from(toml_file::refuse(&path, &text, at, message));
+        let header: BaselineHeader = toml_file::parse(&path, &text)?;
+        if header.format != FORMAT {
+            return Err(refuse("format", format!("is {}, expected {FORMAT}", header.format)));
+        }
+        let mut figures = Vec::new();
+        for (name, figure) in &header.figures {
+            let Some(reduction) = Reduction::parse(&figure.by) else {
+                let words = Reduction::ALL.map(Reduction::code).join(", ");
+                return Err(refuse(
+                    &format!("figures.{name}.by"),
+                    format!("is `{}`, expected one of {words}", figure.by),
+                ));
+            };
+            figures.push((name.clone(), reduction));
+        }
+        let waiting = waiting_rows(folder, &header.rows_sha256);
+        let is_of_header = |path: &Path| Ok::<_, FileError>(file_sha256(path)? == header.rows_sha256);
+        let rows_path = if waiting.is_file() && is_of_header(&waiting)? { waiting } else { rows_path };
+        if !is_of_header(&rows_path)? {
+            let message = format!("is not that of {}: one of the two files was changed", rows_path.display());
+            return Err(refuse("rows_sha256", message));
+        }
+        let (mut table, numbers) = rows::read(&rows_path, &figures)?;
+        for (figure, told) in table.figures.iter_mut().zip(header.figures.values()) {
+            (figure.limit_deg, figure.attitude) = (told.limit_deg, told.attitude.clone());
+        }
+        let (told, units) = (header.units, table.units.len());
+        if told != units as u64 {
+            return Err(refuse(
+                "units",
+                format!("is {told}, expected {units}, the rows of {}", rows_path.display()),
+            ));
+        }
+        let blocks = Blocks::from_numbers(numbers);
+        let (told, count) = (header.blocks.count, blocks.count());
+        if told != count as u64 || count < LEAST_BLOCKS {
+            let expected =
+                format!("the blocks of {} ({count}), at least {LEAST_BLOCKS}", rows_path.display());
+            return Err(refuse("blocks.count", format!("is {told}, expected {expected}")));
+        }
+        for figure in &table.figures {
+            let Some(told) = header.figures.get(&figure.name) else { continue };
+            let known = BaselineFigure { tolerance: told.tolerance, ..told_of(figure) };
+            if !(told.tolerance.is_finite() && told.tolerance >= 0.0) {
+                let message = format!("is {}, expected a size of 0 or more", told.tolerance);
+                return Err(refuse(&format!("figures.{}.tolerance", figure.name), message));
+            }
+            if told != &known {
+                let value = known.value.map_or_else(|| "none".to_owned(), |value| value.to_string());
+                return Err(refuse(
+                    &format!("figures.{}", figure.name),
+                    format!("is not what the rows give, expected {value} of {}", known.of),
+                ));
+            }
+        }
+        Checksums::check(folder, |_| true)?;
+        let sample = Sample { identity: header.run.clone(), table };
+        Ok(Self { header, sample, blocks })
+    }
+}
+
+/// The error of an option that names no figure of a baseline.
+pub(crate) fn unknown_figure<'a>(
+    option: &str,
+    name: &str,
+    known: impl Iterator<Item = &'a String> + Clone,
+) -> Failure {
+    let hint = toml_file::nearest(name, known.clone().map(String::as_str)).map_or_else(
+        || known.map(String::as_str).collect::<Vec<_>>().join(", "),
+        |name| format!("did you mean `{name}`?"),
+    );
+    Failure::Usage(format!("{option} names `{name}`, expected a figure of the baseline; {hint}"))
+}
+
+/// What is told of a figure.
+fn told_of(figure: &FigureTerms) -> BaselineFigure {
+    BaselineFigure {
+        by: figure.reduction.code().to_owned(),
+        value: value(figure.reduction, &figure.terms),
+        of: figure.terms.iter().map(|term| u64::from(term.of)).sum(),
+        tolerance: default_tolerance(figure),
+        limit_deg: figure.limit_deg,
+        attitude: figure.attitude.clone(),
+    }
+}
+
+fn paths(folder: &Path) -> [PathBuf; 2] {
+    NAMES.map(|name| folder.join(name))
+}
+
+/// How the names of rows begin that wait for their header.
+const WAITING: &str = ".rows-";
+
+/// Where rows wait until the header is there that means them.
+fn waiting_rows(folder: &Path, sha256: &str) -> PathBuf {
+    // Of a header of anybody's making: no path.
+    let digits: String = sha256.chars().filter(char::is_ascii_hexdigit).collect();
+    folder.join(format!("{WAITING}{digits}.parquet"))
+}
+
+fn is_waiting(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(WAITING))
+}
+
+fn file_sha256(path: &Path) -> Result<String, FileError> {
+    let bytes =
+        sim::regular_file::read(path, MOST_BYTES).map_err(|source| FileError::io(path, "read", source))?;
+    Ok(sha256_hex(&bytes))
+}
+
+#[cfg(test)]
+mod tests {
+    use tempfile::TempDir;
+
+    use super::*;
+    use crate::hand_made::{figure, sample};
+
+    /// Units of which the last is missed and the others have a hit with an error.
+    fn run(units: usize) -> Sample {
+        let hits: Vec<_> = (1..=units).map(|unit| Some(f64::from(u8::from(unit < units)))).collect();
+        let errors: Vec<_> =
+            (1..=units).map(|unit| Some(0.5 * unit as f64).filter(|_| unit < units)).collect();
+        let median = figure("ra_median_deg", Reduction::Median, &errors);
+        sample(vec![figure("hit_rate", Reduction::Rate, &hits), median])
+    }
+
+    /// A baseline of so many blocks of one unit, and the folder that it is in.
+    fn written(units: usize) -> (Baseline, TempDir) {
+        let mut baseline = Baseline::new(run(units), "a test", Some(1)).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        (baseline, folder)
+    }
+
+    #[test]
+    fn a_baseline_is_read_as_it_was_written() {
+        for units in [5, 6, 40] {
+            let (baseline, folder) = written(units);
+            assert_eq!(Baseline::read(folder.path()).unwrap(), baseline);
+            let rows = std::fs::read(folder.path().join("rows.parquet")).unwrap();
+            assert_eq!(baseline.header.rows_sha256, sha256_hex(rows));
+            Checksums::check(folder.path(), |_| true).unwrap();
+            let sums = std::fs::read_to_string(folder.path().join("SHA256SUMS")).unwrap();
+            assert!(NAMES.iter().all(|name| sums.contains(name)), "{sums}");
+        }
+    }
+
+    /// What a figure counts by stands in the header alone.
+    #[test]
+    fn limits_and_attitudes_are_read_back() {
+        let mut sample = run(6);
+        let figure = &mut sample.table.figures[1];
+        (figure.limit_deg, figure.attitude) = (Some(0.024), Some("true".to_owned()));
+        let mut baseline = Baseline::new(sample, "a test", Some(1)).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        let told = &Baseline::read(folder.path()).unwrap();
+        assert_eq!(told, &baseline);
+        assert_eq!(told.header.figures["ra_median_deg"].limit_deg, Some(0.024));
+        assert_eq!(told.header.figures["ra_median_deg"].attitude.as_deref(), Some("true"));
+    }
+
+    /// The states that a `--replace` goes through, as a kill leaves them: there is always one of the two.
+    #[test]
+    fn a_replacement_that_is_killed_leaves_one_of_the_two() {
+        let [(old, folder), (new, other)] = [written(6), written(7)];
+        let at = |name: &str| folder.path().join(name);
+        let waiting = waiting_rows(folder.path(), &new.header.rows_sha256);
+        std::fs::copy(other.path().join("rows.parquet"), &waiting).unwrap();
+        assert_eq!(Baseline::read(folder.path()).unwrap(), old);
+        std::fs::remove_file(at("SHA256SUMS")).unwrap();
+        assert_eq!(Baseline::read(folder.path()).unwrap(), old);
+        std::fs::copy(other.path().join("baseline.toml"), at("baseline.toml")).unwrap();
+        assert_eq!(Baseline::read(folder.path()).unwrap(), new);
+        // Of what was killed here, the next one has no need; and until it has its own header, it leaves what the old one means.
+        let mut third = Baseline::new(run(8), "third", Some(1)).unwrap();
+        third.write(folder.path(), Replace::Allow).unwrap();
+        assert_eq!(Baseline::read(folder.path()).unwrap(), third);
+    }
+
+    #[test]
+    fn a_baseline_replaces_nothing_else() {
+        let (mut baseline, folder) = written(6);
+        let parts = |name: &str, text: &str, expected: &str| {
+            let other = tempfile::tempdir().unwrap();
+            std::fs::write(other.path().join(name), text).unwrap();
+            for replace in [Replace::Refuse, Replace::Allow] {
+                let message = baseline.clone().write(other.path(), replace).unwrap_err().to_string();
+                assert!(message.contains(name) && message.contains(expected), "{message}");
+            }
+            assert_eq!(std::fs::read_dir(other.path()).unwrap().count(), 1);
+            assert_eq!(std::fs::read_to_string(other.path().join(name)).unwrap(), text);
+        };
+        parts("baseline.toml", "name = 1\n", "another file");
+        parts("rows.parquet", "mine", "another file");
+        parts("SHA256SUMS", &format!("{}  run.toml\n", "0".repeat(64)), "checksums of the files");
+        baseline.write(folder.path(), Replace::Allow).unwrap();
+    }
+
+    #[test]
+    fn a_baseline_is_replaced_when_that_is_allowed_and_not_otherwise() {
+        let (_, folder) = written(6);
+        let mut other = Baseline::new(run(7), "another", Some(1)).unwrap();
+        let message = other.write(folder.path(), Replace::Refuse).unwrap_err().to_string();
+        assert!(
+            message.contains("baseline.toml: exists; a baseline is replaced with --replace"),
+            "{message}"
+        );
+        assert_eq!(Baseline::read(folder.path()).unwrap().header.units, 6);
+        other.write(folder.path(), Replace::Allow).unwrap();
+        assert_eq!(Baseline::read(folder.path()).unwrap(), other);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+        // A folder that is not there yet, and one with the rows alone.
+        let inner = folder.path().join("a/b");
+        other.write(&inner, Replace::Allow).unwrap();
+        std::fs::remove_file(inner.join("baseline.toml")).unwrap();
+        let message = other.write(&inner, Replace::Refuse).unwrap_err().to_string();
+        assert!(message.contains("rows.parquet: exists"), "{message}");
+    }
+
+    #[test]
+    fn the_header_tells_how_the_run_is_cut_and_what_came_of_it() {
+        let (baseline, _) = written(8);
+        let header = &baseline.header;
+        assert_eq!((header.format, header.units, header.reason.as_str()), (2, 8, "a test"));
+        assert_eq!((header.blocks.count, header.blocks.length), (8, 1));
+        let told = |by: &str, value, of| BaselineFigure {
+            by: by.to_owned(),
+            value,
+            of,
+            tolerance: if by == "rate" { 0.001 } else { 0.022 },
+            limit_deg: None,
+            attitude: None,
+        };
+        assert_eq!(header.figures["hit_rate"], told("rate", Some(0.875), 8));
+        // 0.5, 1, … 3.5.
+        assert_eq!(header.figures["ra_median_deg"], told("median", Some(2.0), 7));
+        assert_eq!(header.run, baseline.sample.identity);
+        // Nothing said of the length: thirty units, of 200 seven blocks.
+        let of_days = Baseline::new(run(200), " why ", None).unwrap();
+        assert_eq!((of_days.blocks.count(), of_days.header.blocks.length), (7, 30));
+        assert_eq!(of_days.header.reason, "why");
+        // Errors that grow all the time are remembered all the time.
+        assert_eq!(of_days.header.blocks.memory_of, "ra_median_deg");
+        let memory = of_days.header.blocks.memory;
+        assert!(memory > 10.0 && memory * 10.0 == (memory * 10.0).round(), "{memory}");
+    }
+
+    /// Errors that grow through 400 units are remembered all along: thirteen blocks of thirty, and eight of fifty for other frames.
+    #[test]
+    fn blocks_for_other_frames_are_longer_unless_their_length_was_given() {
+        let counts = |length| {
+            let baseline = Baseline::new(run(400), "a test", length).unwrap();
+            (baseline.blocks.count(), baseline.blocks_for_other_frames().count())
+        };
+        assert_eq!(counts(None), (13, 8));
+        assert_eq!(counts(Some(20)), (20, 20));
+    }
+
+    #[test]
+    fn a_baseline_keeps_the_tolerances_that_it_is_given() {
+        let with = |name: &str| {
+            let baseline = Baseline::new(run(8), "a test", Some(1)).unwrap();
+            baseline.with_tolerances(&IndexMap::from([(name.to_owned(), 0.25)]))
+        };
+        let mut baseline = with("hit_rate").unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        let told = Baseline::read(folder.path()).unwrap();
+        let tolerance = |name: &str| told.header.figures[name].tolerance;
+        assert_eq!((tolerance("hit_rate"), tolerance("ra_median_deg")), (0.25, 0.022));
+        let message = with("hit_rat").unwrap_err().to_string();
+        assert!(
+            message.contains("--tolerance names `hit_rat`") && message.contains("`hit_rate`?"),
+            "{message}"
+        );
+    }
+
+    #[test]
+    fn a_baseline_needs_a_reason_and_five_blocks() {
+        let message =
+            |units, reason, length| Baseline::new(run(units), reason, length).unwrap_err().to_string();
+        assert!(message(8, " \n", None).contains("--reason is empty"));
+        let few = message(4, "a test", Some(1));
+        assert!(few.contains("the result has 4 frames in 4 blocks, expected at least 5"), "{few}");
+        assert_eq!(Baseline::new(run(5), "a test", Some(1)).unwrap().blocks.count(), 5);
+    }
+
+    /// Fewer blocks than can be found different, however they came into the file.
+    #[test]
+    fn a_baseline_of_four_blocks_is_refused_when_it_is_read() {
+        let mut baseline = Baseline::new(run(8), "a test", Some(1)).unwrap();
+        baseline.blocks = Blocks::every(8, 2);
+        baseline.header.blocks.count = 4;
+        let folder = tempfile::tempdir().unwrap();
+        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        let message = Baseline::read(folder.path()).unwrap_err().to_string();
+        let parts = ["blocks.count", "is 4, expected the blocks of", "(4), at least 5"];
+        assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+    }
+
+    #[test]
+    fn a_header_that_is_not_that_of_its_rows_is_told_by_its_place() {
+        let (baseline, folder) = written(6);
+        let path = folder.path().join("baseline.toml");
+        let header = std::fs::read_to_string(&path).unwrap();
+        let refused = |old: &str, new: &str, parts: &[&str]| {
+            let text = header.replacen(old, new, 1);
+            assert_ne!(text, header, "{old}");
+            std::fs::write(&path, text).unwrap();
+            let message = Baseline::read(folder.path()).unwrap_err().to_string();
+            assert!(parts.iter().all(|part| message.contains(part)), "{old}: {message}");
+        };
+        refused("format = 2", "format = 3", &["baseline.toml:1:10: format", "is 3, expected 2"]);
+        refused("units = 6", "units = 7", &["units", "is 7, expected 6, the rows of"]);
+        refused("count = 6", "count = 7", &["blocks.count", "is 7, expected the blocks of", "(6)"]);
+        refused(
+            "by = \"median\"",
+            "by = \"middle\"",
+            &["figures.ra_median_deg.by", "rate, mean, rms, median"],
+        );
+        // 0.5, 1 … 2.5.
+        refused("value = 1.5", "value = 1.25", &["figures.ra_median_deg", "expected 1.5 of 5"]);
+        refused(
+            "tolerance = 0.001",
+            "tolerance = -0.001",
+            &["figures.hit_rate.tolerance", "is -0.001, expected a size of 0"],
+        );
+        refused("tolerance = 0.001", "tolerance = inf", &["figures.hit_rate.tolerance", "is inf"]);
+        refused("of = 5", "of = 4", &["figures.ra_median_deg", "expected 1.5 of 5"]);
+        refused(&baseline.header.rows_sha256, "00", &["rows_sha256", "one of the two files was changed"]);
+        // What nothing in the rows can contradict, the checksums do.
+        refused("reason = \"a test\"", "reason = \"a text\"", &["SHA-256", "damaged"]);
+    }
+
+    #[test]
+    fn rows_that_changed_are_told_before_they_are_read() {
+        let (_, folder) = written(6);
+        std::fs::write(folder.path().join("rows.parquet"), "no table").unwrap();
+        let message = Baseline::read(folder.path()).unwrap_err().to_string();
+        assert!(message.contains("rows_sha256") && message.contains("was changed"), "{message}");
+        let message = Baseline::read(&folder.path().join("nowhere")).unwrap_err().to_string();
+        assert!(message.contains("nowhere: there is no `baseline.toml`"), "{message}");
+    }
+}

@@ -1,0 +1,276 @@
+//! `rows.parquet` of a baseline: a row a unit, with its block and what it adds to each figure.
+
+use std::fs::File;
+use std::path::Path;
+
+use files::{
+    Cell, Cells, Column, ColumnValues, FileError, ParquetFile, Place, TableOptions, TextCells, write_table,
+};
+use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
+
+/// After the name of a figure of whose values a unit may have several: how many they are.
+const OF: &str = ".of";
+/// Rows read at a time.
+const BATCH_ROWS: usize = 8192;
+
+/// Writes the rows, with the number of each one's block, into a file that will be `path`.
+pub(crate) fn write(
+    file: &File,
+    path: &Path,
+    table: &UnitTable,
+    block_of: impl Fn(usize) -> usize,
+) -> Result<(), FileError> {
+    let units = &table.units;
+    let mut columns = vec![
+        Column::new("number", units.iter().map(|unit| unit.number)),
+        Column::new("block", (0..units.len()).map(|unit| block_of(unit) as u32)),
+        Column::texts("group", units.iter().map(|unit| &unit.group)),
+        Column::texts("verdict", units.iter().map(|unit| &unit.verdict)),
+        Column::nullable_texts("cause", units.iter().map(|unit| unit.cause.as_ref())),
+    ];
+    for figure in &table.figures {
+        let sums = figure.terms.iter().map(|term| (term.of > 0).then_some(term.sum as f32));
+        let sums = Column::nullable(&figure.name, sums);
+        // Amounts seldom repeat, and the last of their bytes are nought: byte by byte they are short.
+        columns.push(if figure.reduction == Reduction::Rate { sums } else { sums.byte_by_byte() });
+        if figure.terms.iter().any(|term| term.of > 1) {
+            columns.push(Column::new(of_name(&figure.name), figure.terms.iter().map(|term| term.of)));
+        }
+    }
+    write_table(file, path, &columns, TableOptions { has_statistics: false, ..TableOptions::default() })
+}
+
+/// The column that says of how many values each amount of a figure is.
+fn of_name(figure: &str) -> String {
+    format!("{figure}{OF}")
+}
+
+/// Reads the rows of these figures, and the numbers of their blocks, which ascend by one from 0.
+pub(crate) fn read(
+    path: &Path,
+    figures: &[(String, Reduction)],
+) -> Result<(UnitTable, Vec<usize>), FileError> {
+    let mut table = UnitTable {
+        units: Vec::new(),
+        figures: figures
+            .iter()
+            .map(|(name, reduction)| FigureTerms::counted(name, *reduction, Vec::new()))
+            .collect(),
+    };
+    let mut blocks = Vec::new();
+    let file = ParquetFile::open(path)?;
+    // What is there: a column that is missing is missed by its type below.
+    let names: Vec<String> = names(figures).filter(|name| file.column(name).is_some()).collect();
+    let of_other_type = names.iter().find(|name| file.column(name).is_some_and(|c| c.column_type.is_err()));
+    if let Some(name) = of_other_type {
+        return Err(no_column(path, name));
+    }
+    for batch in file.batches(&names, BATCH_ROWS)? {
+        add(path, &batch?, &mut table, &mut blocks)?;
+    }
+    let refuse = |row: u64, column: &str, value: &dyn std::fmt::Display, expected: String| {
+        FileError::value(path, Place::Row(row), column, value, expected)
+    };
+    for (row, (before, this)) in (1..).zip(table.units.iter().zip(table.units.iter().skip(1))) {
+        if this.number <= before.number {
+            let expected = format!("more than {}, that of the row before", before.number);
+            return Err(refuse(row, "number", &this.number, expected));
+        }
+    }
+    for (row, (before, this)) in (1..).zip(blocks.iter().zip(blocks.iter().skip(1))) {
+        if this != before && *this != before + 1 {
+            return Err(refuse(row, "block", this, format!("{before} or {}", before + 1)));
+        }
+    }
+    match blocks.first() {
+        Some(0) => Ok((table, blocks)),
+        Some(first) => Err(FileError::value(path, Place::Row(0), "block", first, "0 in the first row")),
+        None => Err(FileError::value(path, Place::Header, "number of rows", 0, "at least 1")),
+    }
+}
+
+/// The columns of a table of these figures.
+fn names(figures: &[(String, Reduction)]) -> impl Iterator<Item = String> {
+    let ofs = figures.iter().flat_map(|(name, _)| [name.clone(), of_name(name)]);
+    ["number", "block", "group", "verdict", "cause"].map(str::to_owned).into_iter().chain(ofs)
+}
+
+/// Either file may be the damaged one, so the message names both.
+fn no_column(path: &Path, name: &str) -> FileError {
+    let wanted = "of its type, though the figures of baseline.toml ask for it";
+    FileError::format(path, "Parquet", format!("it has no column `{name}` {wanted}"))
+}
+
+fn add(
+    path: &Path,
+    batch: &[Column],
+    table: &mut UnitTable,
+    blocks: &mut Vec<usize>,
+) -> Result<(), FileError> {
+    let find = |name: &str| batch.iter().find(|column| column.name() == name).map(Column::values);
+    fn cells<'a, T: Cell>(
+        path: &Path,
+        found: Option<&'a ColumnValues>,
+        name: &str,
+    ) -> Result<&'a Cells<T>, FileError> {
+        found.and_then(T::cells).ok_or_else(|| no_column(path, name))
+    }
+    let texts = |name: &str| -> Result<&TextCells, FileError> {
+        match find(name) {
+            Some(ColumnValues::Utf8(texts)) => Ok(texts),
+            _ => Err(no_column(path, name)),
+        }
+    };
+    let first_row = table.units.len();
+    let numbers: &Cells<u64> = cells(path, find("number"), "number")?;
+    let of_blocks: &Cells<u32> = cells(path, find("block"), "block")?;
+    let (groups, verdicts, causes) = (texts("group")?, texts("verdict")?, texts("cause")?);
+    let units = numbers.values().iter().zip(of_blocks.values()).enumerate();
+    for (row, (&number, &block)) in units {
+        table.units.push(UnitVerdict {
+            number,
+            group: groups.value(row).to_owned(),
+            verdict: verdicts.value(row).to_owned(),
+            cause: causes.get(row).map(str::to_owned),
+        });
+        blocks.push(block as usize);
+    }
+    for figure in &mut table.figures {
+        let sums: &Cells<f32> = cells(path, find(&figure.name), &figure.name)?;
+        let of = of_name(&figure.name);
+        let ofs: Option<&Cells<u32>> = find(&of).map(|found| cells(path, Some(found), &of)).transpose()?;
+        for (row, sum) in sums.iter().enumerate() {
+            let Some(sum) = sum.map(f64::from) else {
+                figure.terms.push(Term::default());
+                continue;
+            };
+            if !sum.is_finite() {
+                let place = Place::Row((first_row + row) as u64);
+                return Err(FileError::value(path, place, &figure.name, sum, "a finite number"));
+            }
+            let of = ofs.map_or(1, |ofs| ofs.values().get(row).copied().unwrap_or_default());
+            figure.terms.push(Term { sum, of });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use parquet::basic::Encoding;
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+
+    use super::*;
+    use crate::hand_made::{figure, sample, unit};
+
+    /// A rate of several values a unit, a rate of one, and an amount; each with a unit that has no value.
+    fn table() -> UnitTable {
+        let term = |sum, of| Term { sum, of };
+        let pooled = vec![term(2.0, 3), Term::default(), term(0.0, 1), term(0.0, 2)];
+        let pooled = FigureTerms::counted("held_rate", Reduction::Rate, pooled);
+        let rate = figure("hit_rate", Reduction::Rate, &[None, Some(1.0), Some(0.0), Some(1.0)]);
+        let amount = figure("ra_rms_deg", Reduction::Rms, &[Some(0.5), Some(-0.25), None, Some(0.0)]);
+        let mut table = sample(vec![pooled, rate, amount]).table;
+        table.units[1] = unit(3, "missed", Some("not_linked"));
+        table.units[2] = unit(4, "wrong", Some(""));
+        table.units[3] = unit(9, "correct", None);
+        table
+    }
+
+    /// What is read of a table that was written with the numbers of its blocks.
+    fn there_and_back(table: &UnitTable, blocks: &[usize]) -> Result<(UnitTable, Vec<usize>), FileError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        write(&File::create_new(&path).unwrap(), &path, table, |unit| blocks[unit]).unwrap();
+        let figures: Vec<_> =
+            table.figures.iter().map(|figure| (figure.name.clone(), figure.reduction)).collect();
+        read(&path, &figures)
+    }
+
+    fn refusal(table: &UnitTable, blocks: &[usize]) -> String {
+        there_and_back(table, blocks).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_is_read_is_what_was_written() {
+        let table = table();
+        assert_eq!(there_and_back(&table, &[0, 0, 1, 2]).unwrap(), (table, vec![0, 0, 1, 2]));
+        // Of two values or none, none alone.
+        let terms = vec![Term { sum: 1.0, of: 2 }, Term::default()];
+        let pairs = FigureTerms::counted("held_rate", Reduction::Rate, terms);
+        let table = sample(vec![pairs]).table;
+        assert_eq!(there_and_back(&table, &[0, 1]).unwrap().0, table);
+    }
+
+    /// Of a gate's repository, a baseline is the largest part: nothing is in a file that need not be.
+    #[test]
+    fn counts_are_told_where_they_are_more_than_one_and_amounts_byte_by_byte() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        write(&File::create_new(&path).unwrap(), &path, &table(), |_| 0).unwrap();
+        let file = SerializedFileReader::new(File::open(&path).unwrap()).unwrap();
+        let columns: Vec<(String, bool)> = file.metadata().row_groups()[0]
+            .columns()
+            .iter()
+            .map(|column| {
+                let is_split = column.encodings().any(|encoding| encoding == Encoding::BYTE_STREAM_SPLIT);
+                (column.column_path().string(), is_split)
+            })
+            .collect();
+        let split = [
+            ("number", false),
+            ("block", false),
+            ("group", false),
+            ("verdict", false),
+            ("cause", false),
+            ("held_rate", false),
+            ("held_rate.of", false),
+            ("hit_rate", false),
+            ("ra_rms_deg", true),
+        ];
+        assert_eq!(columns, split.map(|(name, is_split)| (name.to_owned(), is_split)));
+    }
+
+    #[test]
+    fn units_ascend_and_blocks_ascend_by_one_from_nought() {
+        let mut table = table();
+        for (blocks, parts) in [
+            ([0, 1, 3, 3], ["row 2", "`block` is `3`", "1 or 2"]),
+            ([0, 1, 0, 1], ["row 2", "`block` is `0`", "1 or 2"]),
+            ([1, 1, 2, 3], ["row 0", "`block` is `1`", "0 in the first row"]),
+        ] {
+            let message = refusal(&table, &blocks);
+            assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+        }
+        for number in [3, 2] {
+            table.units[2].number = number;
+            let message = refusal(&table, &[0; 4]);
+            let parts = ["row 2", &format!("`number` is `{number}`"), "more than 3, that of the row before"];
+            assert!(parts.iter().all(|part| message.contains(part)), "{message}");
+        }
+        let message = refusal(&UnitTable::default(), &[]);
+        assert!(message.contains("`number of rows` is `0`, expected at least 1"), "{message}");
+    }
+
+    /// Rows are counted over the whole file, and not over what is read at a time.
+    #[test]
+    fn a_value_that_is_no_number_is_told_with_its_row() {
+        let row = BATCH_ROWS + 3;
+        let mut values = vec![Some(0.5); row + 2];
+        values[row] = Some(f64::NAN);
+        let table = sample(vec![figure("ra_rms_deg", Reduction::Rms, &values)]).table;
+        let message = refusal(&table, &vec![0; row + 2]);
+        assert!(message.contains("row 8195: `ra_rms_deg` is `NaN`, expected a finite number"), "{message}");
+    }
+
+    #[test]
+    fn a_column_that_is_missing_or_of_another_type_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        write(&File::create_new(&path).unwrap(), &path, &table(), |_| 0).unwrap();
+        for name in ["dec_rms_deg", "number"] {
+            let message = read(&path, &[(name.to_owned(), Reduction::Rms)]).unwrap_err().to_string();
+            assert!(message.contains(&format!("no column `{name}` of its type")), "{message}");
+        }
+    }
+}

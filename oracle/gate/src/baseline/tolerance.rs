@@ -1,0 +1,54 @@
+//! By how much a figure may be worse and pass.
+use run::figure_called;
+use score::{Better, FigureTerms, Kind};
+
+use crate::dependence::influence::values;
+
+/// Of a rate: a tenth of a percent.
+const OF_RATE: f64 = 0.001;
+/// Of an amount: so much of its own size. What a change of the last digits or of a compiler does is no worsening, however surely it is
+/// seen.
+const OF_AMOUNT: f64 = 0.01;
+
+/// The tolerance of a figure of a baseline that is given none, in its unit: of a rate a tenth of a percent, of an amount a hundredth of the
+/// root mean square of its values (about the best value of what has one), to two digits.
+pub(crate) fn default_tolerance(figure: &FigureTerms) -> f64 {
+    let sense = figure_called(&figure.name).sense;
+    match sense.kind {
+        Kind::Rate => OF_RATE,
+        Kind::Amount => {
+            let best = if let Better::Near(best) = sense.better { best } else { 0.0 };
+            let all = values(&figure.terms);
+            let squares: f64 = all.iter().map(|x| (x - best) * (x - best)).sum();
+            let size = if all.is_empty() { 0.0 } else { (squares / all.len() as f64).sqrt() };
+            two_digits(OF_AMOUNT * size)
+        }
+    }
+}
+
+/// As it is read in a file.
+fn two_digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use score::Reduction;
+
+    use super::*;
+    use crate::hand_made::figure;
+
+    #[test]
+    fn a_figure_may_be_worse_by_a_hundredth_of_its_size_or_a_tenth_of_a_percent() {
+        let tolerance = |name: &str, reduction, values: &[f64]| {
+            let values: Vec<_> = values.iter().map(|value| Some(*value)).chain([None]).collect();
+            default_tolerance(&figure(name, reduction, &values))
+        };
+        // The root mean square of 3 and −4 is √12.5 = 3.54.
+        assert_eq!(tolerance("ra_rms_deg", Reduction::Rms, &[3.0, -4.0]), 0.035);
+        // The size of a NEES is its distance from 1.
+        assert_eq!(tolerance("nees_mean", Reduction::Mean, &[4.0, -3.0]), 0.035);
+        assert_eq!(tolerance("hit_rate", Reduction::Rate, &[1.0, 0.0]), 0.001);
+        assert_eq!(tolerance("ra_rms_deg", Reduction::Rms, &[]), 0.0);
+    }
+}

@@ -1,0 +1,326 @@
+//! A result against a baseline.
+use files::Failure;
+use indexmap::IndexMap;
+use run::figure_called;
+use statistics::{BlockEffects, Exchanges, joint_test};
+
+use super::comparable::{check_reported, check_units, pairs};
+use super::flips::Flips;
+use super::judge::{ALPHA_OF_RUNS, Judge};
+use super::notes::{Noted, notes};
+use super::options::CompareOptions;
+use crate::baseline::Baseline;
+use crate::dependence::blocks::sequences;
+use crate::dependence::effects::{FigureEffect, interval, neighbour_correlation};
+use crate::dependence::memory::Thirds;
+use crate::dependence::runs::loss_runs;
+use crate::identity::{Pairing, SourceKind};
+use crate::report::{FigureVerdict, GateReport};
+use crate::sample::Sample;
+
+/// Compares a result with a baseline.
+///
+/// # Errors
+/// [`Failure::Usage`] for options that are not allowed, for two samples that cannot be compared (with what differs), and when no figure
+/// has enough data to be found worse whatever happens: a gate that cannot shut must not pass for one.
+pub fn compare(
+    baseline: &Baseline,
+    result: &Sample,
+    options: &CompareOptions,
+) -> Result<GateReport, Failure> {
+    let alpha = options.alpha;
+    if !(alpha > 0.0 && alpha < 0.5) {
+        return Err(Failure::Usage(format!("--alpha is {alpha}, expected a number above 0 and below 0.5")));
+    }
+    let identity = &baseline.sample.identity;
+    let pairing = identity.pairing(&result.identity)?;
+    let units = identity.kind.units(&identity.world);
+    check_units(baseline, result, &units)?;
+    check_reported(baseline, result, &units)?;
+    let pairs = pairs(baseline, result, options)?;
+
+    let blocks = &match pairing {
+        Pairing::Frames => baseline.blocks.clone(),
+        Pairing::Blocks => baseline.blocks_for_other_frames(),
+    };
+    let exchanges = Exchanges::new(blocks.count());
+    let thirds = Thirds::of(identity.kind, &identity.world, &baseline.sample.table, blocks);
+    let effects: Vec<FigureEffect> = pairs
+        .iter()
+        .map(|(before, after)| {
+            let of_baseline =
+                baseline.header.figures.get(&before.name).map_or(0.0, |figure| figure.tolerance);
+            let tolerance = options.tolerances.get(&before.name).copied().unwrap_or(of_baseline);
+            let sense = figure_called(&before.name).sense;
+            let effect = FigureEffect::of_runs(sense, before, after, blocks, tolerance);
+            // On the same frames what slowly varies is in both runs; with others it is in the difference.
+            match pairing {
+                Pairing::Frames => effect,
+                Pairing::Blocks if thirds.are_remembered(before, after) => effect.beyond_blocks(),
+                Pairing::Blocks => effect,
+            }
+        })
+        .collect();
+    // What shuts the gate is tested together: every worsening, and of figures with a best value the change to the other side too.
+    let with_best_value: Vec<usize> = (0..effects.len()).filter(|i| effects[*i].has_best_value()).collect();
+    let other_side = with_best_value.iter().map(|i| effects[*i].better());
+    let worse: Vec<BlockEffects> =
+        effects.iter().map(|effect| effect.worse.clone()).chain(other_side).collect();
+    let for_the_better = |effect: &FigureEffect| {
+        let mut better = effect.better();
+        if effect.has_best_value() {
+            better.effects.fill(0.0);
+        }
+        better
+    };
+    let better: Vec<BlockEffects> = effects.iter().map(for_the_better).collect();
+    let (worse, better) = (joint_test(&worse, &exchanges, alpha), joint_test(&better, &exchanges, alpha));
+
+    // The draws of a study are independent of one another, and none of their order is an event.
+    let have_runs = pairing == Pairing::Frames && identity.kind == SourceKind::Run;
+    let units_of_baseline = &baseline.sample.table.units;
+    let loss_runs = if have_runs {
+        let sequences = sequences(identity.kind, &identity.world, &baseline.sample.table);
+        loss_runs(&pairs, units_of_baseline, &sequences, ALPHA_OF_RUNS * alpha)
+    } else {
+        vec![None; pairs.len()]
+    };
+
+    let mut figures = IndexMap::new();
+    let mut correlation: f64 = 0.0;
+    for (index, ((before, after), effect)) in pairs.iter().zip(&effects).enumerate() {
+        let other_side = with_best_value.iter().position(|i| *i == index).map(|place| effects.len() + place);
+        let loss_run = loss_runs[index].as_ref();
+        let judge = Judge { effect, worse: &worse, better: &better, index, other_side, alpha, loss_run };
+        let interval = interval(before, after, blocks, &exchanges);
+        correlation = correlation.max(neighbour_correlation(&effect.worse.effects));
+        figures.insert(before.name.clone(), judge.report(interval.map(|i| (i.low, i.high))));
+    }
+    if figures.values().all(|figure| figure.verdict == FigureVerdict::TooLittleData) {
+        return Err(Failure::Usage(format!(
+            "cannot compare: {} {units} in {} blocks leave no figure that could be found worse at alpha = {alpha}, expected more of them",
+            baseline.header.units,
+            blocks.count()
+        )));
+    }
+    let beyond_blocks: Vec<&str> = pairs
+        .iter()
+        .zip(&effects)
+        .filter(|(_, effect)| effect.is_beyond_blocks)
+        .map(|((before, _), _)| before.name.as_str())
+        .collect();
+    let any = |is: fn(FigureVerdict) -> bool| figures.values().any(|figure| is(figure.verdict));
+    Ok(GateReport {
+        verdict: if any(FigureVerdict::is_worse) {
+            FigureVerdict::Worse
+        } else if any(|verdict| verdict == FigureVerdict::Changed) {
+            FigureVerdict::Changed
+        } else {
+            FigureVerdict::NoWorse
+        },
+        accepted: options.accept_changed.clone(),
+        name: identity.name.clone(),
+        world: identity.world.clone(),
+        reason: baseline.header.reason.clone(),
+        units,
+        count: baseline.header.units,
+        pairing,
+        baseline_seed: identity.seed,
+        result_seed: result.identity.seed,
+        baseline_version: identity.version.clone(),
+        result_version: result.identity.version.clone(),
+        alpha,
+        blocks: blocks.count() as u64,
+        block_length: blocks.mean_length(),
+        neighbour_correlation: correlation,
+        notes: notes(&Noted {
+            baseline,
+            result,
+            pairing,
+            alpha,
+            figures: &figures,
+            beyond_blocks: &beyond_blocks,
+            correlation,
+            blocks: blocks.count(),
+        }),
+        figures,
+        flips: (pairing == Pairing::Frames)
+            .then(|| Flips::of(&baseline.sample.table.units, &result.table.units)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::{AFTER, BEFORE, baseline, compared, figure, hits, rate, refusal, sample, unit};
+    use score::Reduction;
+
+    /// Of nine frames that changed eight were lost: that of a fair coin, (9 + 1)/2⁹, and of one that were won, (2⁹ − 1)/2⁹.
+    #[test]
+    fn of_hits_and_misses_the_probability_is_that_of_mcnemars_exact_test() {
+        let report = compared(hits(&BEFORE), &hits(&AFTER));
+        let found = &report.figures["hit_rate"];
+        assert_eq!((report.verdict, found.verdict), (FigureVerdict::Worse, FigureVerdict::Worse));
+        assert_eq!(
+            (found.p, found.adjusted_p, found.better_adjusted_p),
+            (10.0 / 512.0, 10.0 / 512.0, 511.0 / 512.0)
+        );
+        assert_eq!((found.baseline, found.result), (Some(10.0 / 12.0), Some(3.0 / 12.0)));
+        assert_eq!((found.baseline_of, found.result_of, found.blocks), (12, 12, 12));
+        assert!((found.worse_by.unwrap() - 7.0 / 12.0).abs() < 1e-12, "{found:?}");
+        assert!((found.difference.unwrap() + 7.0 / 12.0).abs() < 1e-12, "{found:?}");
+        assert_eq!((found.better.as_str(), found.tolerance), ("more", 0.001));
+        assert_eq!(report.worse().collect::<Vec<_>>(), ["hit_rate"]);
+
+        let report = compared(hits(&AFTER), &hits(&BEFORE));
+        assert_eq!(report.verdict, FigureVerdict::NoWorse);
+        assert_eq!(report.figures["hit_rate"].verdict, FigureVerdict::Better);
+    }
+
+    /// A bias of −1 that becomes one of −0.5, of +0.9 or of −1.5: the first two are nearer to nought and no improvement.
+    #[test]
+    fn a_bias_that_points_to_nought_has_changed_and_shuts_the_gate() {
+        let bias = |bias: f64| {
+            let values: Vec<_> = (0..12).map(|i| Some(bias + 0.01 * f64::from(i % 3))).collect();
+            sample(vec![figure("ra_mean_deg", Reduction::Mean, &values), rate("hit_rate", &BEFORE)])
+        };
+        for (after, verdict) in [
+            (-0.5, FigureVerdict::Changed),
+            (0.9, FigureVerdict::Changed),
+            (-1.5, FigureVerdict::Worse),
+            (-1.001, FigureVerdict::NoWorse),
+        ] {
+            let report = compared(bias(-1.0), &bias(after));
+            assert_eq!(
+                (report.verdict, report.figures["ra_mean_deg"].verdict),
+                (verdict, verdict),
+                "{after}"
+            );
+            assert_eq!(report.is_shut(), verdict != FigureVerdict::NoWorse);
+            let accepting = CompareOptions {
+                accept_changed: Some("a new centroider".to_owned()),
+                ..CompareOptions::default()
+            };
+            let report = compare(&baseline(bias(-1.0)), &bias(after), &accepting).unwrap();
+            assert_eq!(report.verdict, verdict);
+            assert_eq!(report.is_shut(), verdict == FigureVerdict::Worse);
+        }
+    }
+
+    #[test]
+    fn a_report_tells_what_was_compared_and_the_frames_that_changed() {
+        let mut after = hits(&AFTER);
+        after.identity.version = "0.2.0".to_owned();
+        after.table.units[3] = unit(3, "missed", Some("not_linked"));
+        let report = compared(hits(&BEFORE), &after);
+        assert_eq!((report.name.as_str(), report.world.as_str()), ("made by hand", "far_range"));
+        assert_eq!((report.reason.as_str(), report.units.as_str(), report.count), ("a test", "frames", 12));
+        assert_eq!((report.baseline_seed, report.result_seed), (1, 1));
+        assert_eq!((report.baseline_version.as_str(), report.result_version.as_str()), ("0.1.0", "0.2.0"));
+        assert_eq!((report.alpha, report.blocks, report.block_length), (0.05, 12, 1.0));
+        let flips = report.flips.unwrap();
+        assert_eq!((report.pairing, flips.lost, flips.units[0].number), (Pairing::Frames, 1, 3));
+        // Of other frames nobody can say which changed.
+        after.identity.seed = 2;
+        let report = compared(hits(&BEFORE), &after);
+        assert_eq!((report.pairing, report.result_seed, report.flips), (Pairing::Blocks, 2, None));
+    }
+
+    #[test]
+    fn the_same_result_is_no_worse() {
+        let report = compared(hits(&BEFORE), &hits(&BEFORE));
+        let found = &report.figures["hit_rate"];
+        assert_eq!((report.verdict, found.verdict), (FigureVerdict::NoWorse, FigureVerdict::NoWorse));
+        assert_eq!((found.p, found.better_adjusted_p), (1.0, 1.0));
+        assert_eq!((found.difference, found.low, found.high), (Some(0.0), Some(0.0), Some(0.0)));
+        assert_eq!(report.neighbour_correlation, 0.0);
+        assert!(report.flips.unwrap().units.is_empty() && report.notes.is_empty());
+    }
+
+    /// Of two figures one rises from block to block, and one alternates.
+    #[test]
+    fn the_correlation_of_neighbours_is_the_largest_of_any_figure() {
+        let errors = |name: &str, values: [f64; 8]| figure(name, Reduction::Mean, &values.map(Some));
+        let nought = |name: &str| errors(name, [10.0; 8]);
+        let before = sample(vec![nought("a_mean"), nought("b_mean")]);
+        let after = sample(vec![
+            errors("a_mean", [11.0, 11.0, 12.0, 12.0, 14.0, 14.0, 15.0, 15.0]),
+            errors("b_mean", [11.0, 15.0, 11.0, 15.0, 11.0, 15.0, 11.0, 15.0]),
+        ]);
+        // About their mean the differences of the first are −2 −2 −1 −1 1 1 2 2: products 4 + 2 + 1 − 1 + 1 + 2 + 4 over squares of 20.
+        assert!((compared(before, &after).neighbour_correlation - 0.65).abs() < 1e-12);
+    }
+
+    #[test]
+    fn alpha_is_above_nought_and_below_a_half() {
+        let with = |alpha| CompareOptions { alpha, ..CompareOptions::default() };
+        for alpha in [0.0, 0.5, -0.05, 1.0, f64::NAN] {
+            let message = refusal(hits(&BEFORE), &hits(&AFTER), &with(alpha));
+            let expected = format!("--alpha is {alpha}, expected a number above 0 and below 0.5");
+            assert!(message.contains(&expected), "{message}");
+        }
+        // 10/512 is what the test finds.
+        for (alpha, verdict) in [(0.49, FigureVerdict::Worse), (0.015, FigureVerdict::NoWorse)] {
+            let report = compare(&baseline(hits(&BEFORE)), &hits(&AFTER), &with(alpha)).unwrap();
+            assert_eq!((report.verdict, report.alpha), (verdict, alpha));
+        }
+    }
+
+    /// Forty of 400 frames are lost: two or three blocks of twenty have it.
+    #[test]
+    fn what_is_lost_in_a_row_on_the_same_frames_is_worse_however_few_blocks_have_it() {
+        let bits = |lost: std::ops::Range<usize>| -> Vec<u8> {
+            (0..400).map(|frame| u8::from(frame % 40 != 0 && !lost.contains(&frame))).collect()
+        };
+        let baseline = Baseline::new(hits(&bits(0..0)), "a test", Some(20)).unwrap();
+        for lost in [0..40, 180..220, 360..400, 10..30] {
+            let report = compare(&baseline, &hits(&bits(lost.clone())), &CompareOptions::default()).unwrap();
+            let run = report.figures["hit_rate"].loss_run.clone().unwrap();
+            let frames = lost.len() as u64 - if lost.start == 10 { 0 } else { 1 };
+            assert_eq!((run.lost, run.won, run.longest), (frames, 0, frames));
+            assert_eq!((run.episode, run.smallest_visible), (3.0, 30));
+            let is_seen = frames >= 30;
+            assert_eq!(report.is_shut(), is_seen, "{lost:?}: {run:?}");
+            let is_noted = report.notes.iter().any(|note| note.contains("of them in a row"));
+            assert_eq!(is_noted, is_seen, "{:?}", report.notes);
+        }
+        let report = compare(&baseline, &hits(&bits(180..220)), &CompareOptions::default()).unwrap();
+        let expected = "hit rate: 39 frames were lost and 0 won, 39 of them in a row (numbers 180 to 219).";
+        assert!(report.notes[0].to_lowercase().starts_with(expected), "{}", report.notes[0]);
+        // What was won instead is no loss, and with another seed no frame is the same.
+        let better = compare(
+            &Baseline::new(hits(&bits(0..40)), "a test", Some(20)).unwrap(),
+            &hits(&bits(0..0)),
+            &CompareOptions::default(),
+        );
+        assert!(!better.unwrap().is_shut());
+        let mut other = hits(&bits(0..40));
+        other.identity.seed = 2;
+        let report = compare(&baseline, &other, &CompareOptions::default()).unwrap();
+        assert_eq!((report.is_shut(), report.figures["hit_rate"].loss_run.clone()), (false, None));
+    }
+
+    /// Of five blocks no exchange has a probability below 1/32: at 5 % they can be found different, at 3 % not.
+    #[test]
+    fn a_gate_that_cannot_shut_is_an_error() {
+        let with = |alpha| CompareOptions { alpha, ..CompareOptions::default() };
+        let (before, after) = (hits(&[1; 5]), hits(&[0; 5]));
+        let report = compare(&baseline(before.clone()), &after, &with(0.05)).unwrap();
+        assert_eq!(report.verdict, FigureVerdict::Worse);
+        let message = refusal(before, &after, &with(0.03));
+        let expected = "5 frames in 5 blocks leave no figure that could be found worse at alpha = 0.03";
+        assert!(message.contains(expected), "{message}");
+    }
+
+    /// Seven of twelve are lost: no worse where as many may be, and worse where one less may.
+    #[test]
+    fn a_figure_may_be_worse_by_its_tolerance() {
+        let with = |tolerance: f64| {
+            let tolerances = IndexMap::from([("hit_rate".to_owned(), tolerance)]);
+            let options = CompareOptions { tolerances, ..CompareOptions::default() };
+            compare(&baseline(hits(&BEFORE)), &hits(&AFTER), &options).unwrap().verdict
+        };
+        assert_eq!(with(7.01 / 12.0), FigureVerdict::NoWorse);
+        assert_eq!(with(6.99 / 12.0), FigureVerdict::Worse);
+    }
+}

@@ -1,0 +1,150 @@
+//! The units whose verdict is another one than in the baseline.
+use score::UnitVerdict;
+use serde::Serialize;
+
+/// How a verdict changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FlipKind {
+    /// It was right and is not any more; of a case: fewer of its frames are right.
+    Lost,
+    /// It is right and was not; of a case: more of its frames are right.
+    Won,
+    /// It is wrong or missed in another way.
+    Other,
+}
+
+/// A unit that changed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Flip {
+    /// Number of the frame, field or case.
+    pub number: u64,
+    /// The group that it belongs to.
+    pub group: String,
+    /// How it changed.
+    pub kind: FlipKind,
+    /// The verdict in the baseline.
+    pub baseline: String,
+    /// Its cause there.
+    pub baseline_cause: Option<String>,
+    /// The verdict in the result.
+    pub result: String,
+    /// Its cause there.
+    pub result_cause: Option<String>,
+}
+
+/// All units that changed, by number.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Flips {
+    /// How many were lost.
+    pub lost: u64,
+    /// How many were won.
+    pub won: u64,
+    /// How many changed otherwise.
+    pub other: u64,
+    /// Each of them.
+    pub units: Vec<Flip>,
+}
+
+impl Flips {
+    /// Of units that go together one by one.
+    pub(crate) fn of(baseline: &[UnitVerdict], result: &[UnitVerdict]) -> Self {
+        let mut flips = Self { lost: 0, won: 0, other: 0, units: Vec::new() };
+        for (before, after) in baseline.iter().zip(result) {
+            if (&before.verdict, &before.cause) == (&after.verdict, &after.cause) {
+                continue;
+            }
+            let kind = match goodness(&after.verdict).cmp(&goodness(&before.verdict)) {
+                std::cmp::Ordering::Less => FlipKind::Lost,
+                std::cmp::Ordering::Greater => FlipKind::Won,
+                std::cmp::Ordering::Equal => FlipKind::Other,
+            };
+            match kind {
+                FlipKind::Lost => flips.lost += 1,
+                FlipKind::Won => flips.won += 1,
+                FlipKind::Other => flips.other += 1,
+            }
+            flips.units.push(Flip {
+                number: before.number,
+                group: before.group.clone(),
+                kind,
+                baseline: before.verdict.clone(),
+                baseline_cause: before.cause.clone(),
+                result: after.verdict.clone(),
+                result_cause: after.cause.clone(),
+            });
+        }
+        flips
+    }
+}
+
+/// How many of a unit's frames are right, by its verdict's word: of a frame 1 or 0, of a case the count in `37 of 40`.
+fn goodness(verdict: &str) -> u64 {
+    match verdict {
+        "correct" | "success" => 1,
+        other => other.split_once(" of ").and_then(|(count, _)| count.parse().ok()).unwrap_or(0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::unit;
+
+    #[test]
+    fn flips_are_counted_by_what_became_of_the_unit() {
+        let baseline = [
+            unit(0, "correct", None),
+            unit(1, "correct", None),
+            unit(2, "missed", Some("not_linked")),
+            unit(3, "missed", Some("not_linked")),
+            unit(4, "37 of 40", None),
+        ];
+        let result = [
+            unit(0, "correct", None),
+            unit(1, "wrong", Some("taken_for_star")),
+            unit(2, "correct", None),
+            unit(3, "missed", Some("below_threshold")),
+            unit(4, "35 of 40", None),
+        ];
+        let flips = Flips::of(&baseline, &result);
+        assert_eq!((flips.lost, flips.won, flips.other), (2, 1, 1));
+        assert_eq!(flips.units.iter().map(|flip| flip.number).collect::<Vec<_>>(), [1, 2, 3, 4]);
+        assert_eq!(flips.units[0].result_cause.as_deref(), Some("taken_for_star"));
+    }
+
+    #[test]
+    fn right_is_what_the_words_of_either_world_and_of_a_study_say() {
+        for (verdict, expected) in [
+            ("correct", 1),
+            ("success", 1),
+            ("wrong", 0),
+            ("missed", 0),
+            ("no solution", 0),
+            ("37 of 40", 37),
+            ("0 of 40", 0),
+        ] {
+            assert_eq!(goodness(verdict), expected, "{verdict}");
+        }
+    }
+
+    #[test]
+    fn a_flip_tells_both_verdicts_and_both_causes() {
+        let before = [unit(7, "wrong", Some("taken_for_star"))];
+        let flips = Flips::of(&before, &[unit(7, "missed", Some("not_linked"))]);
+        assert_eq!((flips.lost, flips.won, flips.other), (0, 0, 1));
+        assert_eq!(
+            flips.units,
+            [Flip {
+                number: 7,
+                group: "day 1".to_owned(),
+                kind: FlipKind::Other,
+                baseline: "wrong".to_owned(),
+                baseline_cause: Some("taken_for_star".to_owned()),
+                result: "missed".to_owned(),
+                result_cause: Some("not_linked".to_owned()),
+            }]
+        );
+        assert!(Flips::of(&before, &before).units.is_empty());
+    }
+}

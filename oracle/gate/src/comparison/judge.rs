@@ -1,0 +1,281 @@
+//! The verdict on one figure.
+use score::{Better, Kind, Sense};
+use statistics::{JointTest, Tested, normal_quantile};
+
+use crate::dependence::effects::FigureEffect;
+use crate::dependence::runs::LossRun;
+use crate::report::{FigureReport, FigureVerdict};
+
+/// The 95 % quantile of the standard normal law: the power at which the smallest visible change is told.
+const Z_POWER: f64 = 1.644_853_626_951_472_2;
+/// What runs of losses may add to alpha, of alpha.
+pub(crate) const ALPHA_OF_RUNS: f64 = 0.05;
+/// A figure that the result lacks is gone when that would be chance with no more than this probability.
+const GONE_BY_CHANCE: f64 = 1e-3;
+
+/// What is needed to judge one figure.
+pub(crate) struct Judge<'a> {
+    pub(crate) effect: &'a FigureEffect,
+    pub(crate) worse: &'a JointTest,
+    pub(crate) better: &'a JointTest,
+    pub(crate) index: usize,
+    /// Of a figure with a best value, where the change towards less was tested.
+    pub(crate) other_side: Option<usize>,
+    pub(crate) alpha: f64,
+    /// Of a rate on the same frames.
+    pub(crate) loss_run: Option<&'a LossRun>,
+}
+
+impl Judge<'_> {
+    pub(crate) fn report(&self, interval: Option<(f64, f64)>) -> FigureReport {
+        let effect = self.effect;
+        let difference = effect.result.zip(effect.baseline).map(|(result, baseline)| result - baseline);
+        let tested = self.tested();
+        FigureReport {
+            verdict: self.verdict(),
+            better: match effect.sense.better {
+                Better::More => "more".to_owned(),
+                Better::Less => "less".to_owned(),
+                Better::Near(best) => format!("near {best}"),
+            },
+            baseline: effect.baseline,
+            baseline_of: effect.baseline_of,
+            result: effect.result,
+            result_of: effect.result_of,
+            difference,
+            // Of skewed values the difference may lie outside the quantiles of its own sets.
+            low: interval.zip(difference).map(|((low, _), difference)| low.min(difference)),
+            high: interval.zip(difference).map(|((_, high), difference)| high.max(difference)),
+            worse_by: effect.worsening(),
+            tolerance: effect.tolerance,
+            p: tested.p,
+            adjusted_p: tested.adjusted_p,
+            better_adjusted_p: self.better.figures[self.index].adjusted_p,
+            smallest_visible: self.smallest_visible(),
+            blocks: effect.blocks as u64,
+            loss_run: self.loss_run.cloned(),
+        }
+    }
+
+    /// What was found for the worse; of a figure with a best value on the side of the change, its own p for both sides.
+    fn tested(&self) -> Tested {
+        let up = self.worse.figures[self.index];
+        let Some(down) = self.other_side.map(|place| self.worse.figures[place]) else { return up };
+        let nearer = if up.p <= down.p { up } else { down };
+        Tested { p: (2.0 * nearer.p).min(1.0), ..nearer }
+    }
+
+    fn verdict(&self) -> FigureVerdict {
+        let effect = self.effect;
+        if effect.baseline.is_some() && effect.result.is_none() {
+            let by_chance = self.better.figures.len() as f64 * libm::exp2(-(effect.blocks as f64));
+            return if by_chance <= GONE_BY_CHANCE {
+                FigureVerdict::Gone
+            } else {
+                FigureVerdict::TooLittleData
+            };
+        }
+        let (Some(worsening), Some(change)) = (effect.worsening(), effect.change()) else {
+            return FigureVerdict::TooLittleData;
+        };
+        if self.is_lost_in_runs() && worsening > effect.tolerance {
+            FigureVerdict::Worse
+        } else if !self.can_be_seen() {
+            FigureVerdict::TooLittleData
+        } else if self.tested().adjusted_p <= self.alpha && change > effect.tolerance {
+            // Farther from the best value by what counts is worse; nearer to it, or across it, is another result.
+            if worsening > effect.tolerance { FigureVerdict::Worse } else { FigureVerdict::Changed }
+        } else if self.better.figures[self.index].adjusted_p <= self.alpha && -worsening > effect.tolerance {
+            FigureVerdict::Better
+        } else {
+            FigureVerdict::NoWorse
+        }
+    }
+
+    /// Whether so many losses, or so long a run of them, are no chance.
+    fn is_lost_in_runs(&self) -> bool {
+        self.loss_run.is_some_and(|run| run.adjusted_p <= ALPHA_OF_RUNS * self.alpha)
+    }
+
+    /// Whether a figure that differed alike in every block it has would be found.
+    fn can_be_seen(&self) -> bool {
+        !self.effect.is_beyond_blocks && (self.effect.blocks as f64).sqrt() > self.worse.critical + 1e-9
+    }
+
+    /// The worsening that is seen with a probability of 95 %: of which the statistic lies as far above the critical value as one in
+    /// twenty falls short. A worsening of a rate brings scatter of its own: with δ of n more that are lost, at least δ/n. The critical
+    /// value is that of this comparison, or of Bonferroni where few figures differ at all and it is less: a change brings differences.
+    fn smallest_visible(&self) -> Option<f64> {
+        let effect = self.effect;
+        effect.worsening()?;
+        if !self.can_be_seen() {
+            return None;
+        }
+        let Sense { kind, .. } = effect.sense;
+        let bonferroni = normal_quantile(1.0 - self.alpha / self.worse.figures.len() as f64);
+        let z = self.worse.critical.max(bonferroni) + Z_POWER;
+        let by_noise = match kind {
+            Kind::Amount => z * effect.standard_error,
+            Kind::Rate => {
+                let own = z * z / effect.result_of.max(1) as f64;
+                0.5 * (own + (own * own + 4.0 * z * z * effect.standard_error * effect.standard_error).sqrt())
+            }
+        };
+        Some(by_noise.max(effect.tolerance + Z_POWER * effect.standard_error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use run::figure_called;
+    use statistics::{BlockEffects, Tested};
+
+    /// A figure best when less, of ten blocks, from 2 in the baseline to `result`.
+    fn effect(result: f64) -> FigureEffect {
+        FigureEffect {
+            sense: figure_called("ra_rms_deg").sense,
+            baseline: Some(2.0),
+            result: Some(result),
+            baseline_of: 100,
+            result_of: 50,
+            blocks: 10,
+            worse: BlockEffects { effects: Vec::new() },
+            standard_error: 0.25,
+            tolerance: 0.5,
+            is_beyond_blocks: false,
+        }
+    }
+
+    /// What is reported of an effect that is the first of so many figures, at 5 %, with these adjusted probabilities of a worsening and of
+    /// an improvement.
+    fn judged(
+        effect: &FigureEffect,
+        [worse, better]: [f64; 2],
+        critical: f64,
+        figures: usize,
+    ) -> FigureReport {
+        let test = |adjusted_p| {
+            let tested = Tested { statistic: 1.0, p: 0.5 * adjusted_p, adjusted_p };
+            JointTest { figures: vec![tested; figures], critical }
+        };
+        let (worse, better) = (&test(worse), &test(better));
+        Judge { effect, worse, better, index: 0, other_side: None, alpha: 0.05, loss_run: None }
+            .report(Some((0.25, 0.75)))
+    }
+
+    #[test]
+    fn worse_is_what_is_improbable_and_beyond_the_tolerance() {
+        use FigureVerdict::{Better, NoWorse, Worse};
+        let verdict = |result: f64, probabilities| judged(&effect(result), probabilities, 2.0, 1).verdict;
+        // At most alpha; a worsening of more than 0.5.
+        assert_eq!(verdict(2.75, [0.05, 1.0]), Worse);
+        assert_eq!(verdict(2.75, [0.01, 1.0]), Worse);
+        assert_eq!(verdict(2.75, [0.051, 1.0]), NoWorse);
+        assert_eq!(verdict(2.5, [0.01, 1.0]), NoWorse);
+        assert_eq!(verdict(2.25, [0.01, 1.0]), NoWorse);
+        // The same the other way round.
+        assert_eq!(verdict(1.25, [1.0, 0.05]), Better);
+        assert_eq!(verdict(1.25, [1.0, 0.01]), Better);
+        assert_eq!(verdict(1.25, [1.0, 0.051]), NoWorse);
+        assert_eq!(verdict(1.5, [1.0, 0.01]), NoWorse);
+        assert_eq!(verdict(1.75, [1.0, 0.01]), NoWorse);
+        // Neither is said of the other's probability.
+        assert_eq!(verdict(2.75, [1.0, 0.01]), NoWorse);
+        assert_eq!(verdict(1.25, [0.01, 1.0]), NoWorse);
+    }
+
+    /// Ten blocks that all agree have a statistic of √10.
+    #[test]
+    fn what_cannot_exceed_the_critical_value_has_too_little_data() {
+        let report = |critical: f64| judged(&effect(2.75), [0.01, 1.0], critical, 1);
+        for critical in [10f64.sqrt(), 10f64.sqrt() - 1e-10, 4.0] {
+            let found = report(critical);
+            assert_eq!((found.verdict, found.smallest_visible), (FigureVerdict::TooLittleData, None));
+        }
+        for critical in [10f64.sqrt() - 1e-8, 0.0] {
+            let found = report(critical);
+            assert_eq!(found.verdict, FigureVerdict::Worse);
+            assert!(found.smallest_visible.is_some());
+        }
+    }
+
+    /// That all of ten blocks lose a figure by chance has a probability of 2⁻¹⁰, less than a thousandth; of nine, or of two figures, more.
+    #[test]
+    fn a_figure_that_the_result_lacks_is_gone_when_that_is_no_chance() {
+        let verdict = |baseline, result, blocks, figures| {
+            let effect = FigureEffect { baseline, result, blocks, ..effect(0.0) };
+            let found = judged(&effect, [1.0, 1.0], 2.0, figures);
+            assert_eq!((found.difference, found.low, found.high), (None, None, None));
+            assert_eq!((found.worse_by, found.smallest_visible), (None, None));
+            found.verdict
+        };
+        let too_little = FigureVerdict::TooLittleData;
+        assert_eq!(verdict(Some(2.0), None, 10, 1), FigureVerdict::Gone);
+        assert_eq!(verdict(Some(2.0), None, 9, 1), too_little);
+        assert_eq!(verdict(Some(2.0), None, 10, 2), too_little);
+        assert_eq!(verdict(Some(2.0), None, 11, 2), FigureVerdict::Gone);
+        // What the baseline did not have cannot be worse.
+        assert_eq!(verdict(None, Some(2.0), 100, 1), too_little);
+        assert_eq!(verdict(None, None, 100, 1), too_little);
+    }
+
+    #[test]
+    fn a_report_of_a_figure_has_its_difference_within_its_interval() {
+        let report = |result| judged(&effect(result), [0.5, 0.75], 2.0, 1);
+        for (result, low, high) in [(2.5, 0.25, 0.75), (3.0, 0.25, 1.0), (1.5, -0.5, 0.75)] {
+            let found = report(result);
+            assert_eq!(found.difference, Some(result - 2.0));
+            assert_eq!((found.low, found.high), (Some(low), Some(high)));
+        }
+        let found = report(2.5);
+        assert_eq!((found.p, found.adjusted_p, found.better_adjusted_p), (0.25, 0.5, 0.75));
+        assert_eq!((found.baseline_of, found.result_of, found.blocks), (100, 50, 10));
+        assert_eq!(found.better, "less");
+        let near = FigureEffect { sense: figure_called("nees_mean").sense, ..effect(2.5) };
+        assert_eq!(judged(&near, [1.0, 1.0], 2.0, 1).better, "near 1");
+    }
+
+    /// The statistic must lie 1.645 standard errors above the critical value, that of the comparison or of Bonferroni (0.05/2: 1.960).
+    #[test]
+    fn the_smallest_visible_amount_is_a_multiple_of_its_standard_error() {
+        let seen = |critical, figures, tolerance| {
+            let effect = FigureEffect { tolerance, ..effect(2.0) };
+            judged(&effect, [1.0, 1.0], critical, figures).smallest_visible.unwrap()
+        };
+        let is = |got: f64, expected: f64| assert!((got - expected).abs() < 1e-6, "{got}, not {expected}");
+        is(seen(3.0, 2, 0.0), 0.25 * (3.0 + 1.644_854));
+        is(seen(1.0, 2, 0.0), 0.25 * (1.959_964 + 1.644_854));
+        is(seen(1.0, 1, 0.0), 0.25 * (1.644_854 + 1.644_854));
+        // A tolerance beyond what is found: it is exceeded with a probability of 95 %.
+        is(seen(1.0, 2, 5.0), 5.0 + 0.25 * 1.644_854);
+    }
+
+    /// A loss of δ of n scatters by √(δ/n) of its own beside the standard error e: δ = z √(e² + δ/n).
+    #[test]
+    fn the_smallest_visible_loss_of_a_rate_brings_its_own_scatter() {
+        for (standard_error, result_of) in [(0.25, 50), (0.01, 7), (0.0, 400)] {
+            let effect = FigureEffect {
+                sense: figure_called("hit_rate").sense,
+                tolerance: 0.0,
+                standard_error,
+                result_of,
+                ..effect(2.0)
+            };
+            let seen = judged(&effect, [1.0, 1.0], 3.0, 2).smallest_visible.unwrap();
+            let z = 3.0 + 1.644_853_626_951_472_2;
+            let expected = z * (standard_error * standard_error + seen / result_of as f64).sqrt();
+            assert!(seen > 0.0 && (seen - expected).abs() < 1e-12, "{seen}, not {expected}");
+        }
+        // Of nothing it is that of one.
+        let none = FigureEffect {
+            sense: figure_called("hit_rate").sense,
+            tolerance: 0.0,
+            result_of: 0,
+            ..effect(2.0)
+        };
+        let one = FigureEffect { result_of: 1, ..none.clone() };
+        let [none, one] = [none, one].map(|effect| judged(&effect, [1.0, 1.0], 3.0, 2).smallest_visible);
+        assert_eq!(none, one);
+    }
+}

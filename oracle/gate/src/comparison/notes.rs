@@ -1,0 +1,138 @@
+//! What a reader of a gate's report must know beside its figures.
+use indexmap::IndexMap;
+use run::figure_called;
+use score::attitude_note;
+use statistics::normal_quantile;
+
+use super::judge::ALPHA_OF_RUNS;
+use crate::baseline::Baseline;
+use crate::identity::Pairing;
+use crate::report::FigureReport;
+use crate::sample::Sample;
+
+/// Figures that a note names; of more it gives the number.
+const NAMED: usize = 3;
+
+/// What notes are made of.
+pub(crate) struct Noted<'a> {
+    pub(crate) baseline: &'a Baseline,
+    pub(crate) result: &'a Sample,
+    pub(crate) pairing: Pairing,
+    pub(crate) alpha: f64,
+    pub(crate) figures: &'a IndexMap<String, FigureReport>,
+    /// Figures whose difference is remembered from block to block.
+    pub(crate) beyond_blocks: &'a [&'a str],
+    /// The largest correlation of neighbouring blocks, of any figure.
+    pub(crate) correlation: f64,
+    pub(crate) blocks: usize,
+}
+
+/// What a reader must know.
+pub(crate) fn notes(noted: &Noted<'_>) -> Vec<String> {
+    let Noted { baseline, result, pairing, .. } = *noted;
+    let mut notes = Vec::new();
+    let attitude = result.table.figures.iter().find_map(|figure| figure.attitude.as_deref());
+    notes.extend(attitude_note(attitude));
+    let (before, after) = (&baseline.sample.identity, &result.identity);
+    if pairing == Pairing::Blocks && before.seed == after.seed {
+        notes.push(format!(
+            "The seed is the same and the frames are not: the simulator has changed (version {} then, {} now). Compared as with another seed.",
+            before.version, after.version
+        ));
+    }
+    notes.extend(loss_note(noted));
+    if !noted.beyond_blocks.is_empty() {
+        notes.push(format!(
+            "With other frames there is too little data for {}: the difference is remembered from block to block. The same frames decide \
+             it, or a longer run.",
+            labels(noted.beyond_blocks)
+        ));
+    }
+    // What the largest of so many independent correlations exceeds in one comparison of twenty.
+    let by_chance = normal_quantile(1.0 - 0.05 / noted.figures.len() as f64) / (noted.blocks as f64).sqrt();
+    if noted.correlation > by_chance {
+        notes.push(format!(
+            "Neighbouring blocks go together (correlation {:.2}, by chance at most {by_chance:.2}): they are too short, and \
+             probabilities too small. A baseline with a longer --block-length cures it, as long as blocks are many.",
+            noted.correlation
+        ));
+    }
+    notes
+}
+
+/// Which units were lost, where that alone shuts the gate.
+fn loss_note(noted: &Noted<'_>) -> Option<String> {
+    let found_by_run = |figure: &&FigureReport| {
+        let run = figure.loss_run.as_ref();
+        figure.verdict.is_worse()
+            && figure.adjusted_p > noted.alpha
+            && run.is_some_and(|run| run.adjusted_p <= ALPHA_OF_RUNS * noted.alpha)
+    };
+    let (name, figure) = noted.figures.iter().find(|(_, figure)| found_by_run(figure))?;
+    let run = figure.loss_run.as_ref()?;
+    let identity = &noted.baseline.sample.identity;
+    let units = identity.kind.units(&identity.world);
+    let place = run.first.zip(run.last).map_or_else(String::new, |(first, last)| {
+        format!(", {} of them in a row (numbers {first} to {last})", run.longest)
+    });
+    Some(format!(
+        "{}: {} {units} were lost and {} won{place}. That is no chance (p {:.1e}), though too few blocks have it.",
+        figure_called(name).words,
+        run.lost,
+        run.won,
+        run.adjusted_p
+    ))
+}
+
+/// The labels of some figures, and how many others there are.
+fn labels(names: &[&str]) -> String {
+    let named: Vec<String> = names.iter().take(NAMED).map(|name| figure_called(name).words).collect();
+    match names.len().saturating_sub(NAMED) {
+        0 => named.join(", "),
+        others => format!("{} and {others} other figures", named.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::{BEFORE, baseline, compared, hits, rate, sample};
+
+    #[test]
+    fn another_simulator_is_noted_where_the_seed_is_the_same() {
+        let note = |seed: u64, frames: &str| {
+            let mut after = hits(&BEFORE);
+            after.identity.seed = seed;
+            after.identity.frames_sha256 = frames.to_owned();
+            compared(hits(&BEFORE), &after).notes
+        };
+        let [changed] = &note(1, "g")[..] else { panic!("one note") };
+        assert!(changed.contains("the simulator has changed (version 0.1.0 then, 0.1.0 now)"), "{changed}");
+        assert_eq!(note(1, "f"), Vec::<String>::new());
+        assert_eq!(note(2, "g"), Vec::<String>::new());
+    }
+
+    /// Of two figures in 25 blocks the 97.5 % quantile over 5, 0.392.
+    #[test]
+    fn blocks_that_go_together_more_than_by_chance_are_noted() {
+        let baseline = baseline(sample(vec![rate("hit_rate", &[1; 25]), rate("correct_rate", &[1; 25])]));
+        let report = compared(baseline.sample.clone(), &baseline.sample);
+        let notes = |correlation: f64| {
+            notes(&Noted {
+                baseline: &baseline,
+                result: &baseline.sample,
+                pairing: Pairing::Frames,
+                alpha: 0.05,
+                figures: &report.figures,
+                beyond_blocks: &[],
+                correlation,
+                blocks: 25,
+            })
+        };
+        let [short] = &notes(0.3921)[..] else { panic!("one note") };
+        assert!(short.contains("(correlation 0.39, by chance at most 0.39): they are too short"), "{short}");
+        for correlation in [0.3919, 0.0, -0.5, normal_quantile(0.975) / 5.0] {
+            assert!(notes(correlation).is_empty(), "{correlation}");
+        }
+    }
+}

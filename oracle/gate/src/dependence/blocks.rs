@@ -1,0 +1,161 @@
+//! Blocks: stretches of a sequence that are long enough to be independent of one another.
+use std::ops::Range;
+
+use run::world_called;
+use score::{UnitTable, UnitVerdict};
+
+use crate::identity::SourceKind;
+
+/// Fewer blocks than this cannot show anything at a level of 5 %: 2⁻⁵ = 3 %.
+pub const LEAST_BLOCKS: usize = 5;
+/// Blocks are not made shorter than this, units: in a shorter sequence a memory cannot be seen, and it is one block.
+const SHORTEST_BLOCK: usize = 30;
+/// A block is so many autocorrelation times long. Of a sequence whose correlation falls off exponentially, neighbouring means are then
+/// correlated by 2.5 %, and a test at 5 % rejects in 5.4 % (docs/gate.md).
+const MEMORIES_A_BLOCK: f64 = 10.0;
+/// Blocks are not made so long that there are fewer than these, if the sequence has a way to give them.
+const ENOUGH_BLOCKS: usize = 20;
+/// The same where frames are others.
+const ENOUGH_OF_OTHER_FRAMES: usize = 8;
+
+/// Which block each unit belongs to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Blocks {
+    of_units: Vec<usize>,
+    count: usize,
+}
+
+impl Blocks {
+    /// Blocks from the number of each unit's, as they stand in a file: whole numbers that ascend by one from 0.
+    pub(crate) fn from_numbers(numbers: Vec<usize>) -> Self {
+        Self { count: numbers.last().map_or(0, |last| last + 1), of_units: numbers }
+    }
+
+    /// Cuts each sequence of neighbouring units into equal pieces of about `length` units. A draw of a study is one block, however many
+    /// points its sweep has.
+    pub(crate) fn cut(kind: SourceKind, world: &str, table: &UnitTable, length: usize) -> Self {
+        let sequences = sequences(kind, world, table);
+        let mut of_units = Vec::with_capacity(table.units.len());
+        let mut count = 0;
+        for sequence in sequences {
+            let units = sequence.len();
+            let pieces = match kind {
+                SourceKind::Study => 1,
+                SourceKind::Run => ((units as f64 / length as f64).round() as usize).clamp(1, units),
+            };
+            of_units.extend((0..units).map(|unit| count + unit * pieces / units));
+            count += pieces;
+        }
+        Self { of_units, count }
+    }
+
+    /// Blocks of so many units each, of one sequence.
+    #[cfg(test)]
+    pub(crate) fn every(units: usize, length: usize) -> Self {
+        let of_units: Vec<usize> = (0..units).map(|unit| unit / length).collect();
+        Self { count: units.div_ceil(length), of_units }
+    }
+
+    /// Number of blocks.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The block of a unit.
+    pub fn of(&self, unit: usize) -> usize {
+        self.of_units[unit]
+    }
+
+    /// Units of a block in the mean; 0 without any.
+    pub fn mean_length(&self) -> f64 {
+        if self.count == 0 { 0.0 } else { self.of_units.len() as f64 / self.count as f64 }
+    }
+}
+
+/// The sequences of neighbouring units. Far range: a group (day) or a gap begins one. Docking: an approach is one sequence, but for gaps;
+/// its groups are ranges. A study: the cases of a draw.
+pub(crate) fn sequences(kind: SourceKind, world: &str, table: &UnitTable) -> Vec<Range<usize>> {
+    let are_groups_apart = world_called(world).is_ok_and(|world| world.are_groups_apart());
+    let go_together = |before: &UnitVerdict, this: &UnitVerdict| {
+        let is_same_group = before.group == this.group;
+        match kind {
+            SourceKind::Study => is_same_group,
+            SourceKind::Run => before.number + 1 == this.number && (!are_groups_apart || is_same_group),
+        }
+    };
+    let mut begin = 0;
+    let mut next = |sequence: &[UnitVerdict]| {
+        begin += sequence.len();
+        begin - sequence.len()..begin
+    };
+    table.units.chunk_by(go_together).map(&mut next).collect()
+}
+
+/// A length of blocks for a run of this memory, units: ten times that, or shorter where that would leave fewer than so many, but at
+/// least thirty.
+fn length_leaving(least: usize, memory: f64, units: usize) -> usize {
+    let wanted = (MEMORIES_A_BLOCK * memory).ceil() as usize;
+    wanted.min(units / least).max(SHORTEST_BLOCK)
+}
+
+/// A length of blocks for a run of this memory, units: it leaves twenty blocks.
+pub(crate) fn length_for(memory: f64, units: usize) -> usize {
+    length_leaving(ENOUGH_BLOCKS, memory, units)
+}
+
+/// The same for runs of other frames, where what slowly varies is in the difference: it leaves eight blocks.
+pub(crate) fn length_for_other_frames(memory: f64, units: usize) -> usize {
+    length_leaving(ENOUGH_OF_OTHER_FRAMES, memory, units)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::days as table;
+
+    #[test]
+    fn blocks_never_cross_a_day_and_are_about_as_long_as_asked() {
+        let table = table(&[("day 1", 95), ("day 2", 31), ("day 3", 4)]);
+        let blocks = Blocks::cut(SourceKind::Run, "far_range", &table, 30);
+        assert_eq!((blocks.count(), blocks.of(94), blocks.of(95), blocks.of(126)), (5, 2, 3, 4));
+        let approach = Blocks::cut(SourceKind::Run, "docking", &table, 30);
+        assert_eq!((approach.count(), approach.of(0), approach.of(129)), (4, 0, 3));
+        assert_eq!(Blocks::cut(SourceKind::Study, "docking", &table, 30).count(), 3, "of three draws");
+        let numbers: Vec<usize> = (0..130).map(|unit| blocks.of(unit)).collect();
+        assert_eq!(Blocks::from_numbers(numbers), blocks);
+    }
+
+    #[test]
+    fn a_gap_and_in_far_range_a_day_part_sequences() {
+        let mut table = table(&[("day 1", 3), ("day 2", 2), ("day 3", 2)]);
+        // A frame is missing between days 2 and 3.
+        table.units[5..].iter_mut().for_each(|unit| unit.number += 1);
+        assert_eq!(sequences(SourceKind::Run, "far_range", &table), [0..3, 3..5, 5..7]);
+        assert_eq!(sequences(SourceKind::Run, "docking", &table), [0..5, 5..7]);
+        assert_eq!(sequences(SourceKind::Study, "docking", &table), [0..3, 3..5, 5..7]);
+        assert_eq!(sequences(SourceKind::Run, "far_range", &UnitTable::default()), []);
+    }
+
+    /// 7 units in two pieces are 4 and 3, 5 in two 3 and 2, and none is without a unit.
+    #[test]
+    fn a_sequence_is_cut_into_pieces_that_differ_by_a_unit_at_most() {
+        let table = table(&[("day 1", 7), ("day 2", 5), ("day 3", 1)]);
+        let blocks = Blocks::cut(SourceKind::Run, "far_range", &table, 3);
+        let of: Vec<usize> = (0..13).map(|unit| blocks.of(unit)).collect();
+        assert_eq!(of, [0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 4]);
+        assert_eq!((blocks.count(), blocks.mean_length()), (5, 2.6));
+        let single = Blocks::cut(SourceKind::Run, "docking", &table, 1);
+        assert_eq!((single.count(), single.of(12), single.mean_length()), (13, 12, 1.0));
+        let none = Blocks::cut(SourceKind::Run, "docking", &UnitTable::default(), 30);
+        assert_eq!((none.count(), none.mean_length()), (0, 0.0));
+        assert_eq!(Blocks::from_numbers(vec![]), none);
+    }
+
+    #[test]
+    fn blocks_are_ten_memories_long_but_leave_twenty_and_are_not_shorter_than_thirty() {
+        assert_eq!(length_for(4.01, 100_000), 41);
+        assert_eq!(length_for(4.01, 790), 39);
+        assert_eq!(length_for(1.0, 100_000), 30);
+        assert_eq!(length_for(40.0, 100), 30);
+    }
+}

@@ -1,0 +1,488 @@
+//! What each block adds to the difference of a figure.
+//!
+//! A rate, a mean and a mean square are a sum over a count, r = Σ s/Σ n. With r₀ of both runs together, block k of a run with the sums
+//! s, n adds s − r₀ n to it, and the difference of two runs is, exactly, Σ [(s − r₀ n) of the result − the same of the baseline] / N with N
+//! the harmonic mean of their counts. Exchanging a block of the two changes the sign of its term and nothing else. A root mean square is
+//! the root of the mean square, and a median counts on which side of the median of both runs together values lie.
+use score::{Better, FigureTerms, Reduction, Sense, Term};
+use statistics::{BlockEffects, Interval, median};
+
+use super::blocks::Blocks;
+use super::influence::{Sums, values};
+
+/// One figure of two runs, by blocks.
+#[derive(Debug, Clone)]
+pub(crate) struct FigureEffect {
+    pub(crate) sense: Sense,
+    /// Its value in the baseline and in the result; `None` when counted over nothing.
+    pub(crate) baseline: Option<f64>,
+    pub(crate) result: Option<f64>,
+    /// What they are counted over.
+    pub(crate) baseline_of: u64,
+    pub(crate) result_of: u64,
+    /// Blocks in which either has a value.
+    pub(crate) blocks: usize,
+    /// By how much each block makes the result worse, in the unit of the figure; of a figure with a best value by how much each block makes
+    /// it greater.
+    pub(crate) worse: BlockEffects,
+    /// Standard error of the difference, by the scatter of the blocks.
+    pub(crate) standard_error: f64,
+    /// By how much the result may be worse and no worse be said.
+    pub(crate) tolerance: f64,
+    /// Whether the difference is remembered for longer than blocks allow: nothing is said of such a figure.
+    pub(crate) is_beyond_blocks: bool,
+}
+
+/// The value of a figure over some terms.
+pub(crate) fn value(reduction: Reduction, terms: &[Term]) -> Option<f64> {
+    match reduction {
+        Reduction::Median => median(&[values(terms)]),
+        _ => {
+            let ratio = Sums::of_terms(terms, reduction, 0.0).ratio();
+            if reduction == Reduction::Rms { ratio.map(f64::sqrt) } else { ratio }
+        }
+    }
+}
+
+impl FigureEffect {
+    /// Of a figure of two runs whose units go together one by one.
+    pub(crate) fn of_runs(
+        sense: Sense,
+        baseline: &FigureTerms,
+        result: &FigureTerms,
+        blocks: &Blocks,
+        tolerance: f64,
+    ) -> Self {
+        let reduction = baseline.reduction;
+        let pooled = [values(&baseline.terms), values(&result.terms)];
+        let centre = if reduction == Reduction::Median { median(&pooled).unwrap_or(0.0) } else { 0.0 };
+        let [a, b] = [baseline, result].map(|run| Sums::of_terms(&run.terms, reduction, centre));
+        let [of_baseline, of_result] = [baseline, result].map(|run| value(reduction, &run.terms));
+
+        let together = Sums { units: Vec::new(), sum: a.sum + b.sum, of: a.of + b.of }.ratio().unwrap_or(0.0);
+        let count = if a.of > 0.0 && b.of > 0.0 { 2.0 * a.of * b.of / (a.of + b.of) } else { f64::INFINITY };
+        let scale = match reduction {
+            Reduction::Rate | Reduction::Mean => 1.0,
+            Reduction::Rms => match (of_baseline, of_result) {
+                (Some(a), Some(b)) if a + b > 0.0 => 1.0 / (a + b),
+                _ => 0.0,
+            },
+            Reduction::Median => half_width_of_a_side(&pooled),
+        };
+        let mut effects = vec![0.0; blocks.count()];
+        let mut has_data = vec![false; blocks.count()];
+        for (i, (of_a, of_b)) in a.units.iter().zip(&b.units).enumerate() {
+            let block = blocks.of(i);
+            let difference = (of_b.0 - together * of_b.1) - (of_a.0 - together * of_a.1);
+            effects[block] += scale * difference / count;
+            has_data[block] |= of_a.1 + of_b.1 > 0.0;
+        }
+
+        if sense.better == Better::More {
+            effects.iter_mut().for_each(|effect| *effect = -*effect);
+        }
+        Self {
+            sense,
+            baseline: of_baseline,
+            result: of_result,
+            baseline_of: a.of as u64,
+            result_of: b.of as u64,
+            blocks: has_data.into_iter().filter(|has| *has).count(),
+            standard_error: standard_error(&effects),
+            worse: BlockEffects { effects },
+            tolerance,
+            is_beyond_blocks: false,
+        }
+    }
+
+    /// The same figure with no effect, as its difference is remembered for so long that blocks are not independent of one another.
+    pub(crate) fn beyond_blocks(mut self) -> Self {
+        self.worse.effects.fill(0.0);
+        self.is_beyond_blocks = true;
+        self
+    }
+
+    /// By how much the result is worse, in the unit of the figure; negative where it is better.
+    pub(crate) fn worsening(&self) -> Option<f64> {
+        let (baseline, result) = (self.baseline?, self.result?);
+        Some(match self.sense.better {
+            Better::More => baseline - result,
+            Better::Less => result - baseline,
+            Better::Near(best) => (result - best).abs() - (baseline - best).abs(),
+        })
+    }
+
+    /// Whether it has a best value: it is held against the baseline, not against that value, and a change to either side is found. A bias
+    /// that a change of the pipeline brings may point towards nought, as the baseline has one of its own.
+    pub(crate) fn has_best_value(&self) -> bool {
+        matches!(self.sense.better, Better::Near(_))
+    }
+
+    /// By how much the result differs: of a figure with a best value to either side, of another one for the worse.
+    pub(crate) fn change(&self) -> Option<f64> {
+        if self.has_best_value() { Some((self.result? - self.baseline?).abs()) } else { self.worsening() }
+    }
+
+    /// The same as an effect for the better; of a figure with a best value towards less.
+    pub(crate) fn better(&self) -> BlockEffects {
+        let effects = self.worse.effects.iter().map(|effect| -effect).collect();
+        BlockEffects { effects }
+    }
+}
+
+/// By how much a median moves when a share of the values changes sides by one: 1/(2 f) with the density f at the median, from the middle
+/// fifth of the values.
+fn half_width_of_a_side(values: &[Vec<f64>]) -> f64 {
+    let mut all = values.concat();
+    all.sort_by(f64::total_cmp);
+    let at = |share: f64| all.get((share * all.len() as f64) as usize);
+    at(0.6).zip(at(0.4)).map_or(0.0, |(high, low)| (high - low) / 0.4)
+}
+
+/// Of a sum of independent terms.
+fn standard_error(terms: &[f64]) -> f64 {
+    let n = terms.len() as f64;
+    if n < 2.0 {
+        return 0.0;
+    }
+    let mean = terms.iter().sum::<f64>() / n;
+    let off = terms.iter().map(|term| term - mean);
+    (off.map(|off| off * off).sum::<f64>() * n / (n - 1.0)).sqrt()
+}
+
+/// An interval of 95 % for the difference, result minus baseline.
+pub(crate) fn interval(
+    baseline: &FigureTerms,
+    result: &FigureTerms,
+    blocks: &Blocks,
+    exchanges: &statistics::Exchanges,
+) -> Option<Interval> {
+    let reduction = baseline.reduction;
+    let sides = [baseline, result].map(|run| Side::of_run(reduction, &run.terms, blocks));
+    statistics::interval_by_sets(exchanges, |taken| {
+        let [baseline, result] = [&sides[0], &sides[1]].map(|side| side.value(taken));
+        Some(result? - baseline?)
+    })
+}
+
+/// One run, ready to be summed up over sets of blocks.
+enum Side {
+    /// Sum and count of each block; whether the figure is the root of their ratio.
+    Ratio { blocks: Vec<(f64, f64)>, is_root: bool },
+    /// Values in order, each with its block; and how many each block has.
+    Sorted { values: Vec<(f64, usize)>, counts: Vec<usize> },
+}
+
+impl Side {
+    fn of_run(reduction: Reduction, terms: &[Term], blocks: &Blocks) -> Self {
+        if reduction == Reduction::Median {
+            let with_value = terms.iter().enumerate().filter(|(_, term)| term.of > 0);
+            let mut sorted: Vec<(f64, usize)> =
+                with_value.map(|(unit, term)| (term.sum, blocks.of(unit))).collect();
+            sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut counts = vec![0; blocks.count()];
+            sorted.iter().for_each(|(_, block)| counts[*block] += 1);
+            return Self::Sorted { values: sorted, counts };
+        }
+        let mut sums = vec![(0.0, 0.0); blocks.count()];
+        for (unit, (sum, of)) in Sums::of_terms(terms, reduction, 0.0).units.into_iter().enumerate() {
+            let block = &mut sums[blocks.of(unit)];
+            *block = (block.0 + sum, block.1 + of);
+        }
+        Self::Ratio { blocks: sums, is_root: reduction == Reduction::Rms }
+    }
+
+    fn value(&self, taken: &[bool]) -> Option<f64> {
+        match self {
+            Self::Ratio { blocks, is_root } => {
+                let (sum, of) = blocks
+                    .iter()
+                    .enumerate()
+                    .filter(|(block, _)| taken[*block])
+                    .fold((0.0, 0.0), |(sum, of), (_, block)| (sum + block.0, of + block.1));
+                let ratio = (of > 0.0).then(|| sum / of)?;
+                Some(if *is_root { ratio.max(0.0).sqrt() } else { ratio })
+            }
+            Self::Sorted { values, counts } => {
+                let count: usize =
+                    counts.iter().zip(taken).filter(|(_, taken)| **taken).map(|(count, _)| count).sum();
+                let chosen = values.iter().filter(|(_, block)| taken[*block]).map(|(value, _)| *value);
+                let mut middle = chosen.skip(count.checked_sub(1)? / 2);
+                let lower = middle.next()?;
+                Some(if count % 2 == 1 { lower } else { f64::midpoint(lower, middle.next()?) })
+            }
+        }
+    }
+}
+
+/// The correlation of the effects of neighbouring blocks, about their mean; 0 where no block differs. Of independent ones it scatters
+/// by 1/√n about 0.
+pub(crate) fn neighbour_correlation(effects: &[f64]) -> f64 {
+    let mean = effects.iter().sum::<f64>() / effects.len().max(1) as f64;
+    let off: Vec<f64> = effects.iter().map(|effect| effect - mean).collect();
+    let squares: f64 = off.iter().map(|off| off * off).sum();
+    let products: f64 = off.windows(2).map(|pair| pair[0] * pair[1]).sum();
+    if squares > 0.0 { products / squares } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::figure as terms;
+    use run::figure_called;
+    use score::Kind;
+    use statistics::Exchanges;
+
+    fn effect(name: &str, reduction: Reduction, a: &[Option<f64>], b: &[Option<f64>]) -> FigureEffect {
+        let blocks = Blocks::every(a.len(), 2);
+        FigureEffect::of_runs(
+            figure_called(name).sense,
+            &terms(name, reduction, a),
+            &terms(name, reduction, b),
+            &blocks,
+            0.0,
+        )
+    }
+
+    const A: [Option<f64>; 8] =
+        [Some(0.1), Some(-0.3), None, Some(0.4), Some(0.2), Some(-0.1), Some(0.5), None];
+    const B: [Option<f64>; 8] =
+        [Some(0.2), Some(-0.5), Some(0.9), None, Some(0.3), Some(0.1), Some(0.8), Some(0.3)];
+
+    #[test]
+    fn the_blocks_of_a_mean_and_of_a_root_mean_square_add_up_to_its_difference() {
+        for (name, reduction) in [("ra_mean_deg", Reduction::Mean), ("ra_rms_deg", Reduction::Rms)] {
+            let effect = effect(name, reduction, &A, &B);
+            let difference = effect.result.unwrap() - effect.baseline.unwrap();
+            assert!((effect.worse.effects.iter().sum::<f64>() - difference).abs() < 1e-12, "{name}");
+            assert_eq!((effect.baseline_of, effect.result_of, effect.blocks), (6, 7, 4));
+        }
+    }
+
+    #[test]
+    fn the_blocks_of_a_rate_are_what_was_lost_less_what_was_won() {
+        let rate = |bits: [u8; 6]| bits.map(|bit| Some(f64::from(bit)));
+        let effect =
+            effect("hit_rate", Reduction::Rate, &rate([1, 1, 1, 0, 1, 1]), &rate([0, 0, 1, 1, 1, 1]));
+        for (got, expected) in effect.worse.effects.iter().zip([2.0, -1.0, 0.0]) {
+            assert!((got - expected / 6.0).abs() < 1e-12, "{effect:?}");
+        }
+        assert!((effect.worsening().unwrap() - 1.0 / 6.0).abs() < 1e-12);
+    }
+
+    /// Exchanging a block of the two runs changes the sign of its effect and of no other.
+    #[test]
+    fn an_exchanged_block_has_the_opposite_effect() {
+        for (name, reduction) in [
+            ("ra_mean_deg", Reduction::Mean),
+            ("ra_rms_deg", Reduction::Rms),
+            ("ra_median_deg", Reduction::Median),
+        ] {
+            let (mut a, mut b) = (A, B);
+            let before = effect(name, reduction, &a, &b).worse;
+            a[2..4].swap_with_slice(&mut b[2..4]);
+            let after = effect(name, reduction, &a, &b).worse;
+            // Counts change hands too: all effects may be scaled alike, which no statistic sees.
+            let scale = after.effects[0] / before.effects[0];
+            for (block, (x, y)) in before.effects.iter().zip(&after.effects).enumerate() {
+                let expected = if block == 1 { -scale * x } else { scale * x };
+                assert!((y - expected).abs() < 1e-12, "{name}, block {block}: {before:?} {after:?}");
+            }
+        }
+    }
+
+    /// Towards nought, across it, away from it: each is a change of its own size.
+    #[test]
+    fn a_bias_is_held_against_the_baseline_and_not_against_nought() {
+        let bias = |bias: f64| [0.1, -0.1, 0.2, -0.2].map(|x| Some(x + bias));
+        for (before, after, worsening) in [(0.05, -0.06, 0.01), (-0.05, -0.08, 0.03), (-0.08, -0.05, -0.03)] {
+            let effect = effect("ra_mean_deg", Reduction::Mean, &bias(before), &bias(after));
+            assert!(
+                (effect.worse.effects.iter().sum::<f64>() - (after - before)).abs() < 1e-12,
+                "{effect:?}"
+            );
+            assert!((effect.change().unwrap() - (after - before).abs()).abs() < 1e-12, "{effect:?}");
+            assert!((effect.worsening().unwrap() - worsening).abs() < 1e-12, "{effect:?}");
+        }
+    }
+
+    #[test]
+    fn the_interval_of_a_shift_of_every_value_is_the_shift() {
+        let shifted = A.map(|value| value.map(|value| value + 0.25));
+        for (name, reduction) in [("ra_mean_deg", Reduction::Mean), ("ra_median_deg", Reduction::Median)] {
+            let [a, b] = [&A, &shifted].map(|values| terms(name, reduction, values));
+            let blocks = Blocks::every(8, 2);
+            let interval = interval(&a, &b, &blocks, &Exchanges::new(blocks.count())).unwrap();
+            assert!((interval.low - 0.25).abs() < 1e-12 && (interval.high - 0.25).abs() < 1e-12, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_figure_that_is_counted_over_nothing_has_no_effect() {
+        for (a, b, blocks) in [(&A, &[None; 8], 4), (&[None; 8], &A, 4), (&[None; 8], &[None; 8], 0)] {
+            for (name, reduction) in [
+                ("ra_rms_deg", Reduction::Rms),
+                ("ra_mean_deg", Reduction::Mean),
+                ("ra_median_deg", Reduction::Median),
+            ] {
+                let none = effect(name, reduction, a, b);
+                assert_eq!((none.baseline.and(none.result), none.worsening()), (None, None), "{name}");
+                assert!(none.worse.effects.iter().all(|effect| *effect == 0.0), "{none:?}");
+                assert_eq!(none.blocks, blocks);
+            }
+        }
+    }
+
+    /// Of one unit a block: both have a value, the one, the other, none.
+    #[test]
+    fn a_block_counts_when_either_run_has_a_value_in_it() {
+        let [a, b] = [[Some(1.0), Some(2.0), None, None], [Some(1.0), None, Some(3.0), None]]
+            .map(|values| terms("ra_rms_deg", Reduction::Rms, &values));
+        let effect =
+            FigureEffect::of_runs(figure_called("ra_rms_deg").sense, &a, &b, &Blocks::every(4, 1), 0.0);
+        assert_eq!((effect.blocks, effect.baseline_of, effect.result_of), (3, 2, 2));
+    }
+
+    #[test]
+    fn errors_of_nought_may_grow_and_errors_that_stay_nought_do_not() {
+        let [nought, half] = [0.0, 0.5].map(|error| [Some(error); 8]);
+        let grown = effect("ra_rms_deg", Reduction::Rms, &nought, &half);
+        assert!((grown.worse.effects.iter().sum::<f64>() - 0.5).abs() < 1e-12, "{grown:?}");
+        let same = effect("ra_rms_deg", Reduction::Rms, &nought, &nought);
+        assert!(same.worse.effects.iter().all(|effect| *effect == 0.0), "{same:?}");
+    }
+
+    /// Above the best value, below it, across it: what is tested is the difference itself.
+    #[test]
+    fn what_is_best_near_a_value_is_tested_by_its_difference() {
+        for (reduction, a, b) in [
+            (Reduction::Mean, 1.5, 2.0),
+            (Reduction::Mean, 0.25, 0.5),
+            (Reduction::Mean, 1.5, 0.75),
+            (Reduction::Rms, 2.0, 4.0),
+        ] {
+            let [before, after] = [a, b].map(|value| terms("any", reduction, &[Some(value); 4]));
+            let sense = Sense { kind: Kind::Amount, better: Better::Near(1.0) };
+            let effect = FigureEffect::of_runs(sense, &before, &after, &Blocks::every(4, 1), 0.0);
+            let sum = effect.worse.effects.iter().sum::<f64>();
+            assert!((sum - (b - a)).abs() < 1e-12 && effect.has_best_value(), "{a} {b}: {effect:?}");
+        }
+    }
+
+    #[test]
+    fn a_side_is_summed_up_over_the_blocks_that_are_taken_alone() {
+        let values = [Some(4.0), None, Some(1.0), Some(8.0), Some(-2.0), Some(5.0), None, None];
+        let blocks = Blocks::every(8, 2);
+        let of = |reduction, taken: [bool; 4]| {
+            Side::of_run(reduction, &terms("any", reduction, &values).terms, &blocks).value(&taken)
+        };
+        let (all, some) = ([true; 4], [true, true, false, true]);
+        // 4 + 1 + 8 − 2 + 5 = 16 of 5; without the third block 13 of 3.
+        assert_eq!(of(Reduction::Mean, all), Some(16.0 / 5.0));
+        assert_eq!(of(Reduction::Mean, some), Some(13.0 / 3.0));
+        // 16 + 1 + 64 + 4 + 25 = 110 of 5; of the second block 65 of 2.
+        assert_eq!(of(Reduction::Rms, all), Some(22f64.sqrt()));
+        assert_eq!(of(Reduction::Rms, [false, true, false, false]), Some(32.5f64.sqrt()));
+        // −2 1 4 5 8; 1 4 8; 1 8; −2 1 5 8; 4.
+        assert_eq!(of(Reduction::Median, all), Some(4.0));
+        assert_eq!(of(Reduction::Median, some), Some(4.0));
+        assert_eq!(of(Reduction::Median, [false, true, false, false]), Some(4.5));
+        assert_eq!(of(Reduction::Median, [false, true, true, false]), Some(3.0));
+        assert_eq!(of(Reduction::Median, [true, false, false, false]), Some(4.0));
+        for reduction in [Reduction::Mean, Reduction::Rms, Reduction::Median] {
+            assert_eq!(of(reduction, [false, false, false, true]), None, "{reduction:?} of no value");
+        }
+    }
+
+    /// A fortieth of the 127 sets of seven blocks is left at either end: the third from there is the limit.
+    #[test]
+    fn the_interval_is_that_of_the_differences_over_sets_of_blocks() {
+        let nought = terms("ra_mean_deg", Reduction::Mean, &[Some(1.0); 7]);
+        let powers = [0, 1, 2, 3, 4, 5, 6].map(|block| Some(1.0 + f64::from(1 << block)));
+        let powers = terms("ra_mean_deg", Reduction::Mean, &powers);
+        let interval = interval(&nought, &powers, &Blocks::every(7, 1), &Exchanges::new(7)).unwrap();
+        // Means of sets from below: 1, (1 + 2)/2, 2; from above: 64, (64 + 32)/2, (64 + 16)/2.
+        assert!((interval.low - 2.0).abs() < 1e-12, "{interval:?}");
+        assert!((interval.high - 40.0).abs() < 1e-12, "{interval:?}");
+    }
+
+    #[test]
+    fn a_figure_sums_up_what_units_have_as_its_reduction_says() {
+        let values = [Some(1.0), None, Some(2.0), Some(-6.0)];
+        let of = |reduction| value(reduction, &terms("any", reduction, &values).terms);
+        assert_eq!(of(Reduction::Mean), Some(-1.0));
+        // (1 + 4 + 36)/3.
+        assert_eq!(of(Reduction::Rms), Some((41.0f64 / 3.0).sqrt()));
+        assert_eq!(of(Reduction::Median), Some(1.0));
+        let pooled = [Term { sum: 2.0, of: 3 }, Term::default(), Term { sum: 1.0, of: 1 }];
+        assert_eq!(value(Reduction::Rate, &pooled), Some(0.75));
+        for reduction in Reduction::ALL {
+            assert_eq!(value(reduction, &[Term::default(); 2]), None, "{reduction:?} of nothing");
+        }
+    }
+
+    #[test]
+    fn what_is_worse_depends_on_which_way_is_better() {
+        let worsening = |name: &str, reduction, a: f64, b: f64| {
+            effect(name, reduction, &[Some(a)], &[Some(b)]).worsening().unwrap()
+        };
+        let is = |got: f64, expected: f64| assert!((got - expected).abs() < 1e-12, "{got}, not {expected}");
+        is(worsening("stars_mean", Reduction::Mean, 20.0, 17.0), 3.0);
+        is(worsening("ra_rms_deg", Reduction::Rms, 0.5, 0.75), 0.25);
+        is(worsening("ra_rms_deg", Reduction::Rms, 0.75, 0.5), -0.25);
+        // A NEES is best at 1: from 0.7 to 1.5 it goes from 0.3 beside it to 0.5.
+        is(worsening("nees_mean", Reduction::Mean, 0.7, 1.5), 0.2);
+        is(worsening("nees_mean", Reduction::Mean, 1.5, 0.7), -0.2);
+    }
+
+    /// Ten values of which each is one more than it was. The middle fifth lies within 2, so the density at the median is 1/10.
+    #[test]
+    fn the_blocks_of_a_median_are_the_values_that_change_sides() {
+        let count = |from: usize| (from..from + 10).map(|x| Some(x as f64)).collect::<Vec<_>>();
+        let effect = effect("ra_median_deg", Reduction::Median, &count(1), &count(2));
+        // The median of both is 6. One value comes up to it and one leaves it, both in the third block: together one of ten changes
+        // sides, and the median moves by 1/10 over the density.
+        for (got, expected) in effect.worse.effects.iter().zip([0.0, 0.0, 1.0, 0.0, 0.0]) {
+            assert!((got - expected).abs() < 1e-12, "{effect:?}");
+        }
+        assert_eq!(effect.worse.effects.len(), 5);
+    }
+
+    /// Of 0, 1, 4 … 81 the middle fifth is from 16 to 36, with a density of 1/100.
+    #[test]
+    fn the_density_at_the_median_is_that_of_the_middle_fifth() {
+        let squares: Vec<f64> = (0..10).map(|x| f64::from(x * x)).collect();
+        let [low, high] = [squares[..3].to_vec(), squares[3..].to_vec()];
+        assert!((half_width_of_a_side(&[high, low]) - 50.0).abs() < 1e-12);
+        assert_eq!(half_width_of_a_side(&[vec![], vec![]]), 0.0);
+    }
+
+    /// Of 1, 2, 4, 5 the sample variance is 10/3, that of the sum of four 40/3.
+    #[test]
+    fn the_standard_error_of_a_sum_is_that_of_its_terms_scatter() {
+        assert!((standard_error(&[1.0, 2.0, 4.0, 5.0]) - (40.0f64 / 3.0).sqrt()).abs() < 1e-12);
+        // (1 + 1)/1 times two.
+        assert!((standard_error(&[1.0, 3.0]) - 2.0).abs() < 1e-12);
+        assert_eq!(standard_error(&[7.0]), 0.0);
+        assert_eq!(standard_error(&[]), 0.0);
+    }
+
+    #[test]
+    fn neighbouring_blocks_are_correlated_about_their_mean() {
+        // About 3: −2 −1 1 2. (2 − 1 + 2)/(4 + 1 + 1 + 4).
+        assert!((neighbour_correlation(&[1.0, 2.0, 4.0, 5.0]) - 0.3).abs() < 1e-12);
+        // About 3: −1 1 −1 1.
+        assert!((neighbour_correlation(&[2.0, 4.0, 2.0, 4.0]) + 0.75).abs() < 1e-12);
+        assert_eq!(neighbour_correlation(&[2.0; 4]), 0.0);
+        assert_eq!(neighbour_correlation(&[]), 0.0);
+    }
+
+    /// The other way round it is the same effect with the other sign, and no larger.
+    #[test]
+    fn an_improvement_is_a_worsening_with_the_other_sign() {
+        let effect = effect("ra_mean_deg", Reduction::Mean, &A, &B);
+        let better = effect.better();
+        assert!(effect.worse.effects.iter().zip(&better.effects).all(|(worse, better)| *worse == -better));
+        assert!(better.effects.iter().any(|effect| *effect != 0.0));
+    }
+}

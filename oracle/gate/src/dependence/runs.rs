@@ -1,0 +1,210 @@
+//! Runs of losses: what one event took away.
+//!
+//! Exchanging whole blocks cannot see what happens in one stretch alone. On the same frames the flips of a rate say more: of units whose
+//! outcome changed, some were lost and some won, and if the pipelines are alike, each is as likely. Flips come in episodes, which are no
+//! longer than the episodes in which the baseline itself fails: so many flips are worth as many fair coins as they are autocorrelation
+//! times of the rate. Two counts are tested: how many were lost of all that changed (the sign test), and how long the longest run of
+//! losses is among them.
+use std::ops::Range;
+
+use run::figure_called;
+use score::{Better, FigureTerms, Kind, UnitVerdict};
+use serde::Serialize;
+use statistics::binomial_at_least;
+
+use super::memory::memory_of;
+
+/// Episodes are taken to be at least so long, units: where a baseline hardly ever fails, its memory is not seen.
+const SHORTEST_EPISODE: f64 = 3.0;
+
+/// What became of the units that a rate counts, in order.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LossRun {
+    /// Units that counted for the better in the baseline and do not in the result.
+    pub lost: u64,
+    /// The other way round.
+    pub won: u64,
+    /// The longest run of losses with none won in it.
+    pub longest: u64,
+    /// Number of the first unit of that run; null without any.
+    pub first: Option<u64>,
+    /// Number of its last unit.
+    pub last: Option<u64>,
+    /// How long an episode is taken to be, units: the autocorrelation time of the rate in the baseline, at least 3.
+    pub episode: f64,
+    /// Probability of as many losses, or as long a run of them, when losing and winning are alike; of all rates together.
+    pub adjusted_p: f64,
+    /// So many units lost in a row, and nothing else, would be found.
+    pub smallest_visible: u64,
+}
+
+/// The flips of one rate.
+struct Series {
+    /// Of each unit that changed its place and whether it was lost.
+    flips: Vec<(usize, bool)>,
+    episode: f64,
+}
+
+impl Series {
+    /// `None` of a figure that is no rate, or is best near a value.
+    fn of(before: &FigureTerms, after: &FigureTerms, sequences: &[Range<usize>]) -> Option<Self> {
+        let sense = figure_called(&before.name).sense;
+        let sign = match (sense.kind, sense.better) {
+            (Kind::Rate, Better::More) => 1.0,
+            (Kind::Rate, Better::Less) => -1.0,
+            _ => return None,
+        };
+        let units = before.terms.iter().zip(&after.terms).enumerate();
+        let flips = units.filter(|(_, (before, after))| before.of > 0 && after.of > 0).filter_map(
+            |(unit, (before, after))| {
+                let change = sign * (after.sum / f64::from(after.of) - before.sum / f64::from(before.of));
+                (change != 0.0).then_some((unit, change < 0.0))
+            },
+        );
+        Some(Self { flips: flips.collect(), episode: memory_of(before, sequences).max(SHORTEST_EPISODE) })
+    }
+
+    fn lost(&self) -> usize {
+        self.flips.iter().filter(|(_, is_lost)| *is_lost).count()
+    }
+
+    /// The longest run of losses.
+    fn longest(&self) -> &[(usize, bool)] {
+        let runs =
+            self.flips.chunk_by(|a, b| a.1 == b.1).filter(|run| run.first().is_some_and(|flip| flip.1));
+        runs.max_by_key(|run| run.len()).unwrap_or_default()
+    }
+
+    /// Probability of so many losses in so many flips with so long a run of them.
+    fn p(&self, lost: usize, longest: usize, flips: usize) -> f64 {
+        let episodes = |units: usize| units as f64 / self.episode;
+        let (lost_of, won_of) = (episodes(lost).floor() as u64, episodes(flips - lost).ceil() as u64);
+        let by_count = binomial_at_least(lost_of, lost_of + won_of, 0.5);
+        let (run, of) = (episodes(longest).floor(), episodes(flips).ceil());
+        // A run begins with the first episode or after one that was won.
+        let by_run = libm::exp2(-run) * (1.0 + 0.5 * (of - run).max(0.0));
+        (2.0 * by_count.min(by_run)).min(1.0)
+    }
+}
+
+/// The runs of losses of each figure, on the same frames; `None` of what is no rate with a direction.
+pub(crate) fn loss_runs(
+    pairs: &[(&FigureTerms, &FigureTerms)],
+    units: &[UnitVerdict],
+    sequences: &[Range<usize>],
+    alpha: f64,
+) -> Vec<Option<LossRun>> {
+    let series: Vec<Option<Series>> =
+        pairs.iter().map(|(before, after)| Series::of(before, after, sequences)).collect();
+    // Rates that changed in the same way in the same units are one: hits and misses, say. Which units changed is fixed under the null
+    // hypothesis, so that counting what changed is no choice by the outcome.
+    let mut distinct: Vec<&[(usize, bool)]> = Vec::new();
+    for Series { flips, .. } in series.iter().flatten().filter(|series| !series.flips.is_empty()) {
+        if !distinct.contains(&flips.as_slice()) {
+            distinct.push(flips);
+        }
+    }
+    let count = distinct.len().max(1) as f64;
+    let of_series = |series: &Series| {
+        let (flips, lost, longest) = (series.flips.len(), series.lost(), series.longest());
+        let number =
+            |flip: Option<&(usize, bool)>| flip.and_then(|flip| units.get(flip.0)).map(|unit| unit.number);
+        let is_seen = |run: &u64| count * series.p(*run as usize, *run as usize, *run as usize) <= alpha;
+        LossRun {
+            lost: lost as u64,
+            won: (flips - lost) as u64,
+            longest: longest.len() as u64,
+            first: number(longest.first()),
+            last: number(longest.last()),
+            episode: series.episode,
+            adjusted_p: (count * series.p(lost, longest.len(), flips)).min(1.0),
+            smallest_visible: (1..).find(is_seen).unwrap_or(u64::MAX),
+        }
+    };
+    series.iter().map(|series| series.as_ref().map(of_series)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::{days, rate};
+
+    fn run_of(before: &[u8], after: &[u8]) -> LossRun {
+        let [before, after] = [before, after].map(|bits| rate("hit_rate", bits));
+        let units = days(&[("day 1", before.terms.len() as u64)]).units;
+        let whole = 0..before.terms.len();
+        loss_runs(&[(&before, &after)], &units, std::slice::from_ref(&whole), 0.0025)[0].clone().unwrap()
+    }
+
+    /// Of 30 frames that alternate none remembers anything: an episode has three. Nine lost in a row are three throws, 2 · 2⁻³.
+    #[test]
+    fn losses_count_as_throws_of_a_coin_by_episodes() {
+        let before: Vec<u8> = (0..30).map(|frame| u8::from(frame % 15 != 0)).collect();
+        let lost = |lost: Range<usize>| -> Vec<u8> {
+            (0..30).map(|frame| if lost.contains(&frame) { 0 } else { before[frame] }).collect()
+        };
+        let run = run_of(&before, &lost(1..10));
+        assert_eq!((run.lost, run.won, run.longest, run.first, run.last), (9, 0, 9, Some(1), Some(9)));
+        let is = |p: f64, expected: f64| assert!((p - expected).abs() < 1e-12, "{p}, not {expected}");
+        assert_eq!(run.episode, 3.0);
+        is(run.adjusted_p, 0.25);
+        // Eleven are three whole ones; twelve are four.
+        is(run_of(&before, &lost(1..12)).adjusted_p, 0.25);
+        is(run_of(&before, &lost(1..13)).adjusted_p, 0.125);
+        // 2 · 2⁻ᵏ ≤ 0.0025 for ten throws.
+        assert_eq!(run.smallest_visible, 30);
+        let none = run_of(&before, &before);
+        assert_eq!((none.lost, none.longest, none.first, none.adjusted_p), (0, 0, None, 1.0));
+    }
+
+    /// Six lost, three won, six lost: 4 of 5 throws, 6/32 by count; by run 2⁻² (1 + (5 − 2)/2).
+    #[test]
+    fn what_was_won_parts_a_run() {
+        let before = [1, 1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 1, 1, 1, 1, 0, 1, 0, 1, 0, 1];
+        let after = [0, 0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 1];
+        let run = run_of(&before, &after);
+        assert_eq!((run.lost, run.won, run.longest), (12, 3, 6));
+        let series = Series { flips: Vec::new(), episode: 3.0 };
+        assert!((series.p(12, 6, 15) - 2.0 * 6.0 / 32.0).abs() < 1e-12);
+        assert!((series.p(12, 12, 12) - 2.0 / 16.0).abs() < 1e-12);
+        // Thousands of either are no reason to overflow.
+        assert!((0.9..=1.0).contains(&series.p(6000, 9, 12_000)));
+        assert!(series.p(9000, 9, 12_000) < 1e-100);
+    }
+
+    /// A baseline that fails in episodes of twenty makes one loss of twenty a single throw.
+    #[test]
+    fn a_memory_of_the_baseline_makes_losses_fewer_throws() {
+        let before: Vec<u8> = (0..400).map(|frame| u8::from(frame % 100 >= 20)).collect();
+        let after: Vec<u8> = (0..400).map(|frame| u8::from(frame >= 100 && before[frame] == 1)).collect();
+        let run = run_of(&before, &after);
+        assert!(run.episode > 10.0 && run.adjusted_p > 0.0025, "{run:?}");
+        assert_eq!((run.lost, run.first, run.last), (80, Some(20), Some(99)));
+    }
+
+    /// Misses are hits the other way round: the two are one series, and cost nothing.
+    #[test]
+    fn rates_that_tell_the_same_are_counted_once() {
+        let [before, after] = [[1u8; 60], [0u8; 60]];
+        let p = |names: &[&str]| {
+            let bits = |name: &str, bits: &[u8; 60]| match name {
+                "miss_rate" => rate(name, &bits.map(|bit| 1 - bit)),
+                "correct_rate" => rate(
+                    name,
+                    &bits.iter().enumerate().map(|(i, bit)| bit & u8::from(i > 0)).collect::<Vec<_>>(),
+                ),
+                _ => rate(name, bits),
+            };
+            let figures: Vec<_> =
+                names.iter().map(|name| (bits(name, &before), bits(name, &after))).collect();
+            let pairs: Vec<_> = figures.iter().map(|(before, after)| (before, after)).collect();
+            loss_runs(&pairs, &days(&[("day 1", 60)]).units, std::slice::from_ref(&(0..60)), 0.0025)[0]
+                .clone()
+                .unwrap()
+                .adjusted_p
+        };
+        let alone = p(&["hit_rate"]);
+        assert_eq!(p(&["hit_rate", "miss_rate"]), alone);
+        assert_eq!(p(&["hit_rate", "miss_rate", "correct_rate"]), 2.0 * alone);
+    }
+}

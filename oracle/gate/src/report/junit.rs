@@ -1,0 +1,137 @@
+//! A report as JUnit XML, which continuous integration reads: a test case a figure.
+use files::Failure;
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+
+use crate::report::{FigureReport, FigureVerdict, GateReport};
+
+/// The report as a JUnit document: figures that are worse or gone are failures, as are those that changed unless that was accepted, those with too little data are skipped.
+///
+/// # Errors
+/// [`Failure::Usage`] when it cannot be written as XML.
+pub fn junit(report: &GateReport) -> Result<String, Failure> {
+    let mut suite = TestSuite::new(format!("gate {}", report.name));
+    for (name, figure) in &report.figures {
+        let mut status = match figure.verdict {
+            FigureVerdict::NoWorse | FigureVerdict::Better => TestCaseStatus::success(),
+            FigureVerdict::Changed if report.accepted.is_some() => TestCaseStatus::success(),
+            FigureVerdict::Worse | FigureVerdict::Gone | FigureVerdict::Changed => {
+                TestCaseStatus::non_success(NonSuccessKind::Failure)
+            }
+            FigureVerdict::TooLittleData => TestCaseStatus::skipped(),
+        };
+        // Of a success both are nothing, and nothing is written.
+        status.set_message(message(name, figure));
+        status.set_type(figure.verdict.words());
+        let mut case = TestCase::new(name.as_str(), status);
+        case.set_classname(format!("boresight.gate.{}", report.name));
+        case.set_system_out(message(name, figure));
+        suite.add_test_case(case);
+    }
+    written(suite)
+}
+
+/// A comparison that could not be made, as a JUnit document: one test case, which is an error.
+///
+/// # Errors
+/// [`Failure::Usage`] when it cannot be written as XML.
+pub fn junit_of_failure(failure: &Failure) -> Result<String, Failure> {
+    let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+    status.set_message(failure.to_string());
+    status.set_type("cannot compare");
+    let mut case = TestCase::new("comparison", status);
+    case.set_classname("boresight.gate");
+    let mut suite = TestSuite::new("gate");
+    suite.add_test_case(case);
+    written(suite)
+}
+
+fn written(suite: TestSuite) -> Result<String, Failure> {
+    let mut document = Report::new("boresight gate");
+    document.add_test_suite(suite);
+    document
+        .to_string()
+        .map_err(|error| Failure::Usage(format!("the report cannot be written as JUnit XML: {error}")))
+}
+
+/// A figure in a sentence.
+fn message(name: &str, figure: &FigureReport) -> String {
+    let shown = |value: Option<f64>| value.map_or_else(|| "nothing".to_owned(), |value| value.to_string());
+    format!(
+        "{name}: {}; {} in the baseline, {} in the result, difference {} (95 %: {} to {}), adjusted p {}, smallest visible {}",
+        figure.verdict.words(),
+        shown(figure.baseline),
+        shown(figure.result),
+        shown(figure.difference),
+        shown(figure.low),
+        shown(figure.high),
+        figure.adjusted_p,
+        shown(figure.smallest_visible),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hand_made::report;
+
+    fn suite(text: &str) -> TestSuite {
+        let report = Report::deserialize_from_str(text).unwrap();
+        assert_eq!(report.name.as_ref().map(|name| name.as_str()), Some("boresight gate"));
+        assert_eq!(report.test_suites.len(), 1, "{text}");
+        report.test_suites[0].clone()
+    }
+
+    #[test]
+    fn a_figure_that_shuts_the_gate_is_a_failure_and_one_without_data_is_skipped() {
+        let report = report(&[
+            ("worse", FigureVerdict::Worse),
+            ("gone", FigureVerdict::Gone),
+            ("same", FigureVerdict::NoWorse),
+            ("better", FigureVerdict::Better),
+            ("few", FigureVerdict::TooLittleData),
+        ]);
+        let suite = suite(&junit(&report).unwrap());
+        assert_eq!(suite.name.as_str(), "gate made by hand");
+        assert_eq!((suite.tests, suite.failures, suite.errors, suite.skipped), (5, 2, 0, 1));
+        for (case, name) in suite.test_cases.iter().zip(["worse", "gone", "same", "better", "few"]) {
+            assert_eq!(case.name.as_str(), name);
+            assert_eq!(
+                case.classname.as_ref().map(|name| name.as_str()),
+                Some("boresight.gate.made by hand")
+            );
+            let is_as_told = match &case.status {
+                TestCaseStatus::Success { .. } => ["same", "better"].contains(&name),
+                TestCaseStatus::NonSuccess { kind, ty, .. } => {
+                    *kind == NonSuccessKind::Failure && ty.as_ref().map(|ty| ty.as_str()) == Some(name)
+                }
+                TestCaseStatus::Skipped { .. } => name == "few",
+            };
+            assert!(is_as_told, "{case:?}");
+        }
+    }
+
+    #[test]
+    fn a_failure_says_in_a_sentence_what_became_of_the_figure() {
+        let report = report(&[("hit_rate", FigureVerdict::Worse)]);
+        let expected = "hit_rate: worse; 0.75 in the baseline, 0.5 in the result, difference -0.25 (95 %: -0.375 to -0.125), \
+                        adjusted p 0.03125, smallest visible nothing";
+        let suite = suite(&junit(&report).unwrap());
+        let case = &suite.test_cases[0];
+        let TestCaseStatus::NonSuccess { message, .. } = &case.status else { panic!("{case:?}") };
+        assert_eq!(message.as_ref().map(|message| message.as_str()), Some(expected));
+        assert_eq!(case.system_out.as_ref().map(|text| text.as_str()), Some(expected));
+    }
+
+    #[test]
+    fn a_comparison_that_could_not_be_made_is_an_error() {
+        let text = junit_of_failure(&Failure::Usage("the seeds <are> odd".to_owned())).unwrap();
+        let suite = suite(&text);
+        assert_eq!((suite.tests, suite.failures, suite.errors), (1, 0, 1));
+        let TestCaseStatus::NonSuccess { kind, message, ty, .. } = &suite.test_cases[0].status else {
+            panic!("{text}")
+        };
+        assert_eq!(*kind, NonSuccessKind::Error);
+        assert_eq!(message.as_ref().map(|message| message.as_str()), Some("the seeds <are> odd"));
+        assert_eq!(ty.as_ref().map(|ty| ty.as_str()), Some("cannot compare"));
+    }
+}

@@ -1,0 +1,333 @@
+//! What the threads of a monitor share: what is known of every frame, the latest pictures, what the page is waiting for.
+
+pub(crate) mod painter;
+pub(crate) mod picture;
+use std::collections::VecDeque;
+use std::ops::Range;
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+use axum::body::Bytes;
+use contract::docking::Digitiser;
+use files::Failure;
+use serde::Serialize;
+use tokio::sync::{oneshot, watch};
+
+use crate::report::{FrameReport, Phase};
+
+/// How many frames are processed beyond the last one that was asked for.
+const AHEAD: u64 = 120;
+/// Bytes of pictures that are kept, at most: some 290 far-range frames, some 580 fields.
+const PICTURE_BYTES: usize = 128 << 20;
+/// Pictures that may wait to be drawn, all clients together.
+const MOST_WAITING: usize = 64;
+/// Points of the history in the phase chart, at most about.
+const HISTORY_POINTS: usize = 1500;
+
+/// One monitored run. Frames are processed in order; `goal` moves ahead of the clients, so that a page that is left alone
+/// leaves the processor alone.
+#[derive(Debug)]
+pub(crate) struct Session {
+    frames: Range<u64>,
+    state: Mutex<State>,
+    /// Something changed for the threads: the goal, a picture to be drawn, the end.
+    changed: Condvar,
+    /// Frames processed, for the clients that wait.
+    processed: watch::Sender<u64>,
+}
+
+#[derive(Debug)]
+struct State {
+    entries: Vec<Entry>,
+    pictures: VecDeque<(u64, Bytes)>,
+    picture_bytes: usize,
+    orders: VecDeque<Order>,
+    goal: u64,
+    failure: Option<String>,
+    is_closed: bool,
+}
+
+/// What is kept of a frame.
+#[derive(Debug)]
+struct Entry {
+    report: Bytes,
+    phase: Phase,
+    digitiser: Digitiser,
+}
+
+/// A picture to be drawn.
+#[derive(Debug)]
+pub(crate) struct Order {
+    pub(crate) frame: u64,
+    pub(crate) digitiser: Digitiser,
+    pub(crate) answer: oneshot::Sender<Bytes>,
+}
+
+/// How far the run is.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Progress {
+    pub(crate) from: u64,
+    pub(crate) to: u64,
+    /// Frames `from` up to and without this one are processed.
+    pub(crate) processed: u64,
+    pub(crate) failure: Option<String>,
+}
+
+/// Points of the phase chart: frame, range, range rate.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct History {
+    measured: Vec<(u64, f64, f64)>,
+    truth: Vec<(u64, f64, f64)>,
+}
+
+/// The answer to a wish for a picture.
+#[derive(Debug)]
+pub(crate) enum PictureAnswer {
+    Ready(Bytes),
+    Ordered(oneshot::Receiver<Bytes>),
+    /// The frame is not processed yet.
+    NotYet,
+    /// Too many are waiting.
+    Busy,
+}
+
+impl Session {
+    pub(crate) fn new(frames: Range<u64>) -> Self {
+        let state = State {
+            entries: Vec::new(),
+            pictures: VecDeque::new(),
+            picture_bytes: 0,
+            orders: VecDeque::new(),
+            goal: frames.start.saturating_add(AHEAD),
+            failure: None,
+            is_closed: false,
+        };
+        let processed = watch::Sender::new(frames.start);
+        Self { frames, state: Mutex::new(state), changed: Condvar::new(), processed }
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        // A thread that panicked left whole values: each change is one assignment or one push.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn contains(&self, frame: u64) -> bool {
+        self.frames.contains(&frame)
+    }
+
+    /// Waits until somebody wants `frame`.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when the monitor is closed.
+    pub(crate) fn wait_for_goal(&self, frame: u64) -> Result<(), Failure> {
+        let mut state = self.state();
+        while frame > state.goal && !state.is_closed {
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        if state.is_closed { Err(Failure::Usage("the monitor is closed".to_owned())) } else { Ok(()) }
+    }
+
+    /// Adds the next frame.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when the report cannot be written as JSON.
+    pub(crate) fn publish(
+        &self,
+        report: &FrameReport,
+        digitiser: Digitiser,
+        picture: Option<Bytes>,
+    ) -> Result<(), Failure> {
+        let json = serde_json::to_vec(report)
+            .map_err(|error| Failure::Usage(format!("a frame cannot be written as JSON: {error}")))?;
+        let mut state = self.state();
+        state.entries.push(Entry { report: json.into(), phase: report.phase, digitiser });
+        if let Some(picture) = picture {
+            state.keep(report.frame, picture);
+        }
+        self.processed.send_replace(self.frames.start + state.entries.len() as u64);
+        Ok(())
+    }
+
+    /// Ends the sequence before its last frame, with the reason.
+    pub(crate) fn fail(&self, reason: String) {
+        self.state().failure = Some(reason);
+        self.processed.send_modify(|_| ());
+    }
+
+    /// Has frames processed up to this one and some more.
+    pub(crate) fn want(&self, frame: u64) {
+        let mut state = self.state();
+        let goal = frame.saturating_add(AHEAD);
+        if goal > state.goal {
+            state.goal = goal;
+            self.changed.notify_all();
+        }
+    }
+
+    /// The report of a frame; `None` as long as it is not processed.
+    pub(crate) fn report(&self, frame: u64) -> Option<Bytes> {
+        let index = usize::try_from(frame.checked_sub(self.frames.start)?).ok()?;
+        self.state().entries.get(index).map(|entry| entry.report.clone())
+    }
+
+    /// A picture that is kept, or the promise of one.
+    pub(crate) fn picture(&self, frame: u64) -> PictureAnswer {
+        let mut state = self.state();
+        if let Some((_, picture)) = state.pictures.iter().rev().find(|(kept, _)| *kept == frame) {
+            return PictureAnswer::Ready(picture.clone());
+        }
+        let index = frame.checked_sub(self.frames.start).and_then(|index| usize::try_from(index).ok());
+        let Some(digitiser) = index.and_then(|i| state.entries.get(i)).map(|entry| entry.digitiser) else {
+            return PictureAnswer::NotYet;
+        };
+        // Those whose clients have gone make room.
+        state.orders.retain(|order| !order.answer.is_closed());
+        if state.orders.len() >= MOST_WAITING || state.is_closed {
+            return PictureAnswer::Busy;
+        }
+        let (answer, promise) = oneshot::channel();
+        state.orders.push_back(Order { frame, digitiser, answer });
+        self.changed.notify_all();
+        PictureAnswer::Ordered(promise)
+    }
+
+    /// The next picture to be drawn, once there is one; `None` at the end.
+    pub(crate) fn next_order(&self) -> Option<Order> {
+        let mut state = self.state();
+        loop {
+            if state.is_closed {
+                return None;
+            }
+            match state.orders.pop_front() {
+                Some(order) if order.answer.is_closed() => {}
+                Some(order) => return Some(order),
+                None => state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner),
+            }
+        }
+    }
+
+    /// Hands a picture to who ordered it, and keeps it.
+    pub(crate) fn deliver(&self, order: Order, picture: Bytes) {
+        self.state().keep(order.frame, picture.clone());
+        // Nobody is there any more: it is kept for the next one.
+        let _ = order.answer.send(picture);
+    }
+
+    pub(crate) fn progress(&self) -> Progress {
+        let state = self.state();
+        Progress {
+            from: self.frames.start,
+            to: self.frames.end,
+            processed: self.frames.start + state.entries.len() as u64,
+            failure: state.failure.clone(),
+        }
+    }
+
+    /// Tells of every frame that is processed, and of the end.
+    pub(crate) fn subscribe(&self) -> watch::Receiver<u64> {
+        self.processed.subscribe()
+    }
+
+    /// Range and range rate of the frames processed so far, thinned.
+    pub(crate) fn history(&self) -> History {
+        let state = self.state();
+        let step = state.entries.len().div_ceil(HISTORY_POINTS).max(1);
+        let points = || (self.frames.start..).zip(&state.entries).step_by(step);
+        History {
+            measured: points()
+                .filter_map(|(frame, entry)| entry.phase.measured.map(|[range, rate]| (frame, range, rate)))
+                .collect(),
+            truth: points()
+                .map(|(frame, entry)| (frame, entry.phase.truth[0], entry.phase.truth[1]))
+                .collect(),
+        }
+    }
+
+    /// Wakes whoever waits, for the last time.
+    pub(crate) fn close(&self) {
+        let mut state = self.state();
+        state.is_closed = true;
+        // Dropped promises tell their clients.
+        state.orders.clear();
+        self.changed.notify_all();
+        self.processed.send_modify(|_| ());
+    }
+
+    pub(crate) fn is_closed(&self) -> bool {
+        self.state().is_closed
+    }
+}
+
+impl State {
+    /// Keeps a picture, and lets go of the oldest ones.
+    fn keep(&mut self, frame: u64, picture: Bytes) {
+        if self.pictures.iter().any(|(kept, _)| *kept == frame) {
+            return;
+        }
+        self.picture_bytes += picture.len();
+        self.pictures.push_back((frame, picture));
+        while self.picture_bytes > PICTURE_BYTES {
+            let Some((_, oldest)) = self.pictures.pop_front() else { break };
+            self.picture_bytes -= oldest.len();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::{ImageLayout, Model, View};
+
+    fn report(frame: u64) -> FrameReport {
+        let view = View { position: [0.0; 3], axes: [[0.0; 3]; 3] };
+        FrameReport {
+            frame,
+            time_utc: String::new(),
+            elapsed_s: 0.0,
+            group: String::new(),
+            image: ImageLayout { columns: 1, rows: 1, first_row: 0, row_step: 1, camera_rows: 1 },
+            status: "measured".to_owned(),
+            parameters: Vec::new(),
+            facts: Vec::new(),
+            overlay: Vec::new(),
+            truth_overlay: Vec::new(),
+            phase: Phase { measured: Some([frame as f64, 0.0]), truth: [frame as f64, 0.0] },
+            ground: None,
+            model: Model::Docking { camera: 0, measured: None, truth: view, sun: None },
+        }
+    }
+
+    #[test]
+    fn pictures_are_bounded_and_the_oldest_goes_first() {
+        let session = Session::new(0..10);
+        let large = Bytes::from(vec![0; PICTURE_BYTES / 3]);
+        for frame in 0..4 {
+            session.publish(&report(frame), Digitiser::default(), Some(large.clone())).unwrap();
+        }
+        assert!(matches!(session.picture(0), PictureAnswer::Ordered(_)));
+        assert!(matches!(session.picture(3), PictureAnswer::Ready(_)));
+        assert!(matches!(session.picture(4), PictureAnswer::NotYet));
+    }
+
+    #[test]
+    fn orders_are_bounded_and_those_of_clients_that_left_make_room() {
+        let session = Session::new(0..2);
+        session.publish(&report(0), Digitiser::default(), None).unwrap();
+        let promises: Vec<_> = (0..MOST_WAITING).map(|_| session.picture(0)).collect();
+        assert!(matches!(session.picture(0), PictureAnswer::Busy));
+        drop(promises);
+        assert!(matches!(session.picture(0), PictureAnswer::Ordered(_)));
+    }
+
+    #[test]
+    fn nobody_processes_beyond_what_is_wanted_and_some_more() {
+        let session = Session::new(100..9000);
+        session.wait_for_goal(100 + AHEAD).unwrap();
+        assert_eq!(session.state().goal, 100 + AHEAD);
+        session.want(500);
+        session.wait_for_goal(500 + AHEAD).unwrap();
+        session.want(200);
+        assert_eq!(session.state().goal, 500 + AHEAD);
+        session.close();
+        assert!(session.wait_for_goal(8999).is_err() && session.next_order().is_none());
+    }
+}

@@ -1,0 +1,19 @@
+//! Draws a picture again that is not kept any more, or never was: frame N alone is the frame N of the run.
+use files::Failure;
+
+use super::Session;
+use crate::feed::{Feed, Surroundings};
+
+/// Draws what is ordered, until the monitor is closed.
+///
+/// # Errors
+/// A [`Failure`] when a frame cannot be made.
+pub(crate) fn paint(feed: &Feed, surroundings: &Surroundings, session: &Session) -> Result<(), Failure> {
+    feed.world.paint(surroundings, &|draw| {
+        while let Some(order) = session.next_order() {
+            let picture = draw(&order)?;
+            session.deliver(order, picture);
+        }
+        Ok(())
+    })
+}

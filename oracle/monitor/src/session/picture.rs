@@ -1,0 +1,55 @@
+//! Pictures as the page draws them: one grey byte a pixel, row by row.
+
+use axum::body::Bytes;
+use contract::Frame;
+use sim::sensor::SensorConfig;
+
+/// Of full scale, where the stretch turns from linear to logarithmic: faint stars show, and bright ones still differ.
+const SOFTENING: f64 = 1.0 / 1500.0;
+
+/// From digital numbers to grey.
+#[derive(Debug, Clone)]
+pub(crate) struct Stretch(Vec<u8>);
+
+impl Stretch {
+    /// Eight bits as they are.
+    pub(crate) fn plain() -> Self {
+        Self((0..=u8::MAX).collect())
+    }
+
+    /// From the detector's bias to its full scale, by the inverse hyperbolic sine.
+    pub(crate) fn of_sensor(sensor: &SensorConfig) -> Self {
+        let full_dn = f64::from(sensor.full_scale_dn());
+        let span = (full_dn - sensor.bias_dn).max(1.0);
+        let grey = |dn: u16| {
+            let level = ((f64::from(dn) - sensor.bias_dn) / span).clamp(0.0, 1.0);
+            255.0 * libm::asinh(level / SOFTENING) / libm::asinh(1.0 / SOFTENING)
+        };
+        Self((0..=sensor.full_scale_dn()).map(|dn| grey(dn).round() as u8).collect())
+    }
+
+    /// The picture of a frame; what is above the scale is white.
+    pub(crate) fn picture(&self, frame: &Frame) -> Bytes {
+        let grey = |dn: &u16| self.0.get(usize::from(*dn)).copied().unwrap_or(u8::MAX);
+        frame.dn().iter().map(grey).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use run::ScenarioSource;
+    use scenario::FarRangeScenario;
+
+    #[test]
+    fn the_stretch_rises_from_black_at_the_bias_to_white_at_full_scale() {
+        let source = ScenarioSource::read("argon").unwrap();
+        let sensor = &source.typed::<FarRangeScenario>("argon").unwrap().sensor;
+        let Stretch(table) = Stretch::of_sensor(sensor);
+        assert_eq!((table[0], table[sensor.bias_dn as usize]), (0, 0));
+        assert_eq!((table.len(), table.last()), (usize::from(sensor.full_scale_dn()) + 1, Some(&255)));
+        assert!(table.windows(2).all(|pair| pair[0] <= pair[1]));
+        // A pixel of a star of ten read noises, 15 DN, is well above black.
+        assert!(table[sensor.bias_dn as usize + 15] > 64);
+    }
+}

@@ -1,0 +1,266 @@
+//! Charts of the report, and the traces and layouts that they share: lines, clouds of points, intervals, bars, stacked panels.
+
+use serde::Serialize;
+
+use super::plotly::{Axis, ErrorBars, Layout, Line, Marker, Mode, Symbol, Trace, Values};
+use super::thin::{extremes, sampled};
+use crate::page::data_table::DataTable;
+use crate::page::script_safe::script_safe;
+
+/// What is true.
+pub(crate) const TRUTH: &str = "#2f9e69";
+/// What was measured, and is right.
+pub(crate) const MEASURED: &str = "#3686c9";
+/// What was measured, and is wrong.
+pub(crate) const WRONG: &str = "#c9415a";
+/// A second thing beside the measured one: a mean, a limit.
+pub(crate) const BESIDE: &str = "#e0752d";
+/// What is only there to be compared with.
+pub(crate) const REFERENCE: &str = "#7c8792";
+
+/// Points that are few.
+const FEW: usize = 300;
+
+/// A chart, the words below it and the table behind it.
+#[derive(Clone)]
+pub struct Chart {
+    /// What it shows.
+    pub caption: String,
+    /// Height on the page, px.
+    pub height_px: u32,
+    /// The numbers in it, or a summary of them.
+    pub data: DataTable,
+    traces: Vec<Trace>,
+    layout: Layout,
+}
+
+impl std::fmt::Debug for Chart {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Chart").field("caption", &self.caption).finish_non_exhaustive()
+    }
+}
+
+impl Chart {
+    /// A chart of these traces.
+    pub(crate) fn new(
+        caption: impl Into<String>,
+        height_px: u32,
+        data: DataTable,
+        traces: Vec<Trace>,
+        layout: Layout,
+    ) -> Self {
+        Self { caption: caption.into(), height_px, data, traces, layout }
+    }
+
+    /// The figure as plotly.js takes it, safe inside a script tag.
+    pub fn json(&self) -> String {
+        #[derive(Serialize)]
+        struct Figure<'a> {
+            data: &'a [Trace],
+            layout: &'a Layout,
+        }
+        // Values of JSON alone, which always have a text.
+        let json = serde_json::to_string(&Figure { data: &self.traces, layout: &self.layout });
+        script_safe(&json.unwrap_or_default())
+    }
+}
+
+/// A number with so many decimals: more would only make the page longer.
+pub(crate) fn rounded(value: f64, decimals: i32) -> f64 {
+    let unit = (0..decimals).fold(1.0, |unit, _| unit * 10.0);
+    (value * unit).round() / unit
+}
+
+/// Words of somebody else's for a chart, which would take tags in them for markup.
+pub(crate) fn plain(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// A line.
+pub(crate) fn line(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
+    Trace::scatter(Mode::Lines, x, y).name(plain(name)).line(Line::new(1.6).colour(colour))
+}
+
+/// Points.
+pub(crate) fn points(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
+    let marker = Marker::new().size(4).colour(colour).opacity(0.85);
+    Trace::scatter(Mode::Markers, x, y).name(plain(name)).marker(marker)
+}
+
+/// A cloud of the points of some rows, and, where they are too many to be drawn, a sample of them with their extremes as rings. `make` draws
+/// rows; `value` is what the extremes are of, and where there is none no extremes are drawn.
+pub(crate) fn cloud(
+    name: &str,
+    rows: &[usize],
+    value: Option<&dyn Fn(usize) -> f64>,
+    colour: &str,
+    make: impl Fn(&[usize]) -> Trace,
+) -> Vec<Trace> {
+    let of = |places: Vec<usize>| {
+        let rows: Vec<usize> = places.into_iter().map(|place| rows[place]).collect();
+        make(&rows).mode(Mode::Markers)
+    };
+    // Few points are looked at one by one, of many their density.
+    let (size, opacity) = if rows.len() < FEW { (5, 0.85) } else { (4, 0.6) };
+    let marker = Marker::new().size(size).colour(colour).opacity(opacity);
+    let mut traces = vec![of(sampled(rows.len())).name(plain(name)).marker(marker)];
+    let rings = value.map_or_else(Vec::new, |value| extremes(rows.len(), &|place| value(rows[place])));
+    if !rings.is_empty() {
+        let marker = Marker::new().size(6).colour(REFERENCE).symbol(Symbol::Ring);
+        traces.push(of(rings).name("smallest and largest of each fiftieth".to_owned()).marker(marker));
+    }
+    traces
+}
+
+/// Points that stand out.
+pub(crate) fn crosses(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
+    let marker = Marker::new().size(6).colour(colour).symbol(Symbol::Cross);
+    Trace::scatter(Mode::Markers, x, y).name(plain(name)).marker(marker)
+}
+
+/// Values with the limits of their intervals, as points with bars; the limits are absolute.
+pub(crate) fn intervals(
+    name: &str,
+    x: impl Into<Values>,
+    y: Vec<f64>,
+    low: &[f64],
+    high: &[f64],
+    colour: &str,
+) -> Trace {
+    let bars = bars_to(&y, low, high);
+    let marker = Marker::new().size(7).colour(colour);
+    Trace::scatter(Mode::Markers, x, y).name(plain(name)).marker(marker).error_y(bars)
+}
+
+/// The same along x, for names down the side.
+pub(crate) fn intervals_across(
+    name: &str,
+    x: Vec<f64>,
+    low: &[f64],
+    high: &[f64],
+    y: Vec<String>,
+    colour: &str,
+) -> Trace {
+    let bars = bars_to(&x, low, high);
+    let marker = Marker::new().size(7).colour(colour);
+    let names: Vec<String> = y.iter().map(|name| plain(name)).collect();
+    Trace::scatter(Mode::Markers, x, names).name(plain(name)).marker(marker).error_x(bars)
+}
+
+/// Bars from values to the limits of their intervals.
+fn bars_to(values: &[f64], low: &[f64], high: &[f64]) -> ErrorBars {
+    let up: Vec<f64> = high.iter().zip(values).map(|(high, value)| (high - value).max(0.0)).collect();
+    let down: Vec<f64> = low.iter().zip(values).map(|(low, value)| (value - low).max(0.0)).collect();
+    ErrorBars::new(&up, &down)
+}
+
+/// The room between two lines, as two traces: its lower edge, and its upper one with the fill.
+pub(crate) fn band(name: &str, x: Vec<f64>, low: Vec<f64>, high: Vec<f64>, fill: &str) -> [Trace; 2] {
+    let edge = |x, y| Trace::scatter(Mode::Lines, x, y).line(Line::new(0.0)).name(plain(name));
+    let below = edge(x.clone(), low).not_in_legend();
+    [below, edge(x, high).fill_to_previous(fill)]
+}
+
+/// A line that is there to be compared with.
+pub(crate) fn dashed(name: &str, x: impl Into<Values>, y: Vec<f64>, colour: &str) -> Trace {
+    let style = Line::new(1.2).colour(colour).dashed();
+    Trace::scatter(Mode::Lines, x, y).name(plain(name)).line(style)
+}
+
+/// Bars, one a name.
+pub(crate) fn bars(name: &str, x: &[String], y: Vec<f64>, colour: &str) -> Trace {
+    let names: Vec<String> = x.iter().map(|x| plain(x)).collect();
+    Trace::bars(names, y).name(plain(name)).marker(Marker::new().colour(colour))
+}
+
+/// The layout of stacked bars.
+pub(crate) fn stacked_bars(x_title: &str, y_title: &str) -> Layout {
+    // One kind of bar alone would have no name otherwise.
+    axes(x_title, y_title).stacked_bars(0.4).legend(true)
+}
+
+/// The layout of one pair of axes.
+pub(crate) fn axes(x_title: &str, y_title: &str) -> Layout {
+    Layout::new(Axis::titled(x_title), Axis::titled(y_title))
+}
+
+/// An axis in powers of ten, with whole numbers at its ticks: a lone 2 may be 20. Few of them, as those before a power are close.
+pub(crate) fn log_axis(title: &str) -> Axis {
+    Axis::titled(title).logarithmic().tick_format("~g").most_ticks(4)
+}
+
+/// Ticks of a low panel with an axis in powers of ten: powers, or 1 and 3, or 1, 2 and 5 of each, the fewest that are two, so that no label
+/// covers another.
+fn log_ticks(low: f64, high: f64) -> Vec<f64> {
+    let (first, last) = (libm::floor(libm::log10(low)) as i32, libm::ceil(libm::log10(high)) as i32);
+    let every = ((last - first) / 4).max(1) as usize;
+    let ticks = |digits: &[f64]| -> Vec<f64> {
+        let powers = (first..=last).step_by(every).map(|power| libm::pow(10.0, f64::from(power)));
+        let all = powers.flat_map(|power| digits.iter().map(move |digit| digit * power));
+        all.filter(|tick| (low..=high).contains(tick)).collect()
+    };
+    let sets: [&[f64]; 3] = [&[1.0], &[1.0, 3.0], &[1.0, 2.0, 5.0]];
+    sets.into_iter().map(ticks).find(|ticks| ticks.len() > 1).unwrap_or_else(|| vec![low, high])
+}
+
+/// Some traces with an axis of their own, in a stack of them over one common axis.
+pub(crate) struct Panel {
+    /// Title of its axis.
+    pub(crate) title: String,
+    /// What is drawn in it.
+    pub(crate) traces: Vec<Trace>,
+    /// Limits of its axis; `None`: those of what is drawn.
+    pub(crate) range: Option<[f64; 2]>,
+    /// Limits of an axis in powers of ten; `None` for a common one.
+    pub(crate) log: Option<[f64; 2]>,
+}
+
+impl Panel {
+    pub(crate) fn new(title: impl Into<String>, traces: Vec<Trace>) -> Self {
+        Self { title: title.into(), traces, range: None, log: None }
+    }
+}
+
+/// Panels above each other over one common axis. The legend is that of the first.
+pub(crate) fn stacked(x: Axis, panels: Vec<Panel>) -> (Vec<Trace>, Layout) {
+    let count = panels.len().max(1);
+    let (height, gap) = (1.0 / count as f64, 0.035);
+    let name = |index: usize| if index == 0 { "y".to_owned() } else { format!("y{}", index + 1) };
+    let mut layout = Layout::default().x_axis(x.anchor(&name(count - 1)));
+    let mut traces: Vec<Trace> = Vec::new();
+    for (index, panel) in panels.into_iter().enumerate() {
+        let top = 1.0 - index as f64 * height;
+        let bottom = if index + 1 == count { 0.0 } else { top - height + gap };
+        let axis = match panel.log {
+            Some([low, high]) => log_axis(&panel.title)
+                .ticks(&log_ticks(low, high))
+                .range([libm::log10(low) - 0.1, libm::log10(high) + 0.1]),
+            None => Axis::titled(&panel.title),
+        };
+        let mut axis = axis.domain([bottom, top]);
+        if let Some(ends) = panel.range {
+            axis = axis.range(ends);
+        }
+        layout = layout.y_axis(&name(index), axis);
+        for trace in panel.traces {
+            let trace = trace.y_axis(&name(index));
+            traces.push(if index == 0 { trace } else { trace.not_in_legend() });
+        }
+    }
+    (traces, layout)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_in_powers_of_ten_has_two_ticks_and_few_more() {
+        for (low, high) in
+            [(0.004, 0.05), (0.004, 0.06), (0.011, 0.019), (2e-5, 0.3), (1e-6, 0.5), (1e-9, 10.0)]
+        {
+            let ticks = log_ticks(low, high);
+            assert!((2..=6).contains(&ticks.len()), "{low} to {high}: {ticks:?}");
+        }
+    }
+}

@@ -1,0 +1,490 @@
+//! Traces and layouts of charts, as the JSON that plotly.js reads.
+//!
+//! The types hold only the attributes that the charts use, under the field's names; <https://plotly.com/javascript/reference/> defines the
+//! attributes. Numbers are as short as a reader can use: whole ones without a point, others with nine significant digits at most.
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// Attributes of a plotly.js object.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(transparent)]
+struct Attributes(Map<String, Value>);
+
+impl Attributes {
+    /// Sets an attribute, replacing an earlier value.
+    fn with(mut self, name: &str, value: impl Into<Value>) -> Self {
+        self.0.insert(name.to_owned(), value.into());
+        self
+    }
+
+    fn into_value(self) -> Value {
+        Value::Object(self.0)
+    }
+}
+
+/// A number as JSON; null, a gap, for one that is not finite.
+fn number(value: f64) -> Value {
+    /// Above it not every whole number is a float.
+    const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+    if value.fract() == 0.0 && value.abs() <= LARGEST_WHOLE {
+        return Value::from(value as i64);
+    }
+    // The text of a float is a float, and what is not finite has no JSON.
+    let short = format!("{value:.8e}").parse().unwrap_or(value);
+    serde_json::Number::from_f64(short).map_or(Value::Null, Value::Number)
+}
+
+fn numbers(values: &[f64]) -> Value {
+    values.iter().map(|&value| number(value)).collect()
+}
+
+/// Values along an axis, or one per point.
+#[derive(Debug, Clone)]
+pub(crate) struct Values(Value);
+
+impl From<Vec<f64>> for Values {
+    fn from(values: Vec<f64>) -> Self {
+        Self(numbers(&values))
+    }
+}
+
+impl From<Vec<u64>> for Values {
+    fn from(values: Vec<u64>) -> Self {
+        Self(Value::from(values))
+    }
+}
+
+impl From<Vec<String>> for Values {
+    fn from(values: Vec<String>) -> Self {
+        Self(Value::from(values))
+    }
+}
+
+/// What a scatter trace draws of its points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mode {
+    Lines,
+    Markers,
+    LinesAndMarkers,
+    Text,
+}
+
+impl Mode {
+    fn code(self) -> &'static str {
+        match self {
+            Self::Lines => "lines",
+            Self::Markers => "markers",
+            Self::LinesAndMarkers => "lines+markers",
+            Self::Text => "text",
+        }
+    }
+}
+
+/// The shape of a marker other than a dot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Symbol {
+    Cross,
+    Ring,
+    Square,
+}
+
+impl Symbol {
+    fn code(self) -> &'static str {
+        match self {
+            Self::Cross => "x",
+            Self::Ring => "circle-open",
+            Self::Square => "square-open",
+        }
+    }
+}
+
+/// Where a text stands beside its point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum TextPosition {
+    TopRight,
+    MiddleLeft,
+}
+
+impl TextPosition {
+    fn code(self) -> &'static str {
+        match self {
+            Self::TopRight => "top right",
+            Self::MiddleLeft => "middle left",
+        }
+    }
+}
+
+/// The colours of a heat map, from its smallest value to its largest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ColourScale {
+    /// From dark blue to yellow.
+    Viridis,
+    /// From blue through grey to red.
+    BlueToRed,
+}
+
+impl ColourScale {
+    fn code(self) -> &'static str {
+        match self {
+            Self::Viridis => "Viridis",
+            Self::BlueToRed => "RdBu",
+        }
+    }
+}
+
+/// The style of a line.
+#[derive(Debug, Clone)]
+pub(crate) struct Line(Attributes);
+
+impl Line {
+    /// A solid line, width in px.
+    pub(crate) fn new(width: f64) -> Self {
+        Self(Attributes::default().with("width", number(width)))
+    }
+
+    pub(crate) fn colour(self, colour: &str) -> Self {
+        Self(self.0.with("color", colour))
+    }
+
+    pub(crate) fn dashed(self) -> Self {
+        Self(self.0.with("dash", "dash"))
+    }
+}
+
+/// The style of the markers of points or of bars.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Marker(Attributes);
+
+impl Marker {
+    /// Dots of the default size, or bars.
+    pub(crate) fn new() -> Self {
+        Self::default()
+    }
+
+    /// Diameter, px.
+    pub(crate) fn size(self, px: u32) -> Self {
+        Self(self.0.with("size", px))
+    }
+
+    pub(crate) fn colour(self, colour: &str) -> Self {
+        Self(self.0.with("color", colour))
+    }
+
+    pub(crate) fn opacity(self, opacity: f64) -> Self {
+        Self(self.0.with("opacity", number(opacity)))
+    }
+
+    pub(crate) fn symbol(self, symbol: Symbol) -> Self {
+        Self(self.0.with("symbol", symbol.code()))
+    }
+}
+
+/// Bars from a point to the limits of its interval.
+#[derive(Debug, Clone)]
+pub(crate) struct ErrorBars(Attributes);
+
+impl ErrorBars {
+    /// Bars of these lengths, one per point: upwards, or to the right, and downwards, or to the left.
+    pub(crate) fn new(up: &[f64], down: &[f64]) -> Self {
+        let bars = Attributes::default().with("type", "data").with("symmetric", false).with("thickness", 1.2);
+        Self(bars.with("array", numbers(up)).with("arrayminus", numbers(down)))
+    }
+}
+
+/// A series of a chart: points, a line, bars or a heat map.
+#[derive(Debug, Clone, Serialize)]
+#[serde(transparent)]
+pub(crate) struct Trace(Attributes);
+
+impl Trace {
+    /// Every trace type that a report draws; the embedded bundle must have them.
+    #[cfg(test)]
+    pub(crate) const TYPES: [&str; 3] = ["scatter", "bar", "heatmap"];
+
+    fn new(kind: &str, x: impl Into<Values>, y: impl Into<Values>) -> Self {
+        Self(Attributes::default().with("type", kind).with("x", x.into().0).with("y", y.into().0))
+    }
+
+    /// Points, a line through them, or texts beside them.
+    pub(crate) fn scatter(mode: Mode, x: impl Into<Values>, y: impl Into<Values>) -> Self {
+        Self::new("scatter", x, y).mode(mode)
+    }
+
+    /// Upright bars.
+    pub(crate) fn bars(x: impl Into<Values>, y: impl Into<Values>) -> Self {
+        Self::new("bar", x, y)
+    }
+
+    /// Coloured cells; `z` has a row of numbers for each `y`, a number for each `x`.
+    pub(crate) fn heat_map(x: impl Into<Values>, y: impl Into<Values>, z: &[Vec<f64>]) -> Self {
+        let rows: Value = z.iter().map(|row| numbers(row)).collect();
+        Self::new("heatmap", x, y).with("z", rows)
+    }
+
+    fn with(self, name: &str, value: impl Into<Value>) -> Self {
+        Self(self.0.with(name, value))
+    }
+
+    /// The name in the legend and on hover. Plotly.js reads tags in it.
+    pub(crate) fn name(self, name: String) -> Self {
+        self.with("name", name)
+    }
+
+    pub(crate) fn mode(self, mode: Mode) -> Self {
+        self.with("mode", mode.code())
+    }
+
+    pub(crate) fn line(self, line: Line) -> Self {
+        self.with("line", line.0.into_value())
+    }
+
+    pub(crate) fn marker(self, marker: Marker) -> Self {
+        self.with("marker", marker.0.into_value())
+    }
+
+    pub(crate) fn opacity(self, opacity: f64) -> Self {
+        self.with("opacity", number(opacity))
+    }
+
+    /// Leaves the trace out of the legend.
+    pub(crate) fn not_in_legend(self) -> Self {
+        self.with("showlegend", false)
+    }
+
+    /// Fills the area between this line and that of the trace before it.
+    pub(crate) fn fill_to_previous(self, colour: &str) -> Self {
+        self.with("fill", "tonexty").with("fillcolor", colour)
+    }
+
+    pub(crate) fn error_x(self, bars: ErrorBars) -> Self {
+        self.with("error_x", bars.0.into_value())
+    }
+
+    pub(crate) fn error_y(self, bars: ErrorBars) -> Self {
+        self.with("error_y", bars.0.into_value())
+    }
+
+    /// A value per point that is not drawn; the hover template names it `%{customdata}`.
+    pub(crate) fn custom_data(self, values: Vec<u64>) -> Self {
+        self.with("customdata", Values::from(values).0)
+    }
+
+    /// What a reader who points at a point is told, in the template language of plotly.js.
+    pub(crate) fn hover_template(self, template: &str) -> Self {
+        self.with("hovertemplate", template)
+    }
+
+    /// Tells a reader who points at the trace nothing.
+    pub(crate) fn no_hover(self) -> Self {
+        self.with("hoverinfo", "skip")
+    }
+
+    /// A text per point.
+    pub(crate) fn texts(self, texts: Vec<String>) -> Self {
+        self.with("text", texts)
+    }
+
+    pub(crate) fn text_position(self, position: TextPosition) -> Self {
+        self.with("textposition", position.code())
+    }
+
+    /// Colour of the texts, and their size in px.
+    pub(crate) fn text_font(self, colour: &str, px: u32) -> Self {
+        self.with("textfont", Attributes::default().with("color", colour).with("size", px).into_value())
+    }
+
+    /// The name of the vertical axis: `y`, `y2`, and so on.
+    pub(crate) fn y_axis(self, name: &str) -> Self {
+        self.with("yaxis", name)
+    }
+
+    /// A text per cell of a heat map.
+    pub(crate) fn cell_texts(self, texts: Vec<Vec<String>>) -> Self {
+        self.with("text", texts)
+    }
+
+    pub(crate) fn colour_scale(self, scale: ColourScale) -> Self {
+        self.with("colorscale", scale.code())
+    }
+
+    /// The title of the colour bar beside a heat map.
+    pub(crate) fn colour_bar_title(self, title: &str) -> Self {
+        self.with("colorbar", Attributes::default().with("title", titled(title)).into_value())
+    }
+
+    /// The values that the ends of the colour scale stand for; without it, the smallest and the largest of the map.
+    pub(crate) fn colour_range(self, [low, high]: [f64; 2]) -> Self {
+        self.with("zmin", number(low)).with("zmax", number(high))
+    }
+
+    /// Tells a reader who points at an empty cell nothing.
+    pub(crate) fn no_hover_on_gaps(self) -> Self {
+        self.with("hoverongaps", false)
+    }
+}
+
+fn titled(text: &str) -> Value {
+    Attributes::default().with("text", text).into_value()
+}
+
+/// An axis of a chart.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Axis(Attributes);
+
+impl Axis {
+    /// An axis without a title; its kind follows from the values.
+    pub(crate) fn new() -> Self {
+        Self::default()
+    }
+
+    /// An axis with a title, which is left out when empty. Plotly.js reads tags in it.
+    pub(crate) fn titled(title: &str) -> Self {
+        if title.is_empty() { Self::new() } else { Self::new().with("title", titled(title)) }
+    }
+
+    fn with(self, name: &str, value: impl Into<Value>) -> Self {
+        Self(self.0.with(name, value))
+    }
+
+    /// An axis in powers of ten. Its range is given as logarithms.
+    pub(crate) fn logarithmic(self) -> Self {
+        self.with("type", "log")
+    }
+
+    /// An axis of time; values are milliseconds of UTC since 1970-01-01.
+    pub(crate) fn of_time(self) -> Self {
+        self.with("type", "date")
+    }
+
+    /// The values at the ends of the axis, first that at the left or at the bottom.
+    pub(crate) fn range(self, ends: [f64; 2]) -> Self {
+        self.with("range", numbers(&ends))
+    }
+
+    /// The part of the chart's height, or width, that the axis takes, from 0 to 1.
+    pub(crate) fn domain(self, ends: [f64; 2]) -> Self {
+        self.with("domain", numbers(&ends))
+    }
+
+    /// The name of the axis that this one lies against.
+    pub(crate) fn anchor(self, name: &str) -> Self {
+        self.with("anchor", name)
+    }
+
+    /// Gives a unit of this axis the length of a unit of another one.
+    pub(crate) fn same_scale_as(self, name: &str) -> Self {
+        self.with("scaleanchor", name)
+    }
+
+    /// Shortens the axis, and not its range, where scales are bound together.
+    pub(crate) fn constrain_domain(self) -> Self {
+        self.with("constrain", "domain")
+    }
+
+    /// How ticks are written, as a format of d3.
+    pub(crate) fn tick_format(self, format: &str) -> Self {
+        self.with("tickformat", format)
+    }
+
+    /// Ticks at most.
+    pub(crate) fn most_ticks(self, count: u32) -> Self {
+        self.with("nticks", count)
+    }
+
+    /// The values that have a tick.
+    pub(crate) fn ticks(self, values: &[f64]) -> Self {
+        self.with("tickvals", numbers(values))
+    }
+
+    /// Neither line nor ticks.
+    pub(crate) fn hidden(self) -> Self {
+        self.with("visible", false)
+    }
+}
+
+/// The axes of a chart, and whether it has a legend.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(transparent)]
+pub(crate) struct Layout(Attributes);
+
+impl Layout {
+    pub(crate) fn new(x: Axis, y: Axis) -> Self {
+        Self::default().x_axis(x).y_axis("y", y)
+    }
+
+    fn with(self, name: &str, value: impl Into<Value>) -> Self {
+        Self(self.0.with(name, value))
+    }
+
+    pub(crate) fn x_axis(self, axis: Axis) -> Self {
+        self.with("xaxis", axis.0.into_value())
+    }
+
+    /// The vertical axis that traces name `y`, `y2`, and so on.
+    pub(crate) fn y_axis(self, name: &str, axis: Axis) -> Self {
+        self.with(&name.replacen('y', "yaxis", 1), axis.0.into_value())
+    }
+
+    /// Shows or hides the legend; without it, charts of one trace have none.
+    pub(crate) fn legend(self, is_shown: bool) -> Self {
+        self.with("showlegend", is_shown)
+    }
+
+    /// Lays bars of one place upon each other, with so much of a bar's room between places.
+    pub(crate) fn stacked_bars(self, gap: f64) -> Self {
+        self.with("barmode", "stack").with("bargap", number(gap))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(value: impl Serialize, json: &str) {
+        assert_eq!(serde_json::to_string(&value).unwrap(), json);
+    }
+
+    #[test]
+    fn numbers_are_short_and_gaps_are_null() {
+        check(number(5.0), "5");
+        check(number(-0.0), "0");
+        check(number(1_335_139_200_123.0), "1335139200123");
+        check(number(0.1 + 0.2), "0.3");
+        check(number(1.0 / 3.0), "0.333333333");
+        check(number(-12_345.678_901_234), "-12345.6789");
+        check(number(2.5e-12), "2.5e-12");
+        check(number(1e300), "1e+300");
+        check(numbers(&[f64::NAN, f64::INFINITY, 1.5]), "[null,null,1.5]");
+    }
+
+    #[test]
+    fn a_trace_has_what_was_set_and_nothing_else() {
+        let trace = Trace::scatter(Mode::Lines, vec![1.0, 2.0], vec![0.5, f64::NAN]);
+        let trace = trace.line(Line::new(1.2).colour("#123456").dashed()).not_in_legend().y_axis("y2");
+        let json = serde_json::json!({
+            "type": "scatter", "mode": "lines", "x": [1, 2], "y": [0.5, null], "showlegend": false, "yaxis": "y2",
+            "line": { "width": 1.2, "color": "#123456", "dash": "dash" },
+        });
+        assert_eq!(serde_json::to_value(trace).unwrap(), json);
+        let map = Trace::heat_map(vec!["a".to_owned()], vec![3_u64], &[vec![f64::NAN]]);
+        let json = serde_json::json!({ "type": "heatmap", "x": ["a"], "y": [3], "z": [[null]] });
+        assert_eq!(serde_json::to_value(map).unwrap(), json);
+    }
+
+    #[test]
+    fn a_later_value_of_an_attribute_holds() {
+        let trace = Trace::scatter(Mode::Lines, vec![1.0], vec![1.0]).mode(Mode::Markers);
+        assert_eq!(serde_json::to_value(trace).unwrap()["mode"], "markers");
+    }
+
+    #[test]
+    fn every_vertical_axis_has_the_name_that_traces_give_it() {
+        let layout =
+            Layout::new(Axis::titled(""), Axis::titled("m")).y_axis("y2", Axis::new().domain([0.0, 0.5]));
+        let json = serde_json::json!({
+            "xaxis": {}, "yaxis": { "title": { "text": "m" } }, "yaxis2": { "domain": [0, 0.5] },
+        });
+        assert_eq!(serde_json::to_value(layout).unwrap(), json);
+    }
+}

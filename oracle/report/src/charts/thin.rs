@@ -1,0 +1,207 @@
+//! Long series made short. Of a line what is left out is not seen at the size of a screen; of a cloud of points a sample is drawn that
+//! lies as all of them do: extremes of stretches drawn as points would be read as the law of the points.
+
+/// Points of a cloud that are drawn, at most: each is an element of the page, and a browser is slow with more.
+const CLOUD: usize = 2500;
+/// Parts of a long cloud whose extremes are drawn beside the sample.
+const PARTS: usize = 50;
+/// Points of a curve in a plane, at most.
+const CURVE: usize = 5000;
+/// Stretches that a series is cut into. Twice as many points as a chart has pixels across are no different from all.
+const STRETCHES: usize = 700;
+
+/// The places of `count` rows that are drawn of a cloud of points: all, or of every stretch of rows that follow each other one at random,
+/// so that any part of the rows has the law of its own. Ascending, and the same for the same `count`.
+pub(crate) fn sampled(count: usize) -> Vec<usize> {
+    if count <= CLOUD {
+        return (0..count).collect();
+    }
+    let one_of = |stretch: usize| {
+        let (from, to) = (stretch * count / CLOUD, (stretch + 1) * count / CLOUD);
+        from + (scrambled(stretch as u64) % (to - from) as u64) as usize
+    };
+    (0..CLOUD).map(one_of).collect()
+}
+
+/// A number that looks random (SplitMix64: Steele, Lea & Flood 2014): with regular places a period of the rows would show.
+fn scrambled(number: u64) -> u64 {
+    let mut z = number.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// The smallest and the largest value of every fiftieth of the rows of a cloud that is not drawn whole; none of one that is.
+pub(crate) fn extremes(count: usize, value: &dyn Fn(usize) -> f64) -> Vec<usize> {
+    let mut kept = Vec::new();
+    if count > CLOUD {
+        for part in bins(count, PARTS) {
+            let numbers = || part.clone().filter(|&i| value(i).is_finite());
+            kept.extend(numbers().min_by(|&a, &b| value(a).total_cmp(&value(b))));
+            kept.extend(numbers().max_by(|&a, &b| value(a).total_cmp(&value(b))));
+        }
+        kept.sort_unstable();
+        kept.dedup();
+    }
+    kept
+}
+
+/// How much is drawn of clouds of points, by what they are points of; `rings` where their extremes are drawn beside.
+pub(crate) fn drawn(clouds: &[(usize, &str)], rings: bool) -> String {
+    let of = |&(count, what): &(usize, &str)| format!("{} of {count} {what}", sampled(count).len());
+    let parts: Vec<String> = clouds.iter().filter(|(count, _)| *count > 0).map(of).collect();
+    let mut text = format!("Drawn: {}.", parts.join(" and "));
+    if clouds.iter().any(|(count, _)| *count > CLOUD) {
+        text.push_str(" A sample is one at random of each stretch, and so lies as all of them do.");
+        if rings {
+            text.push_str(" Rings are the smallest and the largest of each fiftieth.");
+        }
+    }
+    text
+}
+
+/// The places of `count` rows that are drawn of a curve in a plane, at even steps: where both coordinates turn, extremes alone would
+/// be a polygon.
+pub(crate) fn evenly(count: usize) -> Vec<usize> {
+    let step = count.div_ceil(CURVE).max(1);
+    let mut kept: Vec<usize> = (0..count).step_by(step).collect();
+    if kept.last().is_some_and(|&last| last + 1 < count) {
+        kept.push(count - 1);
+    }
+    kept
+}
+
+/// The places of `count` rows that a line needs: of every stretch of rows that follow each other, the first, and those with the
+/// smallest and the largest of each of the `series`. All of them where they are few. Ascending. Values that are no number are
+/// passed over.
+pub(crate) fn thinned(count: usize, series: &[&dyn Fn(usize) -> f64]) -> Vec<usize> {
+    let most = STRETCHES * (1 + 2 * series.len());
+    if count <= most {
+        return (0..count).collect();
+    }
+    let mut kept = Vec::with_capacity(most);
+    for stretch in 0..STRETCHES {
+        let (from, to) = (stretch * count / STRETCHES, (stretch + 1) * count / STRETCHES);
+        kept.push(from);
+        for value in series {
+            let numbers = || (from..to).filter(|&i| value(i).is_finite());
+            kept.extend(numbers().min_by(|&a, &b| value(a).total_cmp(&value(b))));
+            kept.extend(numbers().max_by(|&a, &b| value(a).total_cmp(&value(b))));
+        }
+    }
+    kept.sort_unstable();
+    kept.dedup();
+    kept
+}
+
+/// A range of places for each of at most so many bins, all places of `count` in them, in order.
+pub(crate) fn bins(count: usize, most: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
+    let bins = count.min(most);
+    (0..bins).map(move |bin| bin * count / bins..(bin + 1) * count / bins)
+}
+
+/// Number, smallest, mean and largest of some values, as cells; values that are no number are passed over.
+pub(crate) fn summary(values: impl Iterator<Item = f64>, decimals: usize) -> [String; 4] {
+    let (mut count, mut sum, mut low, mut high) = (0_u64, 0.0, f64::INFINITY, f64::NEG_INFINITY);
+    for value in values.filter(|value| value.is_finite()) {
+        count += 1;
+        sum += value;
+        low = low.min(value);
+        high = high.max(value);
+    }
+    if count == 0 {
+        return ["0".to_owned(), String::new(), String::new(), String::new()];
+    }
+    let cell = |value: f64| format!("{value:.decimals$}");
+    [count.to_string(), cell(low), cell(sum / count as f64), cell(high)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_rows_are_all_kept() {
+        assert_eq!(thinned(5, &[&|i| i as f64]), [0, 1, 2, 3, 4]);
+        assert!(thinned(0, &[]).is_empty());
+    }
+
+    #[test]
+    fn of_many_rows_every_extreme_is_kept_and_order_too() {
+        // One row in 997 stands out, up or down by turns, and others are no number at all.
+        let value = |i: usize| match i % 1994 {
+            11 => 5.0 + i as f64,
+            1008 => -5.0 - i as f64,
+            i if i % 7 == 0 => f64::NAN,
+            _ => 0.0,
+        };
+        let kept = thinned(100_000, &[&value]);
+        assert!(kept.len() <= 3 * STRETCHES && kept.is_sorted());
+        let extremes: Vec<usize> = (0..100_000).filter(|&i| value(i).abs() >= 5.0).collect();
+        assert_eq!(extremes.len(), 101);
+        assert!(extremes.iter().all(|extreme| kept.contains(extreme)));
+    }
+
+    #[test]
+    fn a_sample_has_the_quantiles_of_all_and_of_any_part_of_them() {
+        // Sharply peaked, wider at the end, with a period of its own.
+        let value = |i: usize| {
+            let uniform = (scrambled(77 + i as u64) >> 11) as f64 / (1_u64 << 53) as f64 - 0.5;
+            (1.0 + i as f64 / 30_000.0) * 8.0 * uniform * uniform * uniform + 0.1 * libm::sin(i as f64 / 3.0)
+        };
+        let kept = sampled(30_000);
+        assert_eq!(kept.len(), CLOUD);
+        assert!(kept.is_sorted_by(|a, b| a < b) && kept.iter().all(|&i| i < 30_000));
+        for part in [0..30_000, 0..10_000, 20_000..30_000] {
+            let all: Vec<f64> = part.clone().map(value).collect();
+            let drawn: Vec<f64> = kept.iter().copied().filter(|i| part.contains(i)).map(value).collect();
+            for level in [-0.5, -0.1, -0.02, 0.0, 0.05, 0.3] {
+                let below = |of: &[f64]| of.iter().filter(|&&v| v < level).count() as f64 / of.len() as f64;
+                // Three deviations of a share of so many.
+                let limit = 1.5 / (drawn.len() as f64).sqrt();
+                assert!((below(&all) - below(&drawn)).abs() < limit, "{level} in {part:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn extremes_are_those_of_what_is_not_drawn_whole() {
+        let value = |i: usize| if i == 7_321 { 99.0 } else { (i % 13) as f64 };
+        assert!(extremes(CLOUD, &value).is_empty());
+        let kept = extremes(20_000, &value);
+        assert!(kept.contains(&7_321) && kept.is_sorted() && kept.len() <= 2 * PARTS);
+        assert!(extremes(20_000, &|_| f64::NAN).is_empty());
+    }
+
+    #[test]
+    fn a_caption_says_how_many_of_how_many_are_drawn() {
+        assert_eq!(drawn(&[(12, "right"), (0, "wrong")], true), "Drawn: 12 of 12 right.");
+        let text = drawn(&[(CLOUD + 1, "right"), (3, "wrong")], true);
+        assert!(
+            text.starts_with("Drawn: 2500 of 2501 right and 3 of 3 wrong. ") && text.contains("Rings"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_curve_is_drawn_at_even_steps_to_its_end() {
+        assert_eq!(evenly(4), [0, 1, 2, 3]);
+        assert!(evenly(0).is_empty());
+        let kept = evenly(16_077);
+        assert!(kept.len() <= CURVE + 1 && kept.last() == Some(&16_076));
+        assert!(kept.windows(2).all(|pair| pair[1] - pair[0] <= 4));
+    }
+
+    #[test]
+    fn bins_hold_every_row_once() {
+        assert_eq!(bins(10, 3).flatten().collect::<Vec<_>>(), (0..10).collect::<Vec<_>>());
+        assert_eq!(bins(2, 60).count(), 2);
+        assert_eq!(bins(0, 60).count(), 0);
+    }
+
+    #[test]
+    fn a_summary_of_nothing_has_no_numbers() {
+        assert_eq!(summary([f64::NAN].into_iter(), 2), ["0", "", "", ""]);
+        assert_eq!(summary([1.0, 3.0].into_iter(), 1), ["2", "1.0", "2.0", "3.0"]);
+    }
+}

@@ -1,0 +1,112 @@
+//! Figures of a score as words and as a table.
+
+pub(crate) mod run_page;
+pub(crate) mod words;
+use indexmap::IndexMap;
+use run::figure_called;
+use score::Figure;
+
+use crate::page::data_table::DataTable;
+
+/// A rate in percent with its interval: `93.86 (92.1–95.2)`; a dash where it is counted over nothing.
+pub(crate) fn shown_percent(figure: &Figure) -> String {
+    let Some(value) = figure.value else { return "–".to_owned() };
+    let interval = figure.low.zip(figure.high);
+    let interval = interval.map(|(low, high)| format!(" ({:.1}–{:.1})", 100.0 * low, 100.0 * high));
+    format!("{:.2} %{}", 100.0 * value, interval.unwrap_or_default())
+}
+
+/// The same for a table that says percent above.
+pub(crate) fn percent_cell(figure: Option<&Figure>) -> String {
+    figure.map_or_else(String::new, |figure| shown_percent(figure).replacen(" %", "", 1))
+}
+
+/// A number with four significant digits, or as it is when it is whole.
+pub(crate) fn significant(value: f64) -> String {
+    if !value.is_finite() {
+        return "–".to_owned();
+    }
+    if value.fract() == 0.0 && value.abs() < 1e9 {
+        return format!("{value:.0}");
+    }
+    // By the number as it is written: 9.999 97 has one digit more before the point than after rounding.
+    let written = format!("{value:.3e}");
+    let exponent = written.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
+    let places = 3 - exponent.unwrap_or(0);
+    match places {
+        0..=9 => format!("{value:.*}", places as usize),
+        _ if places < 0 => format!("{value:.0}"),
+        _ => format!("{value:.3e}"),
+    }
+}
+
+/// A probability in percent. What is not quite certain or impossible is not written as if it were.
+pub(crate) fn probability(value: f64) -> String {
+    if value > 0.0 && value < 0.000_5 {
+        "<\u{a0}0.1\u{a0}%".to_owned()
+    } else if value < 1.0 && value > 0.999_5 {
+        ">\u{a0}99.9\u{a0}%".to_owned()
+    } else {
+        format!("{:.1}\u{a0}%", 100.0 * value)
+    }
+}
+
+/// The least and the most of some values: `2.94 to 30.83 km`.
+pub(crate) fn least_to_most(values: impl Iterator<Item = f64>, unit: &str) -> String {
+    let (low, high) =
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    format!("{low:.2} to {high:.2} {unit}")
+}
+
+/// A value or nothing.
+pub(crate) fn cell(value: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_owned(), significant)
+}
+
+/// Every figure with its count and its interval. Rates are fractions, as in `score.json`.
+pub(crate) fn figure_table(figures: &IndexMap<String, Figure>) -> DataTable {
+    let head = ["figure", "value", "95 % low", "95 % high", "count", "of", "independent"];
+    let mut table = DataTable::new(head).caption(
+        "All figures of score.json; rates are fractions from 0 to 1. Independent: what the frames are worth, neighbours being alike.",
+    );
+    for (name, figure) in figures {
+        let is_rate = figure_called(name).is_rate();
+        let number = |value: Option<f64>| match value {
+            Some(value) if is_rate => format!("{value:.4}"),
+            value => cell(value),
+        };
+        table.push([
+            figure_called(name).words,
+            number(figure.value),
+            number(figure.low),
+            number(figure.high),
+            figure.count.to_string(),
+            figure.of.to_string(),
+            format!("{:.0}", figure.effective),
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_four_significant_digits() {
+        let shown = [0.0, 1.0, 12.345_67, 0.001_234_56, 123_456.0, -2.0e-12, f64::NAN].map(significant);
+        assert_eq!(shown, ["0", "1", "12.35", "0.001235", "123456", "-2.000e-12", "–"]);
+        assert_eq!([9.999_97, 999.97, -89.998].map(significant), ["10.00", "1000", "-90.00"]);
+    }
+
+    #[test]
+    fn a_probability_is_certain_only_where_it_is() {
+        let shown = [0.0, 0.000_02, 0.9, 0.999_9, 1.0].map(|p| probability(p).replace('\u{a0}', " "));
+        assert_eq!(shown, ["0.0 %", "< 0.1 %", "90.0 %", "> 99.9 %", "100.0 %"]);
+    }
+
+    #[test]
+    fn a_range_is_from_the_least_to_the_most() {
+        assert_eq!(least_to_most([30.33, 29.2, 30.8].into_iter(), "km"), "29.20 to 30.80 km");
+    }
+}

@@ -1,0 +1,57 @@
+//! The report of a run of any world: its figures and its verdicts.
+
+use std::path::Path;
+
+use files::{Checksums, Failure};
+use indexmap::IndexMap;
+use run::world_of_run;
+use serde_json::json;
+
+use super::figure_table;
+use super::words::spoken;
+use crate::page::data_table::DataTable;
+use crate::page::{Page, Section};
+use crate::read::missing;
+
+/// Reads a run directory and makes the page.
+///
+/// # Errors
+/// A [`Failure`] that names the file which is missing or cannot be read.
+pub(crate) fn run_page(directory: &Path) -> Result<Page, Failure> {
+    let path = directory.join("run.toml");
+    let world = world_of_run(&path)?;
+    let run = world.read_run(&path)?;
+    let measurements = directory.join("measurements.csv");
+    if !measurements.is_file() {
+        return Err(missing(directory, "measurements.csv"));
+    }
+    let evidence = world.evidence_file().map(|name| directory.join(name)).filter(|path| path.is_file());
+    let scored = world.score(directory, &measurements, evidence.as_deref(), None)?;
+    Checksums::check(directory, |_| true)?;
+    let units = scored.units().units;
+    let mut counts: IndexMap<(&str, &str), u64> = IndexMap::new();
+    for unit in &units {
+        *counts.entry((unit.verdict.as_str(), unit.cause.as_deref().unwrap_or("–"))).or_default() += 1;
+    }
+    let mut verdicts = DataTable::new(["verdict", "cause", "count"]);
+    for ((verdict, cause), count) in counts {
+        verdicts.push([spoken(verdict), spoken(cause), count.to_string()]);
+    }
+    Ok(Page {
+        title: run.scenario.title().to_owned(),
+        kind: "Run",
+        version: run.version,
+        lead: vec![format!("{} {}s of the world {}.", units.len(), world.image(), world.code())],
+        warnings: Vec::new(),
+        facts: vec![
+            ("Scenario", run.name),
+            ("Seed", run.scenario.seed().to_string()),
+            ("Configuration", run.hash),
+        ],
+        sections: vec![
+            Section::new("figures", "Figures").table(figure_table(scored.figures())),
+            Section::new("verdicts", "Verdicts").table(verdicts),
+        ],
+        data: json!(scored.figures()),
+    })
+}

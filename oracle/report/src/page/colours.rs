@@ -1,0 +1,38 @@
+//! A colour for every cause, the same in every chart.
+use score::Cause;
+use score::docking::{Gross, MissCause};
+
+/// As many as a world has causes; those that are met most are the least alike.
+const PALETTE: [&str; 18] = [
+    "#9aa3ac", "#5b6570", "#3f4a8a", "#b9a3d8", "#c9415a", "#7d8a1f", "#f0a3b0", "#3aa6b0", "#e0752d",
+    "#8a5a1f", "#d9b23c", "#8d6bc4", "#d36bb0", "#6d2b3a", "#2f7fc1", "#2f9e69", "#a9c96a", "#c8cdd2",
+];
+
+/// The colour of a cause by its word.
+pub(crate) fn colour_of(cause: &str) -> &'static str {
+    let far_range = |cause: &str| Cause::ALL.iter().position(|of| of.code() == cause);
+    if let Some(place) = far_range(cause) {
+        return PALETTE[place];
+    }
+    // Docking shares some causes: its others take the colours that are left.
+    let codes = || MissCause::CODES.into_iter().chain(Gross::ALL.map(Gross::code));
+    let shared: Vec<usize> = codes().filter_map(far_range).collect();
+    let left = (0..PALETTE.len()).filter(|place| !shared.contains(place));
+    let own = codes().filter(|code| far_range(code).is_none());
+    own.zip(left).find(|(code, _)| *code == cause).map_or(PALETTE[0], |(_, place)| PALETTE[place])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn causes_of_a_world_have_colours_of_their_own() {
+        let distinct = |codes: Vec<&str>| {
+            let colours: std::collections::BTreeSet<_> = codes.iter().map(|code| colour_of(code)).collect();
+            assert_eq!(colours.len(), codes.len());
+        };
+        distinct(Cause::ALL.map(Cause::code).to_vec());
+        distinct(MissCause::CODES.into_iter().chain(Gross::ALL.map(Gross::code)).collect());
+    }
+}

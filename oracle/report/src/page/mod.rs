@@ -1,0 +1,173 @@
+//! The page: sections of text, tables, charts and pictures, as one HTML file that asks nothing of any network.
+
+#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
+pub(crate) mod colours;
+pub(crate) mod data_table;
+#[allow(clippy::indexing_slicing, reason = "indices are rows of tables that the readers have checked")]
+pub(crate) mod picture;
+pub(crate) mod plotly_js;
+pub(crate) mod script_safe;
+
+use askama::Template;
+use files::Failure;
+use serde_json::Value;
+
+use crate::charts::chart::Chart;
+use crate::page::data_table::DataTable;
+use crate::page::picture::{Picture, Shape};
+use crate::page::plotly_js::plotly_js;
+use crate::page::script_safe::script_safe;
+
+/// A report, before it is text.
+#[derive(Debug, Clone)]
+pub struct Page {
+    /// What the page is about.
+    pub title: String,
+    /// What kind of result it shows.
+    pub kind: &'static str,
+    /// Version of Boresight that made the result.
+    pub version: String,
+    /// First sentences.
+    pub lead: Vec<String>,
+    /// What a reader must know before believing anything below.
+    pub warnings: Vec<String>,
+    /// What was run, by name.
+    pub facts: Vec<(&'static str, String)>,
+    /// The sections, in their order.
+    pub sections: Vec<Section>,
+    /// The figures as they stand in the result's own file, for programs that read the page.
+    pub data: Value,
+}
+
+/// A section with a heading.
+#[derive(Debug, Clone)]
+pub struct Section {
+    /// Its anchor.
+    pub id: &'static str,
+    /// Its heading.
+    pub title: String,
+    /// What it holds.
+    pub blocks: Vec<Block>,
+}
+
+impl Section {
+    /// A section that holds nothing yet.
+    pub fn new(id: &'static str, title: impl Into<String>) -> Self {
+        Self { id, title: title.into(), blocks: Vec::new() }
+    }
+
+    /// With a paragraph at its end.
+    pub fn text(mut self, text: impl Into<String>) -> Self {
+        self.blocks.push(Block::Text(text.into()));
+        self
+    }
+
+    /// With a table at its end.
+    pub fn table(mut self, table: DataTable) -> Self {
+        self.blocks.push(Block::Table(table));
+        self
+    }
+
+    /// With a chart at its end.
+    pub fn chart(mut self, chart: Chart) -> Self {
+        self.blocks.push(Block::Chart(Box::new(chart)));
+        self
+    }
+
+    /// With small charts at its end, two side by side.
+    pub fn charts(mut self, charts: Vec<Chart>) -> Self {
+        self.blocks.push(Block::Charts(charts));
+        self
+    }
+
+    /// With a table at its end that is folded away under some words.
+    pub fn folded(mut self, words: impl Into<String>, table: DataTable) -> Self {
+        self.blocks.push(Block::Folded(words.into(), table));
+        self
+    }
+
+    /// With pictures at its end, side by side.
+    pub fn pictures(mut self, pictures: Vec<Picture>) -> Self {
+        self.blocks.push(Block::Pictures(pictures));
+        self
+    }
+}
+
+/// One thing in a section.
+#[derive(Debug, Clone)]
+pub enum Block {
+    /// A paragraph.
+    Text(String),
+    /// A table.
+    Table(DataTable),
+    /// A chart with the table behind it.
+    Chart(Box<Chart>),
+    /// Small charts, two side by side where there is room.
+    Charts(Vec<Chart>),
+    /// A table that is folded away until a reader opens it, and the words that it is folded under.
+    Folded(String, DataTable),
+    /// Pictures side by side.
+    Pictures(Vec<Picture>),
+}
+
+#[derive(Template)]
+#[template(path = "report.html")]
+struct PageTemplate<'a> {
+    page: &'a Page,
+    style: &'static str,
+    script: &'static str,
+    plotly: String,
+    data: String,
+}
+
+impl Page {
+    /// The page as HTML. All text of it is escaped; the same page gives the same bytes.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] when the page cannot be put together.
+    pub fn html(&self) -> Result<String, Failure> {
+        let failure = |error: &dyn std::fmt::Display| {
+            Failure::Usage(format!("the report cannot be put together: {error}"))
+        };
+        let template = PageTemplate {
+            page: self,
+            style: include_str!("report.css"),
+            script: include_str!("report.js"),
+            plotly: plotly_js().map_err(|error| failure(&error))?,
+            data: script_safe(&self.data.to_string()),
+        };
+        template.render().map_err(|error| failure(&error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn page(title: &str) -> Page {
+        Page {
+            title: title.to_owned(),
+            kind: "test",
+            version: "0".to_owned(),
+            lead: vec![title.to_owned()],
+            warnings: Vec::new(),
+            facts: vec![("name", title.to_owned())],
+            sections: vec![
+                Section::new("one", title).text(title).table(DataTable::new([title]).row([title])),
+            ],
+            data: serde_json::json!({ "title": title }),
+        }
+    }
+
+    #[test]
+    fn hostile_text_is_escaped_wherever_it_stands() {
+        let html = page("</script><script>alert(1)</script>&\"'").html().unwrap();
+        assert!(!html.contains("<script>alert(1)"), "a script of somebody else's");
+        assert!(html.contains("alert(1)"), "the text itself is shown");
+    }
+
+    #[test]
+    fn the_same_page_gives_the_same_bytes() {
+        assert_eq!(page("a").html().unwrap(), page("a").html().unwrap());
+    }
+}

@@ -1,0 +1,97 @@
+//! The legend: what each kind of mark stands for.
+
+use crate::canvas::colour::GREY;
+use crate::canvas::text::Font;
+use crate::canvas::{Area, Canvas, LINE};
+use crate::panel::Panel;
+use crate::panel::class::{Class, Symbol};
+
+/// Width of a symbol with the room after it, px.
+const SYMBOL: usize = 26;
+/// From an entry of a row to the next, px.
+const GAP: usize = 26;
+
+/// The classes that are seen in some panels, in the order of the legend.
+pub(crate) fn classes(panels: &[Panel]) -> Vec<Class> {
+    let is_drawn = |class: &Class| {
+        panels.iter().any(|panel| match class {
+            Class::Region => panel.regions.as_ref().is_some_and(|regions| !regions.is_empty()),
+            _ => panel.marks.iter().any(|mark| mark.class == *class && panel.shows(mark.at)),
+        })
+    };
+    Class::ALL.into_iter().filter(is_drawn).collect()
+}
+
+/// Width of an entry, px.
+pub(crate) fn width(class: Class) -> usize {
+    SYMBOL + Font::Body.width(class.words())
+}
+
+/// Entries that fill rows of some width.
+pub(crate) fn rows(classes: &[Class], room: usize) -> Vec<Vec<Class>> {
+    let mut rows: Vec<Vec<Class>> = Vec::new();
+    let mut left = 0;
+    for &class in classes {
+        let needed = width(class) + GAP;
+        match rows.last_mut().filter(|_| needed <= left + GAP) {
+            Some(row) => row.push(class),
+            None => {
+                rows.push(vec![class]);
+                left = room;
+            }
+        }
+        left = left.saturating_sub(needed);
+    }
+    rows
+}
+
+/// Draws rows of entries, one below the other.
+pub(crate) fn draw(canvas: &mut Canvas, left: usize, top: usize, rows: &[Vec<Class>]) {
+    for (line, row) in rows.iter().enumerate() {
+        let top = top + line * line_height();
+        let mut left = left;
+        for &class in row {
+            symbol(canvas, class, (left as f64 + 9.0, top as f64 + 0.5 * Font::Body.height() as f64));
+            canvas.text(left + SYMBOL, top, class.words(), Font::Body, GREY);
+            left += width(class) + GAP;
+        }
+    }
+}
+
+/// From a row to the next, px.
+pub(crate) fn line_height() -> usize {
+    Font::Body.height() + 2
+}
+
+fn symbol(canvas: &mut Canvas, class: Class, (x, y): (f64, f64)) {
+    let colour = class.colour();
+    let arms =
+        |dx: f64, dy: f64| [[(x - dx, y - dy), (x + dx, y + dy)], [(x - dy, y + dx), (x + dy, y - dx)]];
+    match class.symbol() {
+        Symbol::Circle => canvas.circle((x, y), 6.5, colour, LINE),
+        Symbol::Cross => canvas.lines(&arms(7.0, 0.0), colour, LINE),
+        Symbol::Saltire => canvas.lines(&arms(5.0, 5.0), colour, LINE),
+        Symbol::Square => {
+            let area = Area { left: x - 6.0, top: y - 6.0, width: 12.0, height: 12.0 };
+            canvas.frame(&area, colour, if class == Class::Region { 1.0 } else { LINE });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_hold_every_entry_once_and_are_no_wider_than_their_room() {
+        for room in [1, 300, 700, 5000] {
+            let rows = rows(&Class::ALL, room);
+            assert_eq!(rows.concat(), Class::ALL);
+            for row in rows.iter().filter(|row| row.len() > 1) {
+                let taken: usize = row.iter().map(|class| width(*class)).sum();
+                assert!(taken + GAP * (row.len() - 1) <= room, "{room}: {row:?}");
+            }
+        }
+        assert_eq!(rows(&Class::ALL, 1).len(), Class::ALL.len());
+    }
+}

@@ -1,0 +1,150 @@
+//! From digital numbers to shades of grey.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// How digital numbers become grey.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stretch {
+    /// Inverse hyperbolic sine from the median of the background to the brightest pixel: faint stars show, bright ones still differ.
+    Asinh,
+    /// In proportion from the darkest to the brightest pixel.
+    Linear,
+    /// In proportion from 0 to full scale, as a television shows it.
+    Full,
+}
+
+/// Deviations of the noise above the background at which the sky of a whole frame is white: one bright object does not darken the stars.
+const WHITE_SIGMAS: f64 = 150.0;
+/// White over the value where asinh turns from linear to logarithmic.
+const SOFTENING: f64 = 40.0;
+
+impl Stretch {
+    /// Every stretch.
+    pub const ALL: [Self; 3] = [Self::Asinh, Self::Linear, Self::Full];
+
+    /// The word used on the command line.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Asinh => "asinh",
+            Self::Linear => "linear",
+            Self::Full => "full",
+        }
+    }
+}
+
+impl fmt::Display for Stretch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.code())
+    }
+}
+
+impl FromStr for Stretch {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|stretch| stretch.code() == text);
+        known.ok_or_else(|| format!("`{text}` is no stretch, expected asinh, linear or full"))
+    }
+}
+
+/// What white stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum White {
+    /// The brightest pixel, at most [`WHITE_SIGMAS`] above the background.
+    Sky,
+    /// The brightest pixel.
+    Brightest,
+}
+
+/// A table from digital numbers to grey; it never falls.
+#[derive(Debug, Clone)]
+pub(crate) struct Greys(Vec<u8>);
+
+impl Greys {
+    /// Of the pixels that are shown. `samples` are sorted in place.
+    pub(crate) fn new(stretch: Stretch, white: White, full_scale_dn: u16, samples: &mut [u16]) -> Self {
+        samples.sort_unstable();
+        let last = samples.last().copied().unwrap_or(0);
+        let grey: Box<dyn Fn(f64) -> f64> = match stretch {
+            Stretch::Full => Box::new(move |dn| dn / f64::from(full_scale_dn.max(1))),
+            Stretch::Linear => {
+                let low = f64::from(samples.first().copied().unwrap_or(0));
+                let span = (f64::from(last) - low).max(1.0);
+                Box::new(move |dn| (dn - low) / span)
+            }
+            Stretch::Asinh => {
+                // A pixel of 0 was suppressed, and says nothing of the noise.
+                let lit = samples.partition_point(|&dn| dn == 0);
+                let lit = samples.get(lit..).unwrap_or_default();
+                let part = |of: usize| f64::from(lit.get(lit.len() / of).copied().unwrap_or(0));
+                let (median, below) = (part(2), part(6));
+                let sigma = (median - below).max(0.5);
+                let black = median;
+                let cap = match white {
+                    White::Sky => black + WHITE_SIGMAS * sigma,
+                    White::Brightest => f64::INFINITY,
+                };
+                let high = f64::from(last).min(cap).max(black + 20.0 * sigma);
+                let softening = (high - black) / SOFTENING;
+                let full = libm::asinh(SOFTENING);
+                Box::new(move |dn| libm::asinh((dn - black).max(0.0) / softening) / full)
+            }
+        };
+        let table = (0..=full_scale_dn.max(last)).map(|dn| {
+            let level = grey(f64::from(dn)).clamp(0.0, 1.0);
+            (255.0 * level).round() as u8
+        });
+        Self(table.collect())
+    }
+
+    /// The grey of a digital number; white above the table.
+    pub(crate) fn of(&self, dn: u16) -> u8 {
+        self.0.get(usize::from(dn)).copied().unwrap_or(u8::MAX)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_stretch_rises_with_the_digital_number_and_reaches_white() {
+        let noise = (0..4000_u16).map(|i| 100 + i * 7 % 11);
+        let samples: Vec<u16> = noise.chain([150, 300, 1500, 4000]).collect();
+        for stretch in Stretch::ALL {
+            for white in [White::Sky, White::Brightest] {
+                let greys = Greys::new(stretch, white, 4095, &mut samples.clone());
+                assert!((0..4095).all(|dn| greys.of(dn) <= greys.of(dn + 1)), "{stretch} {white:?}");
+                assert!(greys.of(4095) == 255 && greys.of(u16::MAX) == 255, "{stretch} {white:?}");
+            }
+        }
+    }
+
+    /// Of noise of 3 DN, a pixel of five deviations stands out of the sky by more than the sky's own grain.
+    #[test]
+    fn asinh_shows_a_faint_star_beside_a_saturated_one() {
+        let mut samples: Vec<u16> = (0..4000_u16).map(|i| 97 + i % 7).collect();
+        samples.push(4095);
+        let greys = Greys::new(Stretch::Asinh, White::Sky, 4095, &mut samples);
+        let (sky, grain, faint, bright) = (greys.of(100), greys.of(103), greys.of(115), greys.of(400));
+        assert!(sky < 20 && grain < 40, "{sky} {grain}");
+        assert!(faint > grain + 30 && bright > faint + 60, "{faint} {bright}");
+    }
+
+    #[test]
+    fn a_frame_without_signal_is_no_harm() {
+        for stretch in Stretch::ALL {
+            for mut samples in [vec![], vec![0; 9], vec![7; 9], vec![u16::MAX; 9]] {
+                let greys = Greys::new(stretch, White::Sky, u16::MAX, &mut samples);
+                assert!(greys.of(0) <= greys.of(u16::MAX), "{stretch}");
+            }
+        }
+    }
+
+    #[test]
+    fn words_of_stretches_come_back() {
+        assert!(Stretch::ALL.into_iter().all(|stretch| stretch.code().parse() == Ok(stretch)));
+        assert!("log".parse::<Stretch>().is_err_and(|message| message.contains("asinh, linear or full")));
+    }
+}

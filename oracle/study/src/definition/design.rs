@@ -1,0 +1,224 @@
+//! Where in the unit cube the draws of a case lie.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sim::randomness::{Effect, Seed, uniform};
+use sobol::Sobol;
+use sobol::params::JoeKuoD6;
+
+/// How the dispersed parameters are spread over their laws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DesignKind {
+    /// Every case is drawn by itself: the plain Monte Carlo method, whose intervals are those of independent draws.
+    #[default]
+    Random,
+    /// Latin hypercube (McKay, Beckman & Conover 1979): each parameter's law is cut into as many equally likely parts as there
+    /// are cases, and each part has one case.
+    LatinHypercube,
+    /// Sobol's sequence with the direction numbers of Joe & Kuo (2008), shifted digitally by the seed; best with a power of two
+    /// of cases.
+    Sobol,
+    /// The design of Saltelli et al. (2010) for Sobol indices: N points A, N points B, and N points A with one parameter of B, for
+    /// each of d parameters; N (d + 2) cases.
+    Saltelli,
+}
+
+/// Most dimensions of a low-discrepancy design.
+const MOST_DIMENSIONS: usize = 100;
+
+/// A number of 53 bits as one of the open unit interval.
+const UNIT: f64 = 1.0 / 9_007_199_254_740_992.0;
+
+/// The points of a study's cases.
+pub(crate) struct Design {
+    kind: DesignKind,
+    dimensions: usize,
+    /// Points of the whole design.
+    points: u64,
+    seed: u64,
+    /// By dimension, then by bit: direction numbers of 64 bits.
+    directions: Vec<Vec<u64>>,
+}
+
+impl Design {
+    /// A design of so many points.
+    ///
+    /// # Errors
+    /// What is expected, for a number of points or dimensions that the design cannot have.
+    pub(crate) fn new(kind: DesignKind, dimensions: usize, points: u64, seed: u64) -> Result<Self, String> {
+        let of_sequence = match kind {
+            DesignKind::Random | DesignKind::LatinHypercube => 0,
+            DesignKind::Sobol => dimensions,
+            DesignKind::Saltelli => 2 * dimensions,
+        };
+        if of_sequence > MOST_DIMENSIONS {
+            return Err(format!(
+                "a design of at most {MOST_DIMENSIONS} dimensions, and this one has {of_sequence}"
+            ));
+        }
+        if kind == DesignKind::Saltelli && (dimensions == 0 || !points.is_multiple_of(dimensions as u64 + 2))
+        {
+            return Err(format!("a multiple of {}, the parameters and two more", dimensions + 2));
+        }
+        let directions = if of_sequence == 0 {
+            Vec::new()
+        } else {
+            Sobol::<u64>::init_direction_vals::<u32>(of_sequence, 63, &JoeKuoD6::minimal())
+        };
+        Ok(Self { kind, dimensions, points, seed, directions })
+    }
+
+    /// The point of a number, from 0: as many numbers of the open unit interval as there are dimensions.
+    pub(crate) fn point(&self, number: u64) -> Vec<f64> {
+        let all = 0..self.dimensions;
+        match self.kind {
+            DesignKind::Random => all.map(|dimension| self.draw(number, dimension)).collect(),
+            DesignKind::LatinHypercube => all
+                .map(|dimension| {
+                    let stratum = self.shuffled(number, dimension);
+                    // As far from the ends as a number of 53 bits can be.
+                    ((stratum as f64 + self.draw(number, dimension)) / self.points as f64)
+                        .clamp(0.5 * UNIT, 1.0 - 0.5 * UNIT)
+                })
+                .collect(),
+            DesignKind::Sobol => all.map(|dimension| self.sobol(number, dimension)).collect(),
+            DesignKind::Saltelli => {
+                let block = self.dimensions as u64 + 2;
+                let (base, member) = (number / block, (number % block) as usize);
+                all.map(|dimension| {
+                    let is_of_b = member == 1 || member == dimension + 2;
+                    self.sobol(base, if is_of_b { self.dimensions + dimension } else { dimension })
+                })
+                .collect()
+            }
+        }
+    }
+
+    fn draw(&self, number: u64, dimension: usize) -> f64 {
+        let mut stream =
+            Seed { seed: self.seed, case: number }.stream(0, Effect::StudyParameter, dimension as u64);
+        uniform(&mut stream)
+    }
+
+    /// Points of the sequence come in the order of its Gray code, the XOR of one direction number for each bit; the XOR with
+    /// a random word keeps what makes the sequence even.
+    #[allow(clippy::indexing_slicing, reason = "there are directions for every dimension of the study")]
+    fn sobol(&self, number: u64, dimension: usize) -> f64 {
+        let gray = number ^ (number >> 1);
+        let directions = &self.directions[dimension];
+        let point = directions
+            .iter()
+            .enumerate()
+            .filter(|(bit, _)| gray >> bit & 1 == 1)
+            .fold(0, |point, (_, direction)| point ^ direction);
+        let shift = self.word(dimension);
+        (((point ^ shift) >> 11) as f64 + 0.5) * UNIT
+    }
+
+    fn word(&self, dimension: usize) -> u64 {
+        Seed { seed: self.seed, case: 0 }.streams(0, Effect::StudyDesign).word(dimension as u64)
+    }
+
+    /// Where a number goes in a permutation of 0 to `points`, one for each dimension: Feistel's network over the next even
+    /// number of bits, walked on while it leads beyond (Black & Rogaway 2002, cycle walking). So a case is known without the
+    /// others.
+    fn shuffled(&self, number: u64, dimension: usize) -> u64 {
+        let bits = u64::BITS - (self.points.max(2) - 1).leading_zeros();
+        let half = bits.div_ceil(2);
+        let mask = (1u64 << half) - 1;
+        let streams = Seed { seed: self.seed, case: dimension as u64 }.streams(1, Effect::StudyDesign);
+        let mut at = number;
+        loop {
+            let (mut left, mut right) = (at >> half, at & mask);
+            for round in 0..4 {
+                let mixed = streams.word((round << 32) | right) & mask;
+                (left, right) = (right, left ^ mixed);
+            }
+            at = (left << half) | right;
+            if at < self.points {
+                return at;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn design(kind: DesignKind, dimensions: usize, points: u64) -> Design {
+        Design::new(kind, dimensions, points, 7).unwrap()
+    }
+
+    #[test]
+    fn a_latin_hypercube_has_one_case_in_every_part() {
+        for points in [1, 2, 7, 100, 1000] {
+            let design = design(DesignKind::LatinHypercube, 3, points);
+            for dimension in 0..3 {
+                let mut parts: Vec<u64> =
+                    (0..points).map(|k| (design.point(k)[dimension] * points as f64) as u64).collect();
+                parts.sort_unstable();
+                assert!(parts.into_iter().eq(0..points), "{points} points, dimension {dimension}");
+            }
+        }
+    }
+
+    /// Two dimensions of a Latin hypercube are shuffled apart: their ranks are uncorrelated.
+    #[test]
+    fn dimensions_of_a_latin_hypercube_are_uncorrelated() {
+        let n = 4000;
+        let design = design(DesignKind::LatinHypercube, 2, n);
+        let sum: f64 = (0..n).map(|k| design.point(k)).map(|p| (p[0] - 0.5) * (p[1] - 0.5)).sum();
+        // Standard error of a correlation 1/√n = 0.016; four of them.
+        assert!((12.0 * sum / n as f64).abs() < 0.064, "{}", 12.0 * sum / n as f64);
+    }
+
+    /// scipy 1.17.1, `qmc.Sobol(d=3, scramble=False).random(8)`: shifted by the same words, these points.
+    #[test]
+    fn points_of_the_sequence_are_those_of_scipy() {
+        let published = [
+            [0.0, 0.0, 0.0],
+            [0.5, 0.5, 0.5],
+            [0.75, 0.25, 0.25],
+            [0.25, 0.75, 0.75],
+            [0.375, 0.375, 0.625],
+            [0.875, 0.875, 0.125],
+            [0.625, 0.125, 0.875],
+            [0.125, 0.625, 0.375],
+        ];
+        let design = design(DesignKind::Sobol, 3, 8);
+        for (k, expected) in published.iter().enumerate() {
+            for (dimension, expected) in expected.iter().enumerate() {
+                let bits = (expected / UNIT) as u64;
+                let shifted = ((bits ^ (design.word(dimension) >> 11)) as f64 + 0.5) * UNIT;
+                assert_eq!(design.point(k as u64)[dimension], shifted, "point {k}, dimension {dimension}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_design_lies_in_the_open_unit_cube() {
+        for kind in [DesignKind::Random, DesignKind::LatinHypercube, DesignKind::Sobol, DesignKind::Saltelli]
+        {
+            let design = design(kind, 2, 400);
+            assert!((0..400).all(|k| design.point(k).iter().all(|u| *u > 0.0 && *u < 1.0)), "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn a_case_of_saltelli_differs_from_a_in_one_parameter_which_is_that_of_b() {
+        let design = design(DesignKind::Saltelli, 2, 40);
+        for base in 0..10 {
+            let [a, b, ab0, ab1] = [0, 1, 2, 3].map(|member| design.point(4 * base + member));
+            assert_eq!(ab0, [b[0], a[1]]);
+            assert_eq!(ab1, [a[0], b[1]]);
+        }
+    }
+
+    #[test]
+    fn an_impossible_design_says_what_is_possible() {
+        assert!(Design::new(DesignKind::Saltelli, 3, 12, 0).is_err());
+        assert!(Design::new(DesignKind::Sobol, 101, 12, 0).is_err());
+    }
+}

@@ -1,0 +1,322 @@
+//! Laws of dispersed parameters.
+use std::path::Path;
+
+use contract::{OutOfRange, bounds};
+use files::read_column;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use statistics::normal_quantile;
+
+/// The law of a parameter. Every law is drawn by its quantile function from numbers of the unit interval, so that a design (Sobol,
+/// Latin hypercube) spreads any of them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Law {
+    /// Normal, cut off where limits are given (what is beyond is drawn again, in law).
+    Normal {
+        /// Mean, before any cutting.
+        #[schemars(range(min = -1e18, max = 1e18))]
+        mean: f64,
+        /// Standard deviation, before any cutting, > 0.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e18))]
+        sigma: f64,
+        /// Lower limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
+        min: Option<f64>,
+        /// Upper limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
+        max: Option<f64>,
+    },
+    /// Uniform between two limits.
+    Uniform {
+        /// Lower limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
+        min: f64,
+        /// Upper limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
+        max: f64,
+    },
+    /// Uniform over the whole numbers from `min` to `max`, both included: for counts and seeds.
+    Whole {
+        /// Smallest number, from 0.
+        #[schemars(range(max = 1_u64 << 53))]
+        min: u64,
+        /// Largest number, to 2⁵³.
+        #[schemars(range(max = 1_u64 << 53))]
+        max: u64,
+    },
+    /// The logarithm is normal.
+    LogNormal {
+        /// Median, > 0.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e18))]
+        median: f64,
+        /// Standard deviation of the natural logarithm, > 0.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 50))]
+        sigma_ln: f64,
+    },
+    /// Triangular.
+    Triangular {
+        /// Lower limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
+        min: f64,
+        /// Where the density is highest.
+        #[schemars(range(min = -1e18, max = 1e18))]
+        mode: f64,
+        /// Upper limit.
+        #[schemars(range(min = -1e18, max = 1e18))]
+        max: f64,
+    },
+    /// One of some values, of any type.
+    Choice {
+        /// The values.
+        #[schemars(length(min = 1))]
+        values: Vec<Value>,
+        /// How often each comes, in proportion; absent: equally often.
+        #[schemars(inner(range(min = 0, max = 1e18)))]
+        weights: Option<Vec<f64>>,
+    },
+    /// An attitude without a preferred direction. The path is a table with `ra_deg`, `dec_deg`, `roll_deg` (a boresight uniform on
+    /// the sphere and any roll) or with `phi_deg`, `theta_deg`, `psi_deg` (Euler angles 123 of a rotation that is uniform over
+    /// all rotations).
+    IsotropicAttitude,
+    /// A column of a CSV file, every row as likely as any other.
+    Table {
+        /// The file, starting from the study's folder.
+        path: String,
+        /// The column's name; all its cells numbers.
+        column: String,
+    },
+}
+
+/// A law that is ready to be drawn from.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Drawable {
+    /// A law with its parameters.
+    Law(Law),
+    /// The column of a table.
+    Column(Vec<f64>),
+}
+
+impl Law {
+    /// Checks the parameters.
+    pub(crate) fn check(&self, path: &str) -> Result<(), OutOfRange> {
+        bounds::check(self, path)?;
+        let require = |is_allowed: bool, field: &str, value: &dyn std::fmt::Display, expected| {
+            let refused = || OutOfRange::new(format!("{path}.{field}"), value, expected);
+            if is_allowed { Ok(()) } else { Err(refused()) }
+        };
+        match self {
+            Self::Normal { mean, sigma, min, max } => {
+                let (low, high) = (min.unwrap_or(f64::MIN), max.unwrap_or(f64::MAX));
+                require(low < high, "max", &high, "more than min")?;
+                let inside = standard_normal((high - mean) / sigma) - standard_normal((low - mean) / sigma);
+                let expected = "limits between which a millionth of the law lies at least";
+                require(inside > 1e-6, "sigma", sigma, expected)
+            }
+            Self::Uniform { min, max } => {
+                require(min < max && (max - min).is_finite(), "max", max, "more than min")
+            }
+            Self::Whole { min, max } => require(min <= max, "max", max, "min or more"),
+            Self::LogNormal { .. } | Self::IsotropicAttitude | Self::Table { .. } => Ok(()),
+            Self::Triangular { min, mode, max } => {
+                require(min < max, "max", max, "more than min")?;
+                require((*min..=*max).contains(mode), "mode", mode, "a number from min to max")
+            }
+            Self::Choice { values, weights } => {
+                let Some(weights) = weights else { return Ok(()) };
+                let is_allowed = weights.len() == values.len() && weights.iter().sum::<f64>() > 0.0;
+                let expected = "a number >= 0 for each value, not all 0";
+                require(is_allowed, "weights", &format!("{weights:?}"), expected)
+            }
+        }
+    }
+
+    /// How many numbers of the unit interval a draw takes.
+    pub(crate) fn dimensions(&self) -> usize {
+        if matches!(self, Self::IsotropicAttitude) { 3 } else { 1 }
+    }
+
+    /// Reads what the law needs from files; paths start from `folder`.
+    pub(crate) fn load(&self, folder: &Path) -> Result<Drawable, files::FileError> {
+        match self {
+            Self::Table { path, column } => Ok(Drawable::Column(read_column(&folder.join(path), column)?)),
+            law => Ok(Drawable::Law(law.clone())),
+        }
+    }
+}
+
+impl Drawable {
+    /// The value at numbers of the open unit interval, as many as the law has dimensions. Attitudes are not drawn here
+    /// ([`euler_123`], [`boresight`]): null.
+    pub(crate) fn value(&self, u: f64) -> Value {
+        let number = |value: f64| serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number);
+        match self {
+            Self::Column(values) => values.get(place(u, values.len())).map_or(Value::Null, |v| number(*v)),
+            Self::Law(law) => match law {
+                Law::Normal { mean, sigma, min, max } => {
+                    let at = |limit: Option<f64>, else_p: f64| {
+                        limit.map_or(else_p, |limit| standard_normal((limit - mean) / sigma))
+                    };
+                    let (low, high) = (at(*min, 0.0), at(*max, 1.0));
+                    let value = mean + sigma * normal_quantile(low + u * (high - low));
+                    // Rounding of the probabilities may lead beyond a limit by a unit in the last place.
+                    number(value.clamp(min.unwrap_or(f64::MIN), max.unwrap_or(f64::MAX)))
+                }
+                Law::Uniform { min, max } => number(min + u * (max - min)),
+                Law::Whole { min, max } => {
+                    let count = (max - min + 1) as f64;
+                    Value::from(min + ((u * count) as u64).min(max - min))
+                }
+                Law::LogNormal { median, sigma_ln } => {
+                    number(median * libm::exp(sigma_ln * normal_quantile(u)))
+                }
+                Law::Triangular { min, mode, max } => {
+                    let (width, rising) = (max - min, mode - min);
+                    let value = if u * width < rising {
+                        min + (u * width * rising).sqrt()
+                    } else {
+                        max - ((1.0 - u) * width * (max - mode)).sqrt()
+                    };
+                    number(value)
+                }
+                Law::Choice { values, weights } => {
+                    let index = match weights {
+                        None => place(u, values.len()),
+                        Some(weights) => weighted_place(u, weights),
+                    };
+                    values.get(index).cloned().unwrap_or(Value::Null)
+                }
+                Law::IsotropicAttitude | Law::Table { .. } => Value::Null,
+            },
+        }
+    }
+}
+
+/// Which of `count` equal parts of the unit interval a number lies in.
+fn place(u: f64, count: usize) -> usize {
+    ((u * count as f64) as usize).min(count.saturating_sub(1))
+}
+
+fn weighted_place(u: f64, weights: &[f64]) -> usize {
+    let mut left = u * weights.iter().sum::<f64>();
+    for (index, weight) in weights.iter().enumerate() {
+        if left < *weight {
+            return index;
+        }
+        left -= weight;
+    }
+    // Rounding at the end of the interval: the last value that comes at all.
+    weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0)
+}
+
+/// Right ascension and declination of a direction that is uniform on the sphere, and a uniform roll; degrees.
+pub(crate) fn boresight([u, v, w]: [f64; 3]) -> [f64; 3] {
+    [360.0 * u, libm::asin(2.0 * v - 1.0).to_degrees(), 360.0 * w]
+}
+
+/// Euler angles 123 (φ, θ, ψ) of a rotation that is uniform over all rotations (Haar's measure has the density cos θ), degrees.
+pub(crate) fn euler_123([u, v, w]: [f64; 3]) -> [f64; 3] {
+    [360.0 * u - 180.0, libm::asin(2.0 * v - 1.0).to_degrees(), 360.0 * w - 180.0]
+}
+
+/// Probability of a standard normal number below x.
+fn standard_normal(x: f64) -> f64 {
+    0.5 * libm::erfc(-x / std::f64::consts::SQRT_2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Values at the middles of so many equal parts of the unit interval.
+    fn values(law: Law, n: usize) -> Vec<f64> {
+        assert_eq!(law.check("law"), Ok(()));
+        let law = Drawable::Law(law);
+        (0..n).map(|i| law.value((i as f64 + 0.5) / n as f64).as_f64().unwrap()).collect()
+    }
+
+    fn moments(values: &[f64]) -> (f64, f64) {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        (mean, (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt())
+    }
+
+    /// Mean and standard deviation of each law in closed form; the sum over 100,000 middles is good to a few parts in 10⁵.
+    #[test]
+    fn the_moments_are_those_of_the_laws() {
+        let near = |law: Law, mean: f64, sigma: f64| {
+            let (got_mean, got_sigma) = moments(&values(law.clone(), 100_000));
+            assert!((got_mean - mean).abs() < 1e-4 * sigma, "{law:?}: mean {got_mean}, {mean}");
+            assert!((got_sigma / sigma - 1.0).abs() < 1e-3, "{law:?}: sigma {got_sigma}, {sigma}");
+        };
+        near(Law::Normal { mean: 3.0, sigma: 2.0, min: None, max: None }, 3.0, 2.0);
+        // Half a normal law: mean σ√(2/π), variance σ²(1 − 2/π).
+        let two_over_pi = 2.0 / std::f64::consts::PI;
+        near(
+            Law::Normal { mean: 0.0, sigma: 1.0, min: Some(0.0), max: None },
+            two_over_pi.sqrt(),
+            (1.0 - two_over_pi).sqrt(),
+        );
+        near(Law::Uniform { min: -1.0, max: 5.0 }, 2.0, 6.0 / 12f64.sqrt());
+        near(Law::Whole { min: 1, max: 6 }, 3.5, (35.0f64 / 12.0).sqrt());
+        let s2 = 0.25f64;
+        let mean = 2.0 * libm::exp(0.5 * s2);
+        near(Law::LogNormal { median: 2.0, sigma_ln: 0.5 }, mean, mean * libm::expm1(s2).sqrt());
+        // (a² + b² + c² − ab − ac − bc)/18.
+        near(Law::Triangular { min: 0.0, mode: 1.0, max: 4.0 }, 5.0 / 3.0, (13.0f64 / 18.0).sqrt());
+    }
+
+    #[test]
+    fn a_choice_comes_as_often_as_its_weight() {
+        let law = Law::Choice {
+            values: [1.0, 2.0, 3.0].map(Value::from).to_vec(),
+            weights: Some(vec![1.0, 0.0, 3.0]),
+        };
+        let values = values(law, 1000);
+        let count = |value: f64| values.iter().filter(|v| **v == value).count();
+        assert_eq!([count(1.0), count(2.0), count(3.0)], [250, 0, 750]);
+    }
+
+    /// Archimedes: each coordinate of a direction that is uniform on the sphere is uniform. And a rotation that is uniform over
+    /// all rotations takes any direction to a uniform one.
+    #[test]
+    fn isotropic_attitudes_prefer_no_direction() {
+        use nalgebra::{Rotation3, Vector3};
+        let n = 48;
+        let middle = |i: usize| (i as f64 + 0.5) / n as f64;
+        let (mut sum, mut squares, mut boresights) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
+        for i in 0..n * n * n {
+            let u = [middle(i % n), middle(i / n % n), middle(i / n / n)];
+            let [phi, theta, psi] = euler_123(u).map(f64::to_radians);
+            let about = |axis: Vector3<f64>, angle: f64| Rotation3::from_scaled_axis(axis * angle);
+            let turned = about(Vector3::z(), psi)
+                * about(Vector3::y(), theta)
+                * about(Vector3::x(), phi)
+                * Vector3::new(0.48, 0.6, 0.64);
+            sum += turned;
+            squares += turned.component_mul(&turned);
+            let [ra, dec, _] = boresight(u).map(f64::to_radians);
+            boresights +=
+                Vector3::new(libm::cos(dec) * libm::cos(ra), libm::cos(dec) * libm::sin(ra), libm::sin(dec));
+        }
+        let count = (n * n * n) as f64;
+        assert!((sum / count).norm() < 1e-3 && (boresights / count).norm() < 1e-3);
+        for k in 0..3 {
+            assert!((squares[k] / count - 1.0 / 3.0).abs() < 1e-3, "{}", squares / count);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_cut_law_stays_within_its_limits(
+            u in 1e-12..1.0f64, mean in -5.0..5.0f64, sigma in 0.1..10.0f64, min in -5.0..0.0f64, width in 0.5..5.0f64,
+        ) {
+            let law = Law::Normal { mean, sigma, min: Some(min), max: Some(min + width) };
+            prop_assume!(law.check("law").is_ok());
+            let value = Drawable::Law(law).value(u).as_f64().unwrap();
+            prop_assert!((min..=min + width).contains(&value), "{value}");
+        }
+    }
+}

@@ -1,0 +1,639 @@
+//! A study that was read and checked, and the scenarios of its cases.
+
+pub(crate) mod design;
+pub(crate) mod file;
+pub(crate) mod law;
+pub(crate) mod overlay;
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use contract::bounds;
+use files::sha256::hex;
+use files::{Failure, file_sha256, toml_file};
+use indexmap::IndexMap;
+use run::{AnyScenario, Options, ScenarioSource};
+use scenario::run_file::{FileDigests, content};
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+use sim::randomness::{Effect, Seed};
+
+use crate::cases::{CaseTable, Drawn};
+use crate::definition::design::Design;
+use crate::definition::design::DesignKind;
+use crate::definition::file::StudyFile;
+use crate::definition::law::{Drawable, Law, boresight, euler_123};
+use crate::definition::overlay::ValuePath;
+
+/// What is no parameter.
+const NOT_VARIED: [&str; 4] = ["title", "world", "seed", "score"];
+
+/// Names of the angles of an attitude: of a boresight, or of Euler's.
+const BORESIGHT: [&str; 3] = ["ra_deg", "dec_deg", "roll_deg"];
+const EULER_123: [&str; 3] = ["phi_deg", "theta_deg", "psi_deg"];
+
+/// A study that was read and checked.
+pub struct Study {
+    /// Name: that of its file without the extension.
+    pub name: String,
+    /// What is asked for.
+    pub file: StudyFile,
+    /// The scenario that the cases begin from.
+    base: ScenarioSource,
+    base_values: Value,
+    vary: Vec<Varied>,
+    sweep: Vec<Swept>,
+    design: Design,
+    path: PathBuf,
+    text: String,
+    identity: StudyFile,
+    hash: String,
+}
+
+/// A parameter with its law, ready to be drawn.
+struct Varied {
+    path: ValuePath,
+    law: Drawable,
+    /// Of an attitude: its angles.
+    angles: Option<[ValuePath; 3]>,
+    is_euler: bool,
+}
+
+struct Swept {
+    path: ValuePath,
+    values: Vec<Value>,
+}
+
+/// A case: a scenario of its own.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// Its number.
+    pub number: u64,
+    /// Seed of its scenario.
+    pub seed: u64,
+    /// What was drawn, in the order of [`Study::drawn_columns`].
+    pub drawn: Vec<Drawn>,
+    /// Its scenario.
+    pub source: ScenarioSource,
+}
+
+/// Cases that cannot be run, before any can, that end a study: none could.
+pub(crate) const MOST_FAILED_CASES: u64 = 10;
+
+/// What was drawn for a case.
+pub(crate) struct DrawnCase {
+    pub(crate) number: u64,
+    pub(crate) seed: u64,
+    pub(crate) drawn: Vec<Drawn>,
+    /// The scenario with it.
+    values: Value,
+}
+
+impl Study {
+    /// The attitude that its scenario grants to answers with a centroid alone.
+    pub(crate) fn granted_attitude(&self) -> Option<&str> {
+        self.base_values.get("score")?.get("attitude")?.as_str()
+    }
+
+    /// The first frames of every case, which count in no figure.
+    pub(crate) fn warm_up_frames(&self) -> u64 {
+        self.base_values.pointer("/score/warm_up_frames").and_then(Value::as_u64).unwrap_or(0)
+    }
+
+    /// Reads and checks a study, the scenario that it names included; the first case is made, so that a path that leads nowhere or a
+    /// value of the wrong type is found before anything runs.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the first mistake.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let text = toml_file::read_text(path).map_err(|error| {
+            Failure::Usage(format!("`{}` is no study that can be read: {error}", path.display()))
+        })?;
+        let file: StudyFile = toml_file::parse(path, &text)?;
+        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        let refuse =
+            |at: &str, message: String| -> Failure { toml_file::refuse(path, &text, at, message).into() };
+
+        let beside = folder.join(&file.scenario);
+        let word = if scenario::BUILT_IN.iter().any(|built_in| built_in.name == file.scenario) {
+            file.scenario.clone()
+        } else {
+            beside.to_string_lossy().into_owned()
+        };
+        let mut base = match ScenarioSource::read(&word) {
+            Err(Failure::Usage(message)) => return Err(refuse("scenario", message)),
+            other => other?,
+        };
+        let mut base_values = base.scenario.to_json()?;
+        if let Some(frames) = file.warm_up_frames {
+            let score =
+                base_values.as_object_mut().map(|base| base.entry("score").or_insert_with(|| json!({})));
+            if let Some(Value::Object(score)) = score {
+                score.insert("warm_up_frames".to_owned(), frames.into());
+            }
+        }
+        let identity = identity(&file, &folder, &mut base)?;
+
+        let mut vary = Vec::new();
+        let mut taken: Vec<ValuePath> = Vec::new();
+        for (i, dispersion) in file.vary.iter().enumerate() {
+            let at = |field: &str| format!("vary[{i}].{field}");
+            if let Law::Choice { values, .. } = &dispersion.law {
+                check_finite(values)
+                    .map_err(|(k, message)| refuse(&at(&format!("law.values[{k}]")), message))?;
+            }
+            let checked = dispersion.law.check(&at("law"));
+            checked.map_err(|error| toml_file::out_of_range(path, &text, &error))?;
+            let varied = Varied::new(&dispersion.path, &dispersion.law, &folder, &base_values)
+                .map_err(|(field, message)| refuse(&at(field), message))?;
+            check_free(&mut taken, &varied.path).map_err(|message| refuse(&at("path"), message))?;
+            vary.push(varied);
+        }
+        let mut sweep = Vec::new();
+        for (i, swept) in file.sweep.iter().enumerate() {
+            let at = |field: &str| format!("sweep[{i}].{field}");
+            let value_path = ValuePath::parse(&swept.path).map_err(|expected| {
+                refuse(&at("path"), format!("is `{}`, expected {expected}", swept.path))
+            })?;
+            check_free(&mut taken, &value_path).map_err(|message| refuse(&at("path"), message))?;
+            if swept.values.is_empty() {
+                return Err(refuse(&at("values"), "is [], expected one value or more".to_owned()));
+            }
+            check_finite(&swept.values)
+                .map_err(|(k, message)| refuse(&at(&format!("values[{k}]")), message))?;
+            sweep.push(Swept { path: value_path, values: swept.values.clone() });
+        }
+
+        let counts = sweep.iter().map(|swept| swept.values.len() as u64);
+        let Some(cells) = counts.into_iter().try_fold(1_u64, |cells, count| cells.checked_mul(count)) else {
+            return Err(refuse(
+                "sweep",
+                "has 2^64 combinations or more, expected no more than cases".to_owned(),
+            ));
+        };
+        let cases = file.stop.cases;
+        bounds::check(&file.stop, "stop").map_err(|error| toml_file::out_of_range(path, &text, &error))?;
+        for (i, requirement) in file.require.iter().enumerate() {
+            let at = format!("require[{i}]");
+            bounds::check(requirement, &at).map_err(|error| toml_file::out_of_range(path, &text, &error))?;
+            let has_limit = requirement.limit();
+            has_limit.map_err(|(field, message)| refuse(&format!("{at}.{field}"), message.to_owned()))?;
+        }
+        if !cases.is_multiple_of(cells) {
+            let expected = format!("is {cases}, expected a multiple of the sweep's {cells}");
+            return Err(refuse("stop.cases", expected));
+        }
+        if file.design == DesignKind::Saltelli && !sweep.is_empty() {
+            return Err(refuse("design", "is saltelli, expected without a sweep".to_owned()));
+        }
+        if file.stop.until.is_some() && file.design != DesignKind::Random {
+            let message =
+                "is given, expected with the random design alone: of another one, all cases belong together";
+            return Err(refuse("stop.until", message.to_owned()));
+        }
+        let dimensions = file.vary.iter().map(|dispersion| dispersion.law.dimensions()).sum();
+        let design = Design::new(file.design, dimensions, cases / cells, file.seed)
+            .map_err(|expected| refuse("stop.cases", format!("is {cases}, expected {expected}")))?;
+
+        let name =
+            path.file_stem().map_or_else(|| "study".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let mut study = Self {
+            name,
+            file,
+            base,
+            base_values,
+            vary,
+            sweep,
+            design,
+            path: path.to_owned(),
+            text,
+            identity,
+            hash: String::new(),
+        };
+        study.hash = study.make_hash()?;
+        study.check_names()?;
+        let frames = study.frames(study.first_frame_count()?)?;
+        let warm_up = study.warm_up_frames();
+        if warm_up >= frames.end - frames.start {
+            let count = frames.end - frames.start;
+            return Err(study.refuse(
+                "warm_up_frames",
+                format!("is {warm_up}, expected fewer than the {count} frames of a case"),
+            ));
+        }
+        Ok(study)
+    }
+
+    /// Frames of the first case that can be run, of the first ten.
+    ///
+    /// # Errors
+    /// The [`Failure`] of the first case where none can be.
+    fn first_frame_count(&self) -> Result<u64, Failure> {
+        let count = |number| Ok(self.case(number)?.source.prepare(Options::default())?.frame_count());
+        let first = count(0);
+        (1..self.cases().min(MOST_FAILED_CASES)).fold(first, |found, number| match found {
+            Err(failure @ (Failure::Toml(_) | Failure::Simulation(_) | Failure::Contract(_))) => {
+                count(number).map_err(|_: Failure| failure)
+            }
+            found => found,
+        })
+    }
+
+    /// Number of cases, the most there are.
+    pub fn cases(&self) -> u64 {
+        self.file.stop.cases
+    }
+
+    /// Number of points of the sweep: the first so many cases are one of each.
+    pub(crate) fn sweep_points(&self) -> u64 {
+        self.sweep.iter().map(|swept| swept.values.len() as u64).product()
+    }
+
+    /// Checks that the built-in pipeline can be run on the cameras of the sweep, of its first thousand points.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of the parameter by which it cannot, in the case's scenario.
+    pub fn check_built_in_pipeline(&self) -> Result<(), Failure> {
+        const MOST_POINTS: u64 = 1000;
+        for number in 0..self.sweep_points().min(self.cases()).min(MOST_POINTS) {
+            // A case that makes no scenario has a row that says so.
+            if let Ok(Case { source, .. }) = self.case(number) {
+                source.world().check_built_in(&source)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Cases at the limits of the design: of every parameter that varies those where it is smallest and largest among all cases (the first
+    /// 100,000 draws), of a choice one of each value, at the first and the last point of the sweep; and every point of the sweep once.
+    /// At most a thousand, in order.
+    pub fn extremes(&self) -> BTreeSet<u64> {
+        const MOST_DRAWS: u64 = 100_000;
+        const MOST_CASES: usize = 1000;
+        let points = self.sweep_points();
+        let draws = (self.cases() / points).min(MOST_DRAWS);
+        let mut found = BTreeSet::from([0]);
+        let mut ends: Vec<Option<[(f64, u64); 2]>> = Vec::new();
+        let mut chosen = BTreeSet::new();
+        for draw in 0..draws {
+            let unit = self.design.point(draw);
+            ends.resize(unit.len(), None);
+            for (end, &u) in ends.iter_mut().zip(&unit) {
+                let [low, high] = end.get_or_insert([(u, draw); 2]);
+                // Values grow with the place in their law, or fall with it: the ends are the same.
+                *low = if u < low.0 { (u, draw) } else { *low };
+                *high = if u > high.0 { (u, draw) } else { *high };
+            }
+            let mut unit = unit.iter().copied();
+            for (place, varied) in self.vary.iter().enumerate() {
+                let u: Vec<f64> = unit
+                    .by_ref()
+                    .take(self.file.vary.get(place).map_or(1, |dispersion| dispersion.law.dimensions()))
+                    .collect();
+                let is_choice = matches!(varied.law, Drawable::Law(Law::Choice { .. }));
+                let value = u.first().filter(|_| is_choice).map(|u| varied.law.value(*u).to_string());
+                if value.is_some_and(|value| chosen.insert((place, value))) {
+                    found.insert(draw);
+                }
+            }
+        }
+        found.extend(ends.into_iter().flatten().flatten().map(|(_, draw)| draw));
+        let at_ends = found.into_iter().flat_map(|draw| [draw * points, draw * points + points - 1]);
+        (0..points).chain(at_ends).take(MOST_CASES).collect()
+    }
+
+    /// SHA-256 of all that the rows depend on but the pipeline: the study, its scenario, the content of the files that they read; hexadecimal.
+    pub fn hash(&self) -> &str {
+        &self.hash
+    }
+
+    /// The file of the study with the content of every file (`sha256:` and the digits) in the place of its path, and without the path of its
+    /// scenario.
+    pub(crate) fn identity(&self) -> &StudyFile {
+        &self.identity
+    }
+
+    /// SHA-256 of the files that its scenario reads, by their roles.
+    ///
+    /// # Errors
+    /// As [`ScenarioSource::files`].
+    pub(crate) fn files(&self) -> Result<FileDigests, Failure> {
+        self.base.files()
+    }
+
+    /// The files that it reads: its own, its scenario's as far as it has one, and those that cases read.
+    pub fn files_read(&self) -> Vec<PathBuf> {
+        let scenario = self.scenario_file();
+        let own = [self.path.as_path(), scenario.as_path()];
+        own.into_iter()
+            .chain(self.base.known_files())
+            .filter(|file| file.is_file())
+            .map(Path::to_path_buf)
+            .collect()
+    }
+
+    /// The file of its scenario, as far as it has one.
+    pub fn scenario_file(&self) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(&self.file.scenario)
+    }
+
+    /// The scenario that the cases begin from.
+    pub fn scenario(&self) -> &dyn AnyScenario {
+        self.base.scenario.as_ref()
+    }
+
+    /// Frames of every case of a scenario that has `count`.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the place of a range that the scenario does not have.
+    pub fn frames(&self, count: u64) -> Result<Range<u64>, Failure> {
+        let Some(text) = &self.file.frames else { return Ok(0..count) };
+        let range = text
+            .split_once("..")
+            .and_then(|(from, to)| Some(from.trim().parse::<u64>().ok()?..to.trim().parse::<u64>().ok()?));
+        match range.filter(|range| range.start < range.end && range.end <= count) {
+            Some(range) => Ok(range),
+            None => {
+                let message = format!(
+                    "is `{text}`, expected A..B with A < B, frames of the scenario, which has {count}"
+                );
+                Err(self.refuse("frames", message))
+            }
+        }
+    }
+
+    /// A mistake in the study's file.
+    pub(crate) fn refuse(&self, at: &str, message: String) -> Failure {
+        toml_file::refuse(&self.path, &self.text, at, message).into()
+    }
+
+    /// Names of what is drawn, each with whether it is a number: the sweep first, then what varies.
+    pub fn drawn_columns(&self) -> IndexMap<String, bool> {
+        let mut columns = IndexMap::new();
+        for swept in &self.sweep {
+            columns.insert(swept.path.text().to_owned(), swept.values.iter().all(Value::is_number));
+        }
+        for varied in &self.vary {
+            match (&varied.angles, &varied.law) {
+                (Some(angles), _) => {
+                    columns.extend(angles.iter().map(|angle| (angle.text().to_owned(), true)));
+                }
+                (None, Drawable::Law(Law::Choice { values, .. })) => {
+                    columns.insert(varied.path.text().to_owned(), values.iter().all(Value::is_number));
+                }
+                (None, _) => {
+                    columns.insert(varied.path.text().to_owned(), true);
+                }
+            }
+        }
+        columns
+    }
+
+    /// A table of this study without rows.
+    pub fn table(&self) -> CaseTable {
+        let causes = self.scenario().world().causes();
+        CaseTable {
+            drawn: self.drawn_columns(),
+            figures: self.figures(),
+            causes: causes.iter().map(|(verdict, cause)| format!("{verdict}.{cause}")).collect(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Names of the figures that are recorded.
+    pub fn figures(&self) -> Vec<String> {
+        self.file.record.figures.clone().unwrap_or_else(|| self.scenario().world().figure_names())
+    }
+
+    /// The figure by which cases are good or bad.
+    pub fn worst_by(&self) -> String {
+        let headline = || self.scenario().world().headline().to_owned();
+        self.file.record.worst_by.clone().unwrap_or_else(headline)
+    }
+
+    /// A case, by its number alone.
+    ///
+    /// # Errors
+    /// A [`Failure`] when the values drawn make no scenario; the place is that of the value in the case's scenario.
+    pub fn case(&self, number: u64) -> Result<Case, Failure> {
+        self.case_of(self.draw(number)?)
+    }
+
+    /// The scenario of a case.
+    ///
+    /// # Errors
+    /// As [`Study::case`].
+    pub(crate) fn case_of(
+        &self,
+        DrawnCase { number, seed, drawn, values }: DrawnCase,
+    ) -> Result<Case, Failure> {
+        let name = format!("{}, case {number}", self.path.display());
+        Ok(Case { number, seed, drawn, source: self.base.with_values(&values, seed, name)? })
+    }
+
+    /// The values of a case.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a path that leads nowhere.
+    pub(crate) fn draw(&self, number: u64) -> Result<DrawnCase, Failure> {
+        let cells = self.sweep_points();
+        let (mut cell, replicate) = (number % cells, number / cells);
+        let mut values = self.base_values.clone();
+        let mut drawn = Vec::new();
+        for (i, swept) in self.sweep.iter().enumerate().rev() {
+            let count = swept.values.len() as u64;
+            // A sweep has a value, which was checked when it was read.
+            let value = swept.values.get((cell % count) as usize).cloned().unwrap_or_default();
+            cell /= count;
+            drawn.insert(0, recorded(&value));
+            let at = format!("sweep[{i}].path");
+            swept
+                .path
+                .set(&mut values, value)
+                .map_err(|expected| self.refuse_path(&at, &swept.path, &expected))?;
+        }
+        let point = self.design.point(replicate);
+        let mut u = point.iter().copied();
+        for (i, varied) in self.vary.iter().enumerate() {
+            let at = format!("vary[{i}].path");
+            let mut set = |path: &ValuePath, value: Value| {
+                drawn.push(recorded(&value));
+                path.set(&mut values, value).map_err(|expected| self.refuse_path(&at, path, &expected))
+            };
+            if let Some(angles) = &varied.angles {
+                let unit = [0; 3].map(|_: i32| u.next().unwrap_or(0.5));
+                let drawn = if varied.is_euler { euler_123(unit) } else { boresight(unit) };
+                for (path, angle) in angles.iter().zip(drawn) {
+                    set(path, Value::from(angle))?;
+                }
+            } else {
+                set(&varied.path, varied.law.value(u.next().unwrap_or(0.5)))?;
+            }
+        }
+        // The same at every point of a sweep. TOML's whole numbers have a sign: one bit less.
+        let seed = Seed { seed: self.file.seed, case: replicate }.streams(0, Effect::CaseSeed).word(0) >> 1;
+        Ok(DrawnCase { number, seed, drawn, values })
+    }
+
+    fn refuse_path(&self, at: &str, path: &ValuePath, expected: &str) -> Failure {
+        self.refuse(at, format!("is `{}`, expected {expected}", path.text()))
+    }
+
+    /// Figures and paths that there are.
+    fn check_names(&self) -> Result<(), Failure> {
+        let known = self.scenario().world().figure_names();
+        let check = |at: &str, name: &str| {
+            if known.iter().any(|figure| figure == name) {
+                return Ok(());
+            }
+            let hint = toml_file::nearest(name, known.iter().map(String::as_str))
+                .map_or_else(|| known.join(", "), |name| format!("did you mean `{name}`?"));
+            Err(self.refuse(at, format!("is `{name}`, expected a figure of the score; {hint}")))
+        };
+        let recorded = self.file.record.figures.iter().flatten();
+        for (i, name) in recorded.enumerate() {
+            check(&format!("record.figures[{i}]"), name)?;
+        }
+        check("record.worst_by", &self.worst_by())?;
+        if let Some(until) = &self.file.stop.until {
+            check("stop.until.figure", &until.figure)?;
+        }
+        let required = self.file.require.iter().enumerate();
+        let required: Vec<(String, &str)> =
+            required.map(|(i, r)| (format!("require[{i}].figure"), r.figure.as_str())).collect();
+        for (at, name) in &required {
+            check(at, name)?;
+        }
+        let recorded = self.figures();
+        let worst_by = self.worst_by();
+        let until = self.file.stop.until.iter().map(|until| ("stop.until.figure", until.figure.as_str()));
+        let named = [("record.worst_by", worst_by.as_str())].into_iter().chain(until);
+        for (at, name) in named.chain(required.iter().map(|(at, name)| (at.as_str(), *name))) {
+            if !recorded.iter().any(|figure| figure == name) {
+                return Err(self.refuse(at, format!("is `{name}`, expected one of record.figures")));
+            }
+        }
+        Ok(())
+    }
+
+    fn make_hash(&self) -> Result<String, Failure> {
+        let mut hash = Sha256::new();
+        hash.update(serde_json::to_string(&self.identity).map_err(unwritable)?);
+        hash.update(serde_json::to_string(&self.base.identity().to_json()?).map_err(unwritable)?);
+        hash.update(env!("CARGO_PKG_VERSION"));
+        Ok(hex(hash.finalize()))
+    }
+}
+
+/// [`Study::identity`] of a file. Files that its values name are noted in `base`, so that a case refuses one that changed.
+fn identity(file: &StudyFile, folder: &Path, base: &mut ScenarioSource) -> Result<StudyFile, Failure> {
+    let mut identity = file.clone();
+    identity.require.clear();
+    if scenario::BUILT_IN.iter().all(|built_in| built_in.name != file.scenario) {
+        identity.scenario.clear();
+    }
+    for dispersion in &mut identity.vary {
+        match &mut dispersion.law {
+            Law::Table { path, .. } => {
+                if let Some(sha256) = file_sha256(&folder.join(&*path))? {
+                    *path = content(&sha256);
+                }
+            }
+            Law::Choice { values, .. } => values.iter_mut().for_each(|value| replace_paths(value, base)),
+            _ => {}
+        }
+    }
+    let swept = identity.sweep.iter_mut().flat_map(|sweep| &mut sweep.values);
+    swept.for_each(|value| replace_paths(value, base));
+    Ok(identity)
+}
+
+/// Puts the content of a file in the place of every text that is the path of one, as the scenario would read it.
+fn replace_paths(value: &mut Value, base: &mut ScenarioSource) {
+    match value {
+        Value::String(text) => {
+            if let Some(sha256) = base.note_file(text) {
+                *text = content(sha256);
+            }
+        }
+        Value::Array(values) => values.iter_mut().for_each(|value| replace_paths(value, base)),
+        Value::Object(members) => members.values_mut().for_each(|value| replace_paths(value, base)),
+        Value::Null | Value::Bool(_) | Value::Number(_) => {}
+    }
+}
+
+impl Varied {
+    fn new(path: &str, law: &Law, folder: &Path, base: &Value) -> Result<Self, Problem> {
+        let value_path = ValuePath::parse(path)
+            .map_err(|expected| ("path", format!("is `{path}`, expected {expected}")))?;
+        let mut varied = Self {
+            law: law.load(folder).map_err(|error| ("law.path", error.to_string()))?,
+            path: value_path,
+            angles: None,
+            is_euler: false,
+        };
+        if *law == Law::IsotropicAttitude {
+            let table = varied.path.get(base);
+            let has = |names: [&str; 3]| names.iter().all(|name| table.and_then(|t| t.get(name)).is_some());
+            let names = if has(BORESIGHT) {
+                BORESIGHT
+            } else if has(EULER_123) {
+                varied.is_euler = true;
+                EULER_123
+            } else {
+                let message = format!(
+                    "is `{path}`, expected a table of the scenario with {}, or with {}",
+                    BORESIGHT.join(", "),
+                    EULER_123.join(", ")
+                );
+                return Err(("path", message));
+            };
+            let angle = |name: &str| ValuePath::parse(&format!("{path}.{name}"));
+            let [Ok(a), Ok(b), Ok(c)] = names.map(angle) else {
+                return Err(("path", format!("is `{path}`, expected the path of a table")));
+            };
+            varied.angles = Some([a, b, c]);
+        }
+        Ok(varied)
+    }
+}
+
+/// What is wrong with an entry: the field, and why.
+type Problem = (&'static str, String);
+
+/// Refuses numbers that are none: JSON, in which values are kept, has null for them.
+fn check_finite(values: &[Value]) -> Result<(), (usize, String)> {
+    let message = || "is not finite, expected a finite number or another value".to_owned();
+    values.iter().position(Value::is_null).map_or(Ok(()), |place| Err((place, message())))
+}
+
+fn check_free(taken: &mut Vec<ValuePath>, path: &ValuePath) -> Result<(), String> {
+    if path.text().split('.').next().is_some_and(|first| NOT_VARIED.contains(&first)) {
+        return Err(format!(
+            "is `{}`, expected a parameter of what is simulated or of the pipeline: every case has a seed of its own already, and all are scored alike",
+            path.text()
+        ));
+    }
+    if let Some(other) = taken.iter().find(|other| other.overlaps(path)) {
+        return Err(format!(
+            "is `{}`, expected a path apart from `{}`, which is set too",
+            path.text(),
+            other.text()
+        ));
+    }
+    taken.push(path.clone());
+    Ok(())
+}
+
+/// As it stands in a table.
+fn recorded(value: &Value) -> Drawn {
+    match (value, value.as_f64()) {
+        (_, Some(number)) => Drawn::Number(number),
+        (Value::String(text), _) => Drawn::Text(text.clone()),
+        (other, _) => Drawn::Text(other.to_string()),
+    }
+}
+
+fn unwritable(error: serde_json::Error) -> Failure {
+    Failure::Usage(format!("the study cannot be written as JSON: {error}"))
+}

@@ -1,0 +1,87 @@
+//! What comes of a case.
+
+pub(crate) mod engine;
+pub(crate) mod tried;
+
+use std::path::Path;
+
+use files::Failure;
+use run::{AnyJudgement, FirstFailure, Options, RunResult};
+use score::WARM_UP;
+
+use crate::cases::{CaseFigure, CaseRow};
+use crate::definition::{Case, Study};
+use crate::evaluate::tried::StudyPipeline;
+
+/// What came of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evaluated {
+    /// Its row.
+    pub row: CaseRow,
+    /// The first failure of the pipeline, if it failed at all.
+    pub first_failure: Option<FirstFailure>,
+    /// Whether the pipeline started, if it has to be started at all.
+    pub has_started: bool,
+}
+
+/// Simulates, processes and scores a case on this thread; nothing is written. A program finds its images in `scratch`.
+///
+/// A case whose values make no scenario that can be simulated has a row that says why.
+///
+/// # Errors
+/// A [`Failure`] of files, a renderer, or a pipeline that is not there.
+pub fn evaluate(
+    study: &Study,
+    number: u64,
+    pipeline: &dyn StudyPipeline,
+    scratch: &Path,
+) -> Result<Evaluated, Failure> {
+    let case = study.draw(number)?;
+    let table = study.table();
+    let mut row = CaseRow {
+        case: number,
+        seed: case.seed,
+        has_failed: false,
+        error: None,
+        frames: 0,
+        drawn: case.drawn.clone(),
+        figures: vec![CaseFigure { value: None, count: 0, of: 0 }; table.figures.len()],
+        causes: vec![0; table.causes.len()],
+    };
+    let RunResult { scored, first_failure, not_flown } =
+        match study.case_of(case).and_then(|case| run(study, &case, pipeline, scratch)) {
+            Ok(result) => result,
+            Err(failure @ (Failure::Toml(_) | Failure::Simulation(_) | Failure::Contract(_))) => {
+                row.error = Some(failure.to_string());
+                return Ok(Evaluated { row, first_failure: None, has_started: false });
+            }
+            Err(failure) => return Err(failure),
+        };
+    for (figure, name) in row.figures.iter_mut().zip(&table.figures) {
+        if let Some(found) = scored.figures().get(name) {
+            *figure = CaseFigure { value: found.value, count: found.count, of: found.of };
+        }
+    }
+    for unit in scored.units().units.iter().filter(|unit| unit.group != WARM_UP) {
+        row.frames += 1;
+        let Some(cause) = &unit.cause else { continue };
+        let name = format!("{}.{cause}", unit.verdict);
+        let place = table.causes.iter().position(|cause| *cause == name);
+        if let Some(count) = place.and_then(|place| row.causes.get_mut(place)) {
+            *count += 1;
+        }
+    }
+    row.has_failed = first_failure.is_some();
+    Ok(Evaluated { row, first_failure, has_started: not_flown.is_none() })
+}
+
+fn run(
+    study: &Study,
+    case: &Case,
+    pipeline: &dyn StudyPipeline,
+    scratch: &Path,
+) -> Result<RunResult<Box<dyn AnyJudgement>>, Failure> {
+    let factory = pipeline.factory(case.source.scenario.as_ref(), scratch)?;
+    let prepared = case.source.prepare(Options::default())?;
+    prepared.score(study.frames(prepared.frame_count())?, &factory)
+}

@@ -1,0 +1,366 @@
+//! Requirements over a study: is a figure on the right side of its limit, with the confidence that is asked for?
+
+use indexmap::IndexMap;
+use run::figure_called;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use statistics::{Bounds, Clustered, cluster_mean_bounds, cluster_quantile_bounds, cluster_rate_bounds};
+
+use super::estimate::{ratio, sorted_quantile, sums};
+use crate::cases::{CaseFigure, CaseTable};
+
+/// Cases at which it is given up to say how many would decide.
+const MOST_CASES: f64 = 1e9;
+
+/// What a figure must reach. It is decided at each point of the sweep alone, and is no part of the study's hash: the rows are the same
+/// with other requirements.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StudyRequirement {
+    /// Name of a figure of the score, as in `correct_rate`.
+    pub figure: String,
+    /// Lower limit, in the figure's unit; of a rate as a share of one. Exactly one of `at_least` and `at_most` is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1e18, max = 1e18))]
+    pub at_least: Option<f64>,
+    /// Upper limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1e18, max = 1e18))]
+    pub at_most: Option<f64>,
+    /// Of what: all cases together (a rate over all frames, another figure's mean over the cases), or a quantile of the cases.
+    #[serde(default)]
+    pub of: RequiredOf,
+    /// Confidence of the decision, one-sided.
+    #[serde(default = "default_confidence")]
+    #[schemars(range(min = 0.5, max = 0.9999))]
+    pub confidence: f64,
+}
+
+const fn default_confidence() -> f64 {
+    0.95
+}
+
+/// What of a figure's cases has a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RequiredOf {
+    /// All cases together.
+    #[default]
+    All,
+    /// The value that 5 % of the cases are below.
+    P05,
+    /// The median of the cases.
+    Median,
+    /// The value that 95 % of the cases are below.
+    P95,
+}
+
+impl RequiredOf {
+    fn quantile(self) -> Option<f64> {
+        match self {
+            Self::All => None,
+            Self::P05 => Some(0.05),
+            Self::Median => Some(0.5),
+            Self::P95 => Some(0.95),
+        }
+    }
+
+    /// It in words, before the figure's: empty for all cases together.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::All => "",
+            Self::P05 => "5 % quantile of ",
+            Self::Median => "median of ",
+            Self::P95 => "95 % quantile of ",
+        }
+    }
+}
+
+/// Which side of its limit a figure is allowed on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Limit {
+    /// The figure is no less than this.
+    AtLeast(f64),
+    /// The figure is no more than this.
+    AtMost(f64),
+}
+
+impl StudyRequirement {
+    /// Its limit.
+    ///
+    /// # Errors
+    /// The field at fault, and what is expected of it.
+    pub fn limit(&self) -> Result<Limit, (&'static str, &'static str)> {
+        match (self.at_least, self.at_most) {
+            (Some(limit), None) => Ok(Limit::AtLeast(limit)),
+            (None, Some(limit)) => Ok(Limit::AtMost(limit)),
+            (Some(_), Some(_)) => Err(("at_most", "is given beside at_least, expected one of the two")),
+            (None, None) => Err(("figure", "has no limit, expected at_least or at_most")),
+        }
+    }
+}
+
+/// The verdict on a requirement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RequirementVerdict {
+    /// The bound on the far side keeps to the limit.
+    Met,
+    /// The bound on the near side is beyond the limit.
+    NotMet,
+    /// Neither is known with the confidence asked for.
+    NotDecided,
+}
+
+/// A requirement with what the cases say of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RequirementResult {
+    /// What is required.
+    #[serde(flatten)]
+    pub requirement: StudyRequirement,
+    /// The swept values, by path, where it was decided; empty without a sweep.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub at: IndexMap<String, String>,
+    /// The verdict.
+    pub verdict: RequirementVerdict,
+    /// What was found; absent without a case that has the figure.
+    pub value: Option<f64>,
+    /// The value is at least this with the confidence of the requirement; absent where too few cases are known.
+    pub low: Option<f64>,
+    /// It is at most this with the same confidence.
+    pub high: Option<f64>,
+    /// Cases that it rests on.
+    pub cases: u64,
+    /// Cases among them in which the figure has no value (of a position error, a case without a hit). In a quantile they count as worse
+    /// than the limit; beside a mean they keep a requirement from being met.
+    pub without_value: u64,
+    /// Cases that would decide it if further ones were like these, about; absent when it is decided, or when no number would be enough.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cases_needed: Option<u64>,
+}
+
+impl RequirementResult {
+    /// The requirement in words, as in `5 % quantile of correct rate, % ≥ 95.0 % (confidence 95 %)`; `label` is the figure's name,
+    /// `number` writes a value of it.
+    pub fn requirement_words(&self, label: &str, number: impl Fn(f64) -> String) -> String {
+        let StudyRequirement { at_least, at_most, of, confidence, .. } = &self.requirement;
+        let limits = [("≥", at_least), ("≤", at_most)];
+        let limits: String = limits
+            .iter()
+            .filter_map(|(sign, limit)| limit.map(|limit| format!(" {sign} {}", number(limit))))
+            .collect();
+        format!("{}{label}{limits} (confidence {} %)", of.words(), 100.0 * confidence)
+    }
+
+    /// The swept values where it was decided, as in `sensor.read_noise_e = 5`; empty without a sweep.
+    pub fn at_words(&self) -> String {
+        let at: Vec<String> = self.at.iter().map(|(path, value)| format!("{path} = {value}")).collect();
+        at.join(", ")
+    }
+
+    /// The verdict in words, with the cases that are needed and those without a value.
+    pub fn verdict_words(&self) -> String {
+        let mut words = match (self.verdict, self.cases_needed) {
+            (RequirementVerdict::Met, _) => "met".to_owned(),
+            (RequirementVerdict::NotMet, _) => "not met".to_owned(),
+            (RequirementVerdict::NotDecided, Some(cases)) => {
+                format!("not decided: about {cases} cases needed, {} known", self.cases)
+            }
+            (RequirementVerdict::NotDecided, None) => "not decided".to_owned(),
+        };
+        if self.without_value > 0 {
+            words.push_str(&format!(" ({} of {} cases without a value)", self.without_value, self.cases));
+        }
+        words
+    }
+}
+
+/// The requirements over the cases of a table, at a point of the sweep.
+pub(crate) fn decide(
+    requirements: &[StudyRequirement],
+    table: &CaseTable,
+    at: &IndexMap<String, String>,
+) -> Vec<RequirementResult> {
+    requirements.iter().filter_map(|requirement| decide_one(requirement, table, at)).collect()
+}
+
+fn decide_one(
+    requirement: &StudyRequirement,
+    table: &CaseTable,
+    at: &IndexMap<String, String>,
+) -> Option<RequirementResult> {
+    let limit = requirement.limit().ok()?;
+    let (figures, draws): (Vec<CaseFigure>, Vec<usize>) = {
+        let rows = table.figure(&requirement.figure)?.into_iter().zip(table.draws()).zip(&table.rows);
+        rows.filter(|(_, row)| row.error.is_none()).map(|(figure, _)| figure).unzip()
+    };
+    let sample = Sample::new(requirement, limit, &figures, &draws);
+    let without_value = figures.iter().filter(|figure| figure.value.is_none()).count() as u64;
+    let bounds = sample.bounds(requirement.confidence, 1.0);
+    let may_be_met = matches!(sample, Sample::Quantile { .. } | Sample::Rate(_)) || without_value == 0;
+    let verdict = verdict(limit, bounds, may_be_met);
+    let cases = figures.len() as u64;
+    let is_open = verdict == RequirementVerdict::NotDecided && may_be_met;
+    Some(RequirementResult {
+        requirement: requirement.clone(),
+        at: at.clone(),
+        verdict,
+        value: sample.value().filter(|value| value.is_finite()),
+        low: bounds.and_then(|bounds| bounds.low).filter(|low| low.is_finite()),
+        high: bounds.and_then(|bounds| bounds.high).filter(|high| high.is_finite()),
+        cases,
+        without_value,
+        cases_needed: is_open.then(|| sample.cases_needed(limit, requirement.confidence, cases)).flatten(),
+    })
+}
+
+fn verdict(limit: Limit, bounds: Option<Bounds>, may_be_met: bool) -> RequirementVerdict {
+    let (low, high) = bounds.map_or((None, None), |bounds| (bounds.low, bounds.high));
+    let (is_met, is_missed) = match limit {
+        Limit::AtLeast(limit) => (low.is_some_and(|low| low >= limit), high.is_some_and(|high| high < limit)),
+        Limit::AtMost(limit) => (high.is_some_and(|high| high <= limit), low.is_some_and(|low| low > limit)),
+    };
+    match (is_met && may_be_met, is_missed) {
+        (true, _) => RequirementVerdict::Met,
+        (false, true) => RequirementVerdict::NotMet,
+        (false, false) => RequirementVerdict::NotDecided,
+    }
+}
+
+/// What a requirement is decided by.
+enum Sample {
+    Rate(Vec<statistics::ClusterSum>),
+    Mean(Vec<statistics::ClusterSum>),
+    Quantile { sorted: Vec<Clustered>, p: f64 },
+}
+
+impl Sample {
+    fn new(requirement: &StudyRequirement, limit: Limit, figures: &[CaseFigure], draws: &[usize]) -> Self {
+        let is_rate = figure_called(&requirement.figure).is_rate();
+        match requirement.of.quantile() {
+            None if is_rate => Self::Rate(sums(true, figures, draws)),
+            None => Self::Mean(sums(false, figures, draws)),
+            Some(p) => {
+                let worse = match limit {
+                    Limit::AtLeast(_) => f64::NEG_INFINITY,
+                    Limit::AtMost(_) => f64::INFINITY,
+                };
+                let value = |figure: &CaseFigure| figure.value.unwrap_or(worse);
+                let mut sorted: Vec<Clustered> =
+                    draws.iter().copied().zip(figures.iter().map(value)).collect();
+                sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
+                Self::Quantile { sorted, p }
+            }
+        }
+    }
+
+    fn value(&self) -> Option<f64> {
+        match self {
+            Self::Rate(sums) | Self::Mean(sums) => ratio(sums),
+            Self::Quantile { sorted, p } => {
+                let values: Vec<f64> = sorted.iter().map(|(_, value)| *value).collect();
+                (!values.is_empty()).then(|| sorted_quantile(&values, *p))
+            }
+        }
+    }
+
+    fn bounds(&self, confidence: f64, size: f64) -> Option<Bounds> {
+        match self {
+            Self::Rate(sums) => cluster_rate_bounds(sums, confidence, size),
+            Self::Mean(sums) => cluster_mean_bounds(sums, confidence, size),
+            Self::Quantile { sorted, p } => cluster_quantile_bounds(sorted, *p, confidence, size),
+        }
+    }
+
+    /// Cases that would decide, if further ones were like these.
+    fn cases_needed(&self, limit: Limit, confidence: f64, cases: u64) -> Option<u64> {
+        let decides =
+            |size: f64| verdict(limit, self.bounds(confidence, size), true) != RequirementVerdict::NotDecided;
+        let most = MOST_CASES / cases as f64;
+        let mut high = 1.0;
+        while !decides(high) {
+            high *= 2.0;
+            if high > most {
+                return None;
+            }
+        }
+        let mut low = 0.5 * high;
+        for _ in 0..20 {
+            let middle = 0.5 * (low + high);
+            if decides(middle) { high = middle } else { low = middle }
+        }
+        Some((cases as f64 * high).ceil() as u64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cases::CaseRow;
+
+    fn required(figure: &str, limit: Limit, of: RequiredOf) -> StudyRequirement {
+        let (at_least, at_most) = match limit {
+            Limit::AtLeast(limit) => (Some(limit), None),
+            Limit::AtMost(limit) => (None, Some(limit)),
+        };
+        StudyRequirement { figure: figure.to_owned(), at_least, at_most, of, confidence: 0.95 }
+    }
+
+    fn decided(
+        requirement: StudyRequirement,
+        figures: impl Iterator<Item = CaseFigure>,
+    ) -> RequirementResult {
+        let rows =
+            figures.enumerate().map(|(case, figure)| CaseRow::of(case as u64, case as u64, vec![figure]));
+        let table = CaseTable::of(&[&requirement.figure.clone()], rows.collect());
+        decide(&[requirement], &table, &IndexMap::new()).remove(0)
+    }
+
+    /// Cases of one frame each.
+    fn frames(hits: u64, of: u64) -> impl Iterator<Item = CaseFigure> {
+        (0..of).map(move |frame| {
+            let count = u64::from(frame < hits);
+            CaseFigure { value: Some(count as f64), count, of: 1 }
+        })
+    }
+
+    /// The table of zero failures: 59 trials show 95 % at a confidence of 95 %, 58 do not (0.95⁵⁸ = 0.051); 93 with one failure.
+    #[test]
+    fn as_many_trials_are_needed_as_the_textbook_says() {
+        let at_least = || required("correct_rate", Limit::AtLeast(0.95), RequiredOf::All);
+        assert_eq!(decided(at_least(), frames(59, 59)).verdict, RequirementVerdict::Met);
+        let short = decided(at_least(), frames(30, 30));
+        assert_eq!((short.verdict, short.cases_needed), (RequirementVerdict::NotDecided, Some(59)));
+        assert_eq!(decided(at_least(), frames(92, 93)).verdict, RequirementVerdict::Met);
+        assert_eq!(decided(at_least(), frames(91, 92)).verdict, RequirementVerdict::NotDecided);
+        assert_eq!(decided(at_least(), frames(80, 100)).verdict, RequirementVerdict::NotMet);
+    }
+
+    #[test]
+    fn a_value_at_its_limit_is_not_decided_by_any_number() {
+        let at_limit =
+            decided(required("correct_rate", Limit::AtLeast(0.9), RequiredOf::All), frames(90, 100));
+        assert_eq!((at_limit.verdict, at_limit.cases_needed), (RequirementVerdict::NotDecided, None));
+    }
+
+    #[test]
+    fn cases_without_a_value_never_help() {
+        let errors = |without: u64| {
+            (0..200).map(move |case| {
+                let value = (case >= without).then_some(1.0 + (case % 10) as f64 / 10.0);
+                CaseFigure { value, count: 1, of: 1 }
+            })
+        };
+        let quantile = || required("ra_rms_deg", Limit::AtMost(2.0), RequiredOf::P95);
+        assert_eq!(decided(quantile(), errors(0)).verdict, RequirementVerdict::Met);
+        let many = decided(quantile(), errors(30));
+        assert_eq!((many.verdict, many.without_value), (RequirementVerdict::NotMet, 30));
+        let mean = || required("ra_rms_deg", Limit::AtMost(2.0), RequiredOf::All);
+        assert_eq!(decided(mean(), errors(0)).verdict, RequirementVerdict::Met);
+        assert_eq!(decided(mean(), errors(1)).verdict, RequirementVerdict::NotDecided);
+        assert_eq!(
+            decided(required("ra_rms_deg", Limit::AtMost(1.0), RequiredOf::All), errors(1)).verdict,
+            RequirementVerdict::NotMet
+        );
+    }
+}

@@ -1,0 +1,175 @@
+//! When a study is done: the figure of its stopping rule is known well enough.
+
+use serde::{Deserialize, Serialize};
+
+use super::estimate::overall;
+use crate::cases::CaseTable;
+use crate::definition::Study;
+use crate::definition::file::Until;
+
+/// Draws after which a study looks for the first time, and the fewest from one look to the next.
+const STEP: u64 = 16;
+/// From one look to the next, the draws grow at least by one part of so many.
+const PARTS: u64 = 16;
+/// Draws whose value is another than the most frequent one, at least: of fewer, the scatter is not known.
+const LEAST_OTHERS: usize = 8;
+
+/// What is known of the figure of a stopping rule.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Waited {
+    /// Its interval is as narrow as asked.
+    NarrowEnough,
+    /// Its interval is wider, or it has none.
+    TooWide,
+    /// It is the same in nearly every draw: how much it scatters is not known, however narrow its interval is.
+    NearlyConstant,
+}
+
+/// Looks whether the figure of a stopping rule is known well enough: after 16 draws, 32, 48, from 256 on after a sixteenth more each time, and
+/// after all. A draw is one case at every point of the sweep. The numbers do not depend on how the study is cut into shards, so neither
+/// does where it stops.
+pub(crate) struct Stopping<'a> {
+    until: Option<&'a Until>,
+    points: u64,
+    most: u64,
+    /// Draws at the next look.
+    next: u64,
+}
+
+impl<'a> Stopping<'a> {
+    /// Before the first case.
+    pub(crate) fn new(study: &'a Study) -> Self {
+        Self::of(study.file.stop.until.as_ref(), study.sweep_points(), study.cases())
+    }
+
+    fn of(until: Option<&'a Until>, points: u64, cases: u64) -> Self {
+        let most = cases / points;
+        Self { until, points, most, next: STEP.min(most) }
+    }
+
+    /// The number of cases that are enough, if they are known already; `known` are all cases from the first on, as far as they are known,
+    /// and more of them from call to call.
+    pub(crate) fn enough(&mut self, known: &CaseTable) -> Option<u64> {
+        let until = self.until?;
+        while self.next * self.points <= known.rows.len() as u64 {
+            let draws = self.next;
+            let cases = draws * self.points;
+            if waited(until, known, cases) == Waited::NarrowEnough {
+                return Some(cases);
+            }
+            if draws >= self.most {
+                return None;
+            }
+            self.next = (draws + (draws / PARTS).max(STEP)).min(self.most);
+        }
+        None
+    }
+}
+
+/// What the first `cases` say of the figure of a stopping rule.
+pub(crate) fn waited(until: &Until, known: &CaseTable, cases: u64) -> Waited {
+    let Some(mut figures) = known.figure(&until.figure) else { return Waited::TooWide };
+    figures.truncate(cases as usize);
+    let draws = known.draws();
+    let estimate = overall(&until.figure, &figures, &draws);
+    let width = estimate.and_then(|estimate| Some(estimate.high? - estimate.low?));
+    if !width.is_some_and(|width| width <= 2.0 * until.half_width) {
+        return Waited::TooWide;
+    }
+    let others = figures.len() - most_frequent(figures.iter().filter_map(|figure| figure.value));
+    // Cases of a draw that are alike are one.
+    let points = figures.len() / draws.iter().take(figures.len()).max().map_or(1, |last| last + 1);
+    if others / points.max(1) < LEAST_OTHERS { Waited::NearlyConstant } else { Waited::NarrowEnough }
+}
+
+/// How often the most frequent value occurs.
+fn most_frequent(values: impl Iterator<Item = f64>) -> usize {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.chunk_by(|a, b| a == b).map(<[f64]>::len).max().unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cases::{CaseFigure, CaseRow};
+    use sim::randomness::{Effect, Seed, Stream, normal, uniform};
+
+    fn stopped(
+        study: u64,
+        (figure, half_width): (&str, f64),
+        points: u64,
+        case: impl Fn(&mut Stream, &mut dyn FnMut(CaseFigure)),
+    ) -> (u64, f64) {
+        let until = Until { figure: figure.to_owned(), half_width };
+        let mut stopping = Stopping::of(Some(&until), points, 4000 * points);
+        let mut table = CaseTable::of(&[figure], Vec::new());
+        for draw in 0..4000 {
+            let random = &mut Seed { seed: 5, case: study }.stream(draw, Effect::StudyParameter, 0);
+            case(random, &mut |figure| {
+                let case = table.rows.len() as u64;
+                table.rows.push(CaseRow::of(case, draw, vec![figure]));
+            });
+            if let Some(cases) = stopping.enough(&table) {
+                assert_eq!(cases, table.rows.len() as u64);
+                break;
+            }
+        }
+        let cases = table.figure(figure).unwrap();
+        (table.rows.len() as u64, overall(figure, &cases, &table.draws()).unwrap().value)
+    }
+
+    /// Standard deviation over 400 studies of what they stop at, over the one that their interval promises.
+    fn promise(
+        rule: (&str, f64),
+        points: u64,
+        case: impl Fn(&mut Stream, &mut dyn FnMut(CaseFigure)),
+    ) -> (f64, f64) {
+        let studies = 400;
+        let ended: Vec<(u64, f64)> = (0..studies).map(|study| stopped(study, rule, points, &case)).collect();
+        let mean = ended.iter().map(|(_, value)| value).sum::<f64>() / studies as f64;
+        let square: f64 = ended.iter().map(|(_, value)| (value - mean) * (value - mean)).sum();
+        let cases = ended.iter().map(|(cases, _)| *cases as f64).sum::<f64>() / studies as f64;
+        ((square / (studies - 1) as f64).sqrt() / (rule.1 / statistics::Z_95), cases)
+    }
+
+    /// The standard deviation of 400 scatters by 3.5 %.
+    #[test]
+    fn a_study_stops_with_the_scatter_that_it_promises() {
+        for half_width in [0.03, 0.015] {
+            let (rate, draws) = promise(("correct_rate", half_width), 4, |random, add| {
+                let of_draw = 0.6 + 0.4 * uniform(random);
+                for less in [0.0, 0.1, 0.2, 0.3] {
+                    let count = (0..25).filter(|_| uniform(random) < of_draw - less).count() as u64;
+                    add(CaseFigure { value: Some(count as f64 / 25.0), count, of: 25 });
+                }
+            });
+            assert!((0.85..1.15).contains(&rate), "{half_width}: {rate} of the promise after {draws} cases");
+            let (mean, draws) = promise(("ra_rms_deg", half_width * 10.0), 1, |random, add| {
+                add(CaseFigure { value: Some(5.0 + normal(random)), count: 1, of: 1 });
+            });
+            assert!((0.85..1.15).contains(&mean), "{half_width}: {mean} of the promise after {draws} cases");
+        }
+    }
+
+    /// All of 25 frames in 97 of 100 draws: the interval is narrow from the first look on, and tells little.
+    #[test]
+    fn a_figure_that_is_nearly_constant_is_not_waited_for() {
+        let until = Until { figure: "hit_rate".to_owned(), half_width: 0.03 };
+        let row = |case: u64, others: u64| {
+            let count = if case < others { 24 } else { 25 };
+            let figures = vec![CaseFigure { value: Some(count as f64 / 25.0), count, of: 25 }];
+            CaseRow::of(case, case, figures)
+        };
+        let table = |others| CaseTable::of(&["hit_rate"], (0..100).map(|case| row(case, others)).collect());
+        let after = |others, half_width| waited(&Until { half_width, ..until.clone() }, &table(others), 100);
+        assert_eq!(after(3, 0.03), Waited::NearlyConstant);
+        assert_eq!(after(7, 0.03), Waited::NearlyConstant);
+        assert_eq!(after(8, 0.03), Waited::NarrowEnough);
+        assert_eq!(after(8, 0.0001), Waited::TooWide);
+        assert_eq!(Stopping::of(Some(&until), 1, 100).enough(&table(3)), None);
+        // The first look that knows eight of either.
+        assert_eq!(Stopping::of(Some(&until), 1, 100).enough(&table(60)), Some(80));
+    }
+}

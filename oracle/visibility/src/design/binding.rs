@@ -1,0 +1,113 @@
+//! Why a requirement cannot be met: the constraint whose removal would let it be.
+use files::Failure;
+
+use crate::design::{Design, design_with};
+use crate::law::detection::{background_e, is_flooded};
+use crate::requirement::definition::Requirements;
+use crate::requirement::{Demand, DetectionRule, Over, Parameter};
+
+/// Boresights that the question is looked at from.
+const POINTINGS: usize = 1000;
+
+/// What binds at a value of a parameter, in words. Constraints are taken away one by one, and the first without which the demand is
+/// met is named: over-exposure of the target, the background, smear, the field, noise; what remains is the signal.
+///
+/// # Errors
+/// A [`Failure`] when the camera cannot be made.
+pub fn binding(
+    requirements: &Requirements,
+    demand: &Demand,
+    parameter: Parameter,
+    value: f64,
+    asked: f64,
+) -> Result<String, Failure> {
+    let (design, exposure_s) = design_with(requirements, parameter, value, POINTINGS)?;
+    binding_of(&design, requirements, demand, exposure_s, asked)
+}
+
+/// What binds a design as it is; see [`binding`].
+///
+/// # Errors
+/// As [`binding`].
+pub fn binding_of(
+    design: &Design<'_>,
+    requirements: &Requirements,
+    demand: &Demand,
+    exposure_s: Option<f64>,
+    asked: f64,
+) -> Result<String, Failure> {
+    let file = &requirements.file;
+    let again = || Design::new(requirements, &design.camera.config, POINTINGS, exposure_s.unwrap_or(0.0));
+    if let Demand::ExposureWindow { n_min, .. } = demand {
+        let n_min = n_min.unwrap_or(file.n_min);
+        if design.stars_chance(file.exposure.max_s, n_min, Over::Sky)? >= asked {
+            return Ok(
+                "saturation: the exposure that leaves the target not over-exposed is too short for the stars"
+                    .to_owned(),
+            );
+        }
+    }
+    let threshold_dn = design.rule.thresholds(&design.camera, 0.0).high_dn;
+    let sensor = &design.camera.config.sensor;
+    let full_dn = sensor.bias_dn + sensor.full_well_e / sensor.gain_e_per_dn;
+    if threshold_dn >= full_dn.min(f64::from(sensor.full_scale_dn())) {
+        return Ok(format!(
+            "saturation: a full pixel, {full_dn:.0} DN, is not above the threshold, {threshold_dn:.0} DN"
+        ));
+    }
+    let exposed_s = exposure_s.unwrap_or(design.reached(demand, None)?.exposure_s);
+    let dark_e = background_e(&design.camera, exposed_s, design.background_e_per_s()?);
+    if is_flooded(&design.camera, &design.rule, dark_e) {
+        return Ok(format!("background: {dark_e:.0} electrons in a pixel lift the empty frame above I1"));
+    }
+    if again()?.without_smear().reached(demand, exposure_s)?.probability >= asked {
+        return Ok("smear: the motion during the exposure spreads the light over too many pixels".to_owned());
+    }
+    let (Demand::Stars { n_min, .. } | Demand::ExposureWindow { n_min, .. }) = demand else {
+        return noise_or_signal(design, requirements, demand, exposure_s, asked);
+    };
+    let n_min = n_min.unwrap_or(file.n_min) as usize;
+    let every = crate::sky::Sky::new(&design.camera, &file.motion, &file.sky, POINTINGS, 1e-9)?;
+    let (mut counted, mut enough) = (0, 0);
+    for field in every.counted() {
+        counted += 1;
+        enough += usize::from(field.stars.len() >= n_min);
+    }
+    if counted == 0 {
+        return Ok("exclusion: no pointing is left by the exclusion angles".to_owned());
+    }
+    let everywhere = matches!(demand, Demand::Stars { over: Over::EveryPointing, .. });
+    let share = enough as f64 / counted as f64;
+    if share < asked || (everywhere && enough < counted) {
+        return Ok(format!(
+            "field: too small; only {:.1} % of the pointings have {n_min} stars of the catalogue in it, however faint",
+            100.0 * share
+        ));
+    }
+    noise_or_signal(design, requirements, demand, exposure_s, asked)
+}
+
+fn noise_or_signal(
+    design: &Design<'_>,
+    requirements: &Requirements,
+    demand: &Demand,
+    exposure_s: Option<f64>,
+    asked: f64,
+) -> Result<String, Failure> {
+    let mut quiet = design.camera.config.clone();
+    (quiet.sensor.read_noise_e, quiet.sensor.dark_current_e_per_s) = (0.0, 0.0);
+    quiet.sensor.line_noise = Default::default();
+    quiet.background = Default::default();
+    let quiet = Design::new(requirements, &quiet, POINTINGS, exposure_s.unwrap_or(0.0))?;
+    if quiet.reached(demand, exposure_s)?.probability >= asked {
+        return Ok("noise: without dark current, read noise and background it would be met".to_owned());
+    }
+    Ok(match design.rule {
+        DetectionRule::Dn { high_dn, .. } => {
+            format!("signal: too little light for the threshold of {high_dn} DN")
+        }
+        DetectionRule::Sigmas { high, .. } => {
+            format!("signal: too little light for the threshold of {high} standard deviations")
+        }
+    })
+}

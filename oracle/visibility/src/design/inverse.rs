@@ -1,0 +1,187 @@
+//! The other way round: the value of a parameter from which on a requirement is met.
+//!
+//! The probability is not always monotone in a parameter (a longer exposure smears), so that it is first looked at on a grid over the
+//! bracket; the crossing nearest to the end that is wanted is then narrowed by bisection in the parameter's logarithm.
+use files::Failure;
+use statistics::{binomial_at_least, clopper_pearson};
+
+use super::binding::binding;
+use crate::design::{Design, between, design_with};
+use crate::requirement::definition::Requirements;
+use crate::requirement::{Demand, Find, Parameter, Want};
+
+/// Values of the grid.
+const GRID: usize = 13;
+/// Steps of the bisection: the bracket of a grid's step shrinks below a thousandth of it.
+const STEPS: usize = 10;
+/// Boresights that the search looks from; its result is then looked at from all.
+const SEARCH_POINTINGS: usize = 2000;
+/// Power with which the simulation shows a difference that is there.
+const POWER: f64 = 0.95;
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Search {
+    /// A value meets the requirement.
+    Found(FoundValue),
+    /// No value of the bracket does.
+    Impossible {
+        /// The best value of the grid.
+        best_value: f64,
+        /// What it reaches.
+        best_probability: f64,
+        /// What binds.
+        binds: String,
+    },
+}
+
+/// A value that meets a requirement, and one that does not.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundValue {
+    /// Meets it with so much room that the simulated frames can show it.
+    pub value: f64,
+    /// The probability aimed at: what is asked for, or what the simulated frames need to show it.
+    pub goal: f64,
+    /// Where the analytic probability is just what is asked for.
+    pub threshold_value: f64,
+    /// Beyond the threshold, so far that the simulated frames can show that it does not; `None` when the whole bracket meets it.
+    pub failing_value: Option<f64>,
+    /// Whether beyond the value, towards the other end of the bracket, the requirement is met throughout.
+    pub is_monotone: bool,
+}
+
+/// The probabilities that a number of frames can tell from the one that is asked for, with power 0.95 each: at the greater
+/// the lower bound of their rate is above it, at the smaller the upper bound below. `None` where no rate of so few frames shows it.
+pub fn resolvable(asked: f64, frames: u32, confidence: f64) -> (Option<f64>, Option<f64>) {
+    let n = u64::from(frames);
+    if n == 0 {
+        return (None, None);
+    }
+    let enough = (0..=n).find(|k| clopper_pearson(*k, n, confidence).0 >= asked);
+    let few = (0..=n).rev().find(|k| clopper_pearson(*k, n, confidence).1 < asked);
+    let root = |holds: &dyn Fn(f64) -> bool| {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if holds(middle) { high = middle } else { low = middle }
+        }
+        0.5 * (low + high)
+    };
+    (
+        enough.map(|k| root(&|p| binomial_at_least(k, n, p) >= POWER)),
+        few.map(|k| root(&|p| binomial_at_least(k + 1, n, p) >= 1.0 - POWER)),
+    )
+}
+
+/// Looks for the value. `own` is the camera as it is: exposures that its sky covers are looked for there.
+///
+/// # Errors
+/// A [`Failure`] when a camera of the bracket cannot be made.
+pub fn search(
+    requirements: &Requirements,
+    own: &Design<'_>,
+    demand: &Demand,
+    find: &Find,
+) -> Result<Search, Failure> {
+    let file = &requirements.file;
+    let asked = demand.probability(file.probability);
+    let (above, below) = resolvable(asked, file.confirm.frames, file.confirm.confidence);
+    let mut goal = above.unwrap_or(asked);
+    let pointings = SEARCH_POINTINGS.min(file.sky.pointings as usize);
+    let fixed = match find.parameter {
+        Parameter::ExposureS if own.covers(find.to) => Some(own.thinned(pointings)?),
+        Parameter::ExposureS => Some(design_with(requirements, find.parameter, find.to, pointings)?.0),
+        Parameter::ApertureDiameterMm | Parameter::FocalLengthMm => None,
+    };
+    let curve = Curve { requirements, demand, parameter: find.parameter, pointings, fixed };
+    let mut grid: Vec<(f64, f64)> = Vec::new();
+    for value in between(find.from, find.to, GRID) {
+        grid.push((value, curve.at(value)?));
+    }
+    // From here on the wanted end is the first.
+    if find.want == Want::Largest {
+        grid.reverse();
+    }
+    if grid.iter().all(|(_, probability)| *probability < goal) {
+        // What the frames could show is nowhere reached: then what is asked for, by the law alone.
+        goal = asked;
+    }
+    let Some(met) = grid.iter().position(|(_, probability)| *probability >= goal) else {
+        let best = grid.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
+        let (best_value, best_probability) = best.unwrap_or((find.from, 0.0));
+        let binds = binding(requirements, demand, find.parameter, best_value, asked)?;
+        return Ok(Search::Impossible { best_value, best_probability, binds });
+    };
+    let crossing = |level: f64, side: usize| -> Result<f64, Failure> {
+        let (inner, outer) = (&grid[side], &grid[side - 1]);
+        let (mut meets, mut fails) = (libm::log(inner.0), libm::log(outer.0));
+        for _ in 0..STEPS {
+            let middle = 0.5 * (meets + fails);
+            if curve.at(libm::exp(middle))? >= level { meets = middle } else { fails = middle }
+        }
+        Ok(libm::exp(meets))
+    };
+    let value = if met == 0 { grid[0].0 } else { crossing(goal, met)? };
+    // The threshold may lie a step of the grid farther out, the failing value still farther.
+    let outward = |level: f64| grid[..=met].iter().rposition(|(_, probability)| *probability < level);
+    let at_level = |level: f64| outward(level).map(|outer| crossing(level, outer + 1)).transpose();
+    let threshold_value = at_level(asked)?.unwrap_or(value);
+    let failing_value = match below {
+        // The first value that is surely below: the crossing ends on the side that still reaches the level.
+        Some(level) => outward(level)
+            .map(|outer| Ok::<f64, Failure>(step_out(&grid, outer, crossing(level, outer + 1)?)))
+            .transpose()?,
+        None => None,
+    };
+    let is_monotone = grid[met..].iter().all(|(_, probability)| *probability >= asked);
+    Ok(Search::Found(FoundValue { value, goal, threshold_value, failing_value, is_monotone }))
+}
+
+/// A thousandth beyond a crossing, towards the value of the grid that fails.
+fn step_out(grid: &[(f64, f64)], outer: usize, crossing: f64) -> f64 {
+    let fails = grid[outer].0;
+    if fails < crossing { (crossing * 0.999).max(fails) } else { (crossing * 1.001).min(fails) }
+}
+
+/// The probability as a function of the parameter.
+struct Curve<'a> {
+    requirements: &'a Requirements,
+    demand: &'a Demand,
+    parameter: Parameter,
+    pointings: usize,
+    /// The one design of all exposures.
+    fixed: Option<Design<'a>>,
+}
+
+impl Curve<'_> {
+    fn at(&self, value: f64) -> Result<f64, Failure> {
+        if let Some(design) = &self.fixed {
+            return Ok(design.reached(self.demand, Some(value))?.probability);
+        }
+        let (design, exposure_s) = design_with(self.requirements, self.parameter, value, self.pointings)?;
+        Ok(design.reached(self.demand, exposure_s)?.probability)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 300 frames, 0.9, 95 %: 279 and more have a lower bound above it, 260 and fewer an upper bound below; binomial laws
+    /// of 0.9507 and 0.8371 have these with 95 % (scipy.stats.binom, brentq).
+    #[test]
+    fn what_frames_can_tell_is_what_the_binomial_law_says() {
+        let (above, below) = resolvable(0.9, 300, 0.95);
+        let (above, below) = (above.unwrap(), below.unwrap());
+        assert!((binomial_at_least(279, 300, above) - 0.95).abs() < 1e-6, "{above}");
+        assert!(clopper_pearson(279, 300, 0.95).0 >= 0.9 && clopper_pearson(278, 300, 0.95).0 < 0.9);
+        assert!(above > 0.93 && above < 0.97 && below > 0.80 && below < 0.88, "{above} {below}");
+    }
+
+    #[test]
+    fn few_frames_cannot_show_a_high_probability() {
+        let (above, below) = resolvable(0.99, 200, 0.95);
+        assert!(above.is_none() && below.is_some());
+        assert_eq!(resolvable(0.9, 0, 0.95), (None, None));
+    }
+}

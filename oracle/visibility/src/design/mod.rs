@@ -1,0 +1,357 @@
+//! One camera design, and the probability with which it meets a demand, by the analytic law.
+
+pub(crate) mod binding;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "indices are computed from the lengths of arrays made here; no input is read"
+)]
+pub(crate) mod inverse;
+use std::cell::OnceCell;
+
+use contract::OutOfRange;
+use files::Failure;
+use sim::SimError;
+
+use crate::camera::{CameraConfig, CameraModel};
+use crate::law::detection::DetectionCurve;
+use crate::requirement::definition::Requirements;
+use crate::requirement::{Demand, DetectionRule, MotionGuidance, MotionTable, Over, Parameter, TargetLight};
+use crate::sky::Sky;
+use crate::sky::star_count::{Curves, Seen, over_sky, star_trail_px};
+use crate::target::{Aspect, TargetModel, Watch, longest_exposures_s, longest_with};
+
+/// Ranges that are looked at within an interval, both ends included.
+const RANGES: usize = 7;
+/// Stars of a smaller chance at the longest exposure are left out of the sky.
+const LEAST_CHANCE: f64 = 1e-4;
+/// How much fainter than those, for backgrounds that lift a pixel towards a threshold in digital numbers.
+const FAINTER: f64 = 0.5;
+
+/// A camera, the way it is carried, and the sky as it sees it.
+pub struct Design<'a> {
+    requirements: &'a Requirements,
+    /// The camera.
+    pub camera: CameraModel,
+    /// How it is carried.
+    pub motion: MotionTable,
+    /// When something counts as detected.
+    pub rule: DetectionRule,
+    target: Option<TargetModel>,
+    pointings: usize,
+    longest_s: f64,
+    sky: OnceCell<Sky>,
+    background_e_per_s: OnceCell<f64>,
+}
+
+/// What a design reaches of a demand.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reached {
+    /// Probability at the worst of what is demanded.
+    pub probability: f64,
+    /// Exposure at which it is reached, s.
+    pub exposure_s: f64,
+    /// Range at which it is least, km.
+    pub range_km: Option<f64>,
+}
+
+/// Aspects that are looked at together: their mean has to be the probability that is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AspectGroup {
+    /// Smallest and largest phase angle, degrees.
+    pub phases_deg: [f64; 2],
+    /// All equally likely.
+    pub aspects: Vec<Aspect>,
+}
+
+impl<'a> Design<'a> {
+    /// A camera for these requirements, seen against `pointings` boresights, with exposures up to `longest_s`.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a camera or a target that cannot be made.
+    pub fn new(
+        requirements: &'a Requirements,
+        camera: &CameraConfig,
+        pointings: usize,
+        longest_s: f64,
+    ) -> Result<Self, Failure> {
+        let file = &requirements.file;
+        let target = match (&requirements.target, &file.target) {
+            (Some(body), Some(table)) => {
+                Some(TargetModel::new(body, &table.light, requirements.scenario.as_ref())?)
+            }
+            _ => None,
+        };
+        Ok(Self {
+            requirements,
+            camera: CameraModel::new(camera)?,
+            motion: file.motion,
+            rule: file.detection,
+            target,
+            pointings,
+            longest_s: longest_s.max(file.exposure.max_s),
+            sky: OnceCell::new(),
+            background_e_per_s: OnceCell::new(),
+        })
+    }
+
+    /// The same, seen from about `count` of its boresights, evenly spread: every so many of a Fibonacci lattice are one themselves.
+    ///
+    /// # Errors
+    /// As [`Design::new`].
+    pub fn thinned(&self, count: usize) -> Result<Self, Failure> {
+        let thin = Self::new(self.requirements, &self.camera.config, self.pointings, self.longest_s)?;
+        let step = self.pointings.div_ceil(count.max(1));
+        let fields = self.sky()?.fields.iter().step_by(step).cloned().collect();
+        // Nobody has looked at the new design's sky yet.
+        let _ = thin.sky.set(Sky { fields });
+        Ok(thin)
+    }
+
+    /// Whether an exposure is among those that its sky was made for.
+    pub fn covers(&self, exposure_s: f64) -> bool {
+        exposure_s <= self.longest_s
+    }
+
+    /// The same with nothing smeared: neither stars nor target move in the image of a camera on an endlessly wide orbit.
+    #[must_use]
+    pub fn without_smear(mut self) -> Self {
+        self.motion.semi_major_axis_km = 1e15;
+        // The sky keeps the orbit that it was seen from.
+        self
+    }
+
+    /// The sky as the camera sees it.
+    ///
+    /// # Errors
+    /// [`SimError`] when the catalogue cannot be read.
+    pub fn sky(&self) -> Result<&Sky, SimError> {
+        if self.sky.get().is_none() {
+            let file = &self.requirements.file;
+            // The longest exposure shows the faintest stars, unless it drowns them.
+            let faintest = |exposure_s: f64| {
+                let trail_px = star_trail_px(&self.camera, &self.motion, exposure_s);
+                let curve = DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, 0.0);
+                curve.electrons_for(LEAST_CHANCE).map_or(1e12, |electrons| electrons / exposure_s)
+            };
+            let exposures = between(file.exposure.min_s, self.longest_s, 9);
+            let least_e_per_s = FAINTER * exposures.map(faintest).fold(1e12, f64::min);
+            let sky = Sky::new(&self.camera, &file.motion, &file.sky, self.pointings, least_e_per_s)?;
+            // Another thread cannot have set it: the design is not shared.
+            let _ = self.sky.set(sky);
+        }
+        self.sky.get().ok_or_else(|| OutOfRange::new("sky", "none", "a sky").into())
+    }
+
+    /// The median light of the background over the boresights that count, electrons a second and pixel.
+    ///
+    /// # Errors
+    /// As [`Design::sky`].
+    pub fn background_e_per_s(&self) -> Result<f64, SimError> {
+        if let Some(known) = self.background_e_per_s.get() {
+            return Ok(*known);
+        }
+        let mut all: Vec<f64> = self.sky()?.counted().map(|field| field.background_e_per_s).collect();
+        all.sort_by(f64::total_cmp);
+        Ok(*self.background_e_per_s.get_or_init(|| all.get(all.len() / 2).copied().unwrap_or(0.0)))
+    }
+
+    /// What is detected of the stars at every boresight that counts.
+    ///
+    /// # Errors
+    /// As [`Design::sky`].
+    pub fn stars(&self, exposure_s: f64, n_min: u32) -> Result<Vec<Seen>, SimError> {
+        let sky = self.sky()?;
+        let curves = Curves::of_sky(&self.camera, &self.rule, &self.motion, exposure_s, sky);
+        Ok(curves.seen_over(sky, n_min as usize))
+    }
+
+    /// P(N ≥ n_min) over the sky.
+    ///
+    /// # Errors
+    /// As [`Design::sky`].
+    pub fn stars_chance(&self, exposure_s: f64, n_min: u32, over: Over) -> Result<f64, SimError> {
+        Ok(over_sky(&self.stars(exposure_s, n_min)?, over))
+    }
+
+    /// The curve of stars over the median background.
+    ///
+    /// # Errors
+    /// As [`Design::sky`].
+    pub fn curve(&self, exposure_s: f64) -> Result<DetectionCurve, SimError> {
+        let trail_px = star_trail_px(&self.camera, &self.motion, exposure_s);
+        let light_e_per_s = self.background_e_per_s()?;
+        Ok(DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, light_e_per_s))
+    }
+
+    /// V of a star of the mean colour, on the boresight, that is detected with a probability; `None` when none is.
+    ///
+    /// # Errors
+    /// As [`Design::sky`].
+    pub fn limiting_magnitude(&self, exposure_s: f64, probability: f64) -> Result<Option<f64>, SimError> {
+        Ok(self.limit_of(&self.curve(exposure_s)?, exposure_s, probability))
+    }
+
+    /// [`Design::limiting_magnitude`] of a curve that is there already.
+    pub fn limit_of(&self, curve: &DetectionCurve, exposure_s: f64, probability: f64) -> Option<f64> {
+        let of_zero_e = self.camera.radiometry.star(0.0, None, None) * exposure_s;
+        let electrons = curve.electrons_for(probability);
+        electrons.map(|electrons| -2.5 * libm::log10(electrons / of_zero_e))
+    }
+
+    /// The target, where there is one.
+    pub fn target(&self) -> Option<&TargetModel> {
+        self.target.as_ref()
+    }
+
+    /// The aspects of the target up to a phase angle: one group a phase angle, or all moments of an orbit in one.
+    pub fn groups(&self, phase_max_deg: Option<f64>) -> Vec<AspectGroup> {
+        let aspects = self.target.as_ref().map_or_else(Vec::new, |target| target.aspects(phase_max_deg));
+        let light = self.requirements.file.target.as_ref().map(|target| &target.light);
+        let mut groups: Vec<AspectGroup> = Vec::new();
+        for aspect in aspects {
+            let phase = aspect.phase_deg;
+            let together = |group: &AspectGroup| {
+                matches!(light, Some(TargetLight::Orbit { .. })) || group.phases_deg[0] == phase
+            };
+            match groups.last_mut().filter(|group| together(group)) {
+                Some(group) => {
+                    let [low, high] = group.phases_deg;
+                    group.phases_deg = [low.min(phase), high.max(phase)];
+                    group.aspects.push(aspect);
+                }
+                None => groups.push(AspectGroup { phases_deg: [phase; 2], aspects: vec![aspect] }),
+            }
+        }
+        groups
+    }
+
+    /// The chance that the target is detected from a range, the least over the groups of aspects, and that group.
+    ///
+    /// # Errors
+    /// As [`Design::sky`].
+    pub fn target_chance(
+        &self,
+        groups: &[AspectGroup],
+        range_km: f64,
+        exposure_s: f64,
+    ) -> Result<(f64, usize), SimError> {
+        let Some(target) = &self.target else { return Ok((0.0, 0)) };
+        let watch = Watch {
+            camera: &self.camera,
+            rule: &self.rule,
+            motion: &self.motion,
+            light_e_per_s: self.background_e_per_s()?,
+        };
+        let chances = groups.iter().map(|group| watch.chance(target, &group.aspects, range_km, exposure_s));
+        let least = chances.enumerate().map(|(i, chance)| (chance, i)).min_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(least.unwrap_or((0.0, 0)))
+    }
+
+    /// The longest exposure that leaves the target not over-exposed with a probability at a range, s, whatever the group; not cut to
+    /// what the camera can command.
+    pub fn longest_s(&self, groups: &[AspectGroup], range_km: f64, probability: f64) -> f64 {
+        let Some(target) = &self.target else { return f64::INFINITY };
+        let exposure = &self.requirements.file.exposure;
+        let longest = groups.iter().map(|group| {
+            let sorted = longest_exposures_s(&self.camera, target, &group.aspects, range_km, exposure);
+            longest_with(&sorted, probability)
+        });
+        longest.fold(f64::INFINITY, f64::min)
+    }
+
+    /// With what probability a demand is met, at the worst of what it speaks of. `exposure_s` takes the place of its own exposure.
+    ///
+    /// # Errors
+    /// As [`Design::sky`].
+    pub fn reached(&self, demand: &Demand, exposure_s: Option<f64>) -> Result<Reached, SimError> {
+        let file = &self.requirements.file;
+        let exposure_of = |own: &Option<f64>| exposure_s.or(*own).unwrap_or(file.exposure.nominal_s);
+        match demand {
+            Demand::Stars { n_min, exposure_s: own, over, .. } => {
+                let exposure_s = exposure_of(own);
+                let probability = self.stars_chance(exposure_s, n_min.unwrap_or(file.n_min), *over)?;
+                Ok(Reached { probability, exposure_s, range_km: None })
+            }
+            Demand::LimitingMagnitude { magnitude, exposure_s: own, .. } => {
+                let exposure_s = exposure_of(own);
+                let electrons = self.camera.radiometry.star(*magnitude, None, None) * exposure_s;
+                Ok(Reached { probability: self.curve(exposure_s)?.at(electrons), exposure_s, range_km: None })
+            }
+            Demand::TargetDetected { from_km, to_km, phase_max_deg, exposure_s: own, .. } => {
+                let (exposure_s, groups) = (exposure_of(own), self.groups(*phase_max_deg));
+                let mut worst = Reached { probability: 2.0, exposure_s, range_km: None };
+                for range_km in between(*from_km, *to_km, RANGES) {
+                    let (probability, _) = self.target_chance(&groups, range_km, exposure_s)?;
+                    if probability < worst.probability {
+                        worst = Reached { probability, exposure_s, range_km: Some(range_km) };
+                    }
+                }
+                Ok(worst)
+            }
+            Demand::ExposureWindow { from_km, to_km, phase_max_deg, n_min, probability } => {
+                let groups = self.groups(*phase_max_deg);
+                let asked = probability.unwrap_or(file.probability);
+                let ranges =
+                    between(*from_km, *to_km, RANGES).map(|r| (self.longest_s(&groups, r, asked), r));
+                let (longest_s, range_km) =
+                    ranges.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, *from_km));
+                if longest_s < file.exposure.min_s {
+                    return Ok(Reached { probability: 0.0, exposure_s: longest_s, range_km: Some(range_km) });
+                }
+                // Longer is better for stars, unless smear takes what it gives: half and a quarter of it may do as well.
+                let mut best =
+                    Reached { probability: 0.0, exposure_s: file.exposure.min_s, range_km: Some(range_km) };
+                for part in [1.0, 0.5, 0.25] {
+                    let exposure_s = (part * longest_s.min(file.exposure.max_s)).max(file.exposure.min_s);
+                    let chance = self.stars_chance(exposure_s, n_min.unwrap_or(file.n_min), Over::Sky)?;
+                    if chance > best.probability {
+                        best = Reached { probability: chance, exposure_s, ..best };
+                    }
+                    if self.motion.guidance == MotionGuidance::Inertial {
+                        break;
+                    }
+                }
+                Ok(best)
+            }
+        }
+    }
+}
+
+impl Demand {
+    /// The probability that it asks for.
+    pub fn probability(&self, of_file: f64) -> f64 {
+        let (Self::Stars { probability, .. }
+        | Self::LimitingMagnitude { probability, .. }
+        | Self::TargetDetected { probability, .. }
+        | Self::ExposureWindow { probability, .. }) = self;
+        probability.unwrap_or(of_file)
+    }
+}
+
+/// A design for a value of a parameter, and the exposure where that is the parameter.
+///
+/// # Errors
+/// As [`Design::new`].
+pub(crate) fn design_with<'a>(
+    requirements: &'a Requirements,
+    parameter: Parameter,
+    value: f64,
+    pointings: usize,
+) -> Result<(Design<'a>, Option<f64>), Failure> {
+    let exposure_s = (parameter == Parameter::ExposureS).then_some(value);
+    let camera = requirements.camera.with(parameter, value);
+    Ok((Design::new(requirements, &camera, pointings, exposure_s.unwrap_or(0.0))?, exposure_s))
+}
+
+/// `count` numbers from one to another, both included, in equal ratios.
+pub fn between(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
+    let ratio = to / from;
+    let count = if ratio == 1.0 { 1 } else { count };
+    let last = count.saturating_sub(1).max(1) as f64;
+    // The ends to the bit.
+    (0..count).map(move |i| match i {
+        0 => from,
+        i if i + 1 == count => to,
+        i => from * libm::pow(ratio, i as f64 / last),
+    })
+}

@@ -1,0 +1,483 @@
+//! The file of requirements: a camera, what its frames are looked at with, what is demanded of it.
+
+pub(crate) mod definition;
+
+use contract::OutOfRange;
+use contract::bounds::{self, require};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sim::optics::{OpticsConfig, PsfConfig, RadiometryConfig};
+use sim::scene::{BackgroundConfig, TargetConfig};
+use sim::sensor::SensorConfig;
+
+/// A requirement file. Units are in the names; unknown keys are errors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RequirementFile {
+    /// What it is about, in one line.
+    pub title: String,
+    /// Seed of the simulations that confirm.
+    #[serde(default)]
+    #[schemars(range(max = u64::MAX))]
+    pub seed: u64,
+    /// The camera.
+    pub camera: CameraTable,
+    /// When something counts as detected.
+    pub detection: DetectionRule,
+    /// The exposures that the camera can command.
+    pub exposure: ExposureTable,
+    /// Stars that are needed in a frame, where a requirement says nothing else, 1 to 1000.
+    #[schemars(range(min = 1, max = 1000))]
+    pub n_min: u32,
+    /// Probability that is asked for, where a requirement says nothing else, in (0, 1).
+    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+    pub probability: f64,
+    /// How the camera is carried through the sky.
+    pub motion: MotionTable,
+    /// Where and when it looks.
+    #[serde(default)]
+    pub sky: SkyTable,
+    /// The body that it watches; absent: stars alone.
+    pub target: Option<TargetTable>,
+    /// How results are confirmed by simulation.
+    #[serde(default)]
+    pub confirm: ConfirmTable,
+    /// What is demanded.
+    #[serde(default)]
+    pub requirements: Vec<Requirement>,
+}
+
+/// Where the camera comes from, and what of it is different. A scenario gives all of it; a preset gives or replaces geometry and
+/// detector; the other keys replace one thing each.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct CameraTable {
+    /// A built-in far-range scenario, or the path of one, from the folder of this file.
+    pub scenario: Option<String>,
+    /// A built-in camera (`boresight scenario camera`): geometry and detector. Without a scenario it needs `psf` and `radiometry`.
+    pub preset: Option<String>,
+    /// Focal length, mm, 0.01 to 1e6.
+    #[schemars(range(min = 0.01, max = 1e6))]
+    pub focal_length_mm: Option<f64>,
+    /// Diameter of the aperture, mm, greater than 0, at most 10000; of a spectral radiometry alone.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 10000))]
+    pub aperture_diameter_mm: Option<f64>,
+    /// Point-spread function, in pixels.
+    pub psf: Option<PsfConfig>,
+    /// What of the optics changes over the field.
+    pub optics: Option<OpticsConfig>,
+    /// From magnitudes to photoelectrons.
+    pub radiometry: Option<RadiometryConfig>,
+    /// Light without a source in the field.
+    pub background: Option<BackgroundConfig>,
+    /// The detector.
+    pub sensor: Option<SensorConfig>,
+}
+
+/// When something counts as detected: at least one of its pixels is above I2, as the far-range method has it (the pixels about it
+/// above I1 belong to the same cluster and move its centre, but do not decide).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum DetectionRule {
+    /// Thresholds in digital numbers, as of a camera that keeps regions about bright pixels.
+    Dn {
+        /// I1, DN, 0 to `high_dn`.
+        low_dn: u16,
+        /// I2, DN, less than full scale.
+        high_dn: u16,
+    },
+    /// Thresholds above the background in standard deviations of its noise, a signal-to-noise ratio of the brightest pixel.
+    Sigmas {
+        /// I1, standard deviations, 0 to `high`.
+        #[schemars(range(min = 0, max = 1000))]
+        low: f64,
+        /// I2, standard deviations, up to 1000.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
+        high: f64,
+    },
+}
+
+/// The exposures of a camera.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExposureTable {
+    /// Exposure for which curves and requirements hold that name none, s, `min_s` to `max_s`.
+    #[schemars(range(min = 1e-6, max = 1000))]
+    pub nominal_s: f64,
+    /// Shortest, s, 1e-6 to `max_s`.
+    #[schemars(range(min = 1e-6, max = 1000))]
+    pub min_s: f64,
+    /// Longest, s, at most 1000.
+    #[schemars(range(min = 1e-6, max = 1000))]
+    pub max_s: f64,
+    /// Level that the target's brightest pixel may expect, as a fraction of saturation, above 0, at most 1000: 1 is just not over-exposed.
+    #[serde(default = "one")]
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
+    pub target_level: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// How the camera is carried through the sky on a circular orbit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MotionTable {
+    /// What is at rest in the image.
+    pub guidance: MotionGuidance,
+    /// Semi-major axis of the orbit, km, 6500 to 100000; its mean motion smears what is not at rest.
+    #[schemars(range(min = 6500, max = 100000))]
+    pub semi_major_axis_km: f64,
+}
+
+/// What is at rest in the image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionGuidance {
+    /// The stars; a target along the orbit drifts by.
+    Inertial,
+    /// The target ahead along the orbit; the stars drift along the rows.
+    LocalOrbital,
+}
+
+/// Where and when the camera looks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct SkyTable {
+    /// Boresights over the whole sky, each for an equal area, 100 to 1000000.
+    #[schemars(range(min = 100, max = 1000000))]
+    pub pointings: u32,
+    /// When.
+    pub when: SkyTime,
+    /// Pointings nearer than this to the Sun do not count, degrees, 0 to 180.
+    #[schemars(range(min = 0, max = 180))]
+    pub sun_exclusion_deg: f64,
+    /// Pointings nearer than this to the Moon do not count, degrees, 0 to 180.
+    #[schemars(range(min = 0, max = 180))]
+    pub moon_exclusion_deg: f64,
+    /// Pointings nearer than this to the limb of the Earth do not count, degrees, 0 to 180. With inertial guidance the camera waits
+    /// until the Earth is behind it.
+    #[schemars(range(min = 0, max = 180))]
+    pub earth_exclusion_deg: f64,
+}
+
+impl Default for SkyTable {
+    fn default() -> Self {
+        Self {
+            pointings: 10_000,
+            when: SkyTime::Year { year: 2012 },
+            sun_exclusion_deg: 0.0,
+            moon_exclusion_deg: 0.0,
+            earth_exclusion_deg: 0.0,
+        }
+    }
+}
+
+/// When the camera looks.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum SkyTime {
+    /// At one moment.
+    Epoch {
+        /// UTC, as in 2012-04-26T12:00:00Z.
+        utc: String,
+    },
+    /// All through a year: each pointing at a moment of its own, evenly spread.
+    Year {
+        /// The year, 1980 to 2040.
+        #[schemars(range(min = 1980, max = 2040))]
+        year: i32,
+    },
+}
+
+/// The body that the camera watches.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TargetTable {
+    /// The body; absent: that of the scenario.
+    pub body: Option<TargetConfig>,
+    /// How the Sun shines on it.
+    pub light: TargetLight,
+    /// Nearest and farthest range of the curves, km, growing, 0.01 to 1e5.
+    #[schemars(inner(range(min = 0.01, max = 1e5)))]
+    pub ranges_km: [f64; 2],
+}
+
+/// How the Sun shines on the body, and how it is turned.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum TargetLight {
+    /// At given phase angles, at 1 au, in no shadow; a body of plates in any attitude, all equally likely.
+    Phases {
+        /// Angles Sun–target–camera, degrees, growing, 0 to 170.
+        #[schemars(length(min = 1, max = 50), inner(range(min = 0, max = 170)))]
+        phases_deg: Vec<f64>,
+        /// Attitudes of a body of plates, 1 to 1000.
+        #[serde(default = "attitudes")]
+        #[schemars(range(min = 1, max = 1000))]
+        attitudes: u32,
+    },
+    /// As along the orbit of the scenario, at moments spread over its schedule, with the attitude that it gives the body; the camera
+    /// purely along the track, behind or ahead as in the scenario. Moments in the Earth's shadow do not count.
+    Orbit {
+        /// Moments, 1 to 1000.
+        #[schemars(range(min = 1, max = 1000))]
+        moments: u32,
+    },
+}
+
+fn attitudes() -> u32 {
+    64
+}
+
+/// How results are confirmed by simulation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ConfirmTable {
+    /// Frames that are simulated for each result, 0 to 100000; 0: no simulation.
+    #[schemars(range(min = 0, max = 100000))]
+    pub frames: u32,
+    /// Confidence of the one-sided bounds of simulated rates, 0.5 to 0.9999.
+    #[schemars(range(min = 0.5, max = 0.9999))]
+    pub confidence: f64,
+}
+
+impl Default for ConfirmTable {
+    fn default() -> Self {
+        Self { frames: 200, confidence: 0.95 }
+    }
+}
+
+/// One requirement.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Requirement {
+    /// Its name, each once, as in REQ-STAR-01.
+    pub id: String,
+    /// What it says, in words.
+    pub text: String,
+    /// What it demands.
+    pub demand: Demand,
+    /// What is to be found so that it is met; absent: whether the camera as it is meets it.
+    pub find: Option<Find>,
+}
+
+/// What is demanded.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Demand {
+    /// So many stars or more are detected, with a probability, wherever the camera looks.
+    Stars {
+        /// Stars, 1 to 1000; absent: that of the file.
+        #[schemars(range(min = 1, max = 1000))]
+        n_min: Option<u32>,
+        /// Probability; absent: that of the file.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+        probability: Option<f64>,
+        /// Exposure, s; absent: the nominal one.
+        #[schemars(range(min = 1e-6, max = 1000))]
+        exposure_s: Option<f64>,
+        /// Whether the probability is that of all the sky together, or of each pointing.
+        #[serde(default)]
+        over: Over,
+    },
+    /// A star of a magnitude, of the mean colour of the catalogue, is detected with a probability.
+    LimitingMagnitude {
+        /// Johnson V, −2 to 15.
+        #[schemars(range(min = -2, max = 15))]
+        magnitude: f64,
+        /// Probability; absent: that of the file.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+        probability: Option<f64>,
+        /// Exposure, s; absent: the nominal one.
+        #[schemars(range(min = 1e-6, max = 1000))]
+        exposure_s: Option<f64>,
+    },
+    /// The target is detected with a probability at every range and phase angle of an interval.
+    TargetDetected {
+        /// Nearest range, km.
+        #[schemars(range(min = 0.01, max = 1e5))]
+        from_km: f64,
+        /// Farthest range, km.
+        #[schemars(range(min = 0.01, max = 1e5))]
+        to_km: f64,
+        /// Largest phase angle, degrees, 0 to 180; absent: any of those of the target's light.
+        #[schemars(range(min = 0, max = 180))]
+        phase_max_deg: Option<f64>,
+        /// Probability; absent: that of the file.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+        probability: Option<f64>,
+        /// Exposure, s; absent: the nominal one.
+        #[schemars(range(min = 1e-6, max = 1000))]
+        exposure_s: Option<f64>,
+    },
+    /// At every range of an interval there is an exposure that leaves the target not over-exposed and enough stars, each with a
+    /// probability.
+    ExposureWindow {
+        /// Nearest range, km.
+        #[schemars(range(min = 0.01, max = 1e5))]
+        from_km: f64,
+        /// Farthest range, km.
+        #[schemars(range(min = 0.01, max = 1e5))]
+        to_km: f64,
+        /// Largest phase angle, degrees, 0 to 180; absent: any of those of the target's light.
+        #[schemars(range(min = 0, max = 180))]
+        phase_max_deg: Option<f64>,
+        /// Stars; absent: that of the file.
+        #[schemars(range(min = 1, max = 1000))]
+        n_min: Option<u32>,
+        /// Probability; absent: that of the file.
+        #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+        probability: Option<f64>,
+    },
+}
+
+/// Of what a probability over the sky is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Over {
+    /// Of a boresight that is equally likely anywhere.
+    #[default]
+    Sky,
+    /// Of every boresight, the worst included.
+    EveryPointing,
+}
+
+/// What is to be found.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Find {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Which of the values that meet the requirement; absent: the smallest exposure and aperture, and the shortest focal length
+    /// (the widest field).
+    #[serde(default)]
+    pub want: Want,
+    /// Smallest value that is looked at, in the parameter's unit.
+    #[schemars(range(min = 1e-6, max = 1e6))]
+    pub from: f64,
+    /// Largest value that is looked at.
+    #[schemars(range(min = 1e-6, max = 1e6))]
+    pub to: f64,
+}
+
+/// A parameter of a camera that can be looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Parameter {
+    /// Exposure, s.
+    ExposureS,
+    /// Diameter of the aperture, mm.
+    ApertureDiameterMm,
+    /// Focal length, mm; the point-spread function stays as it is in pixels.
+    FocalLengthMm,
+}
+
+impl Parameter {
+    /// Name and unit.
+    pub fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::ExposureS => ("exposure", "s"),
+            Self::ApertureDiameterMm => ("aperture", "mm"),
+            Self::FocalLengthMm => ("focal length", "mm"),
+        }
+    }
+}
+
+/// Which end of the values that meet a requirement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Want {
+    /// The smallest.
+    #[default]
+    Smallest,
+    /// The largest.
+    Largest,
+}
+
+impl RequirementFile {
+    /// Checks every number, and what several of them must be together.
+    ///
+    /// # Errors
+    /// The first value that is not allowed.
+    pub(crate) fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "")?;
+        let ExposureTable { nominal_s, min_s, max_s, .. } = self.exposure;
+        require("exposure.min_s", min_s, "1e-6 to exposure.max_s", |v| v <= max_s)?;
+        self.check_exposure("exposure.nominal_s", Some(nominal_s))?;
+        if let DetectionRule::Sigmas { low, high } = self.detection {
+            require("detection.low", low, "0 to detection.high", |v| v <= high)?;
+        }
+        self.target.as_ref().map_or(Ok(()), TargetTable::check)?;
+        let mut ids: Vec<&str> = Vec::new();
+        for (i, requirement) in self.requirements.iter().enumerate() {
+            let at = format!("requirements[{i}]");
+            if requirement.id.trim().is_empty() || ids.contains(&requirement.id.as_str()) {
+                let value = format!("`{}`", requirement.id);
+                return Err(OutOfRange::new(format!("{at}.id"), value, "a name that no other has"));
+            }
+            ids.push(&requirement.id);
+            self.check_demand(requirement, &at)?;
+        }
+        Ok(())
+    }
+
+    fn check_demand(&self, requirement: &Requirement, at: &str) -> Result<(), OutOfRange> {
+        match requirement.demand {
+            Demand::Stars { exposure_s, .. } | Demand::LimitingMagnitude { exposure_s, .. } => {
+                self.check_exposure(&format!("{at}.demand.exposure_s"), exposure_s)?;
+            }
+            Demand::TargetDetected { from_km, to_km, exposure_s, .. } => {
+                self.check_ranges(at, from_km, to_km)?;
+                self.check_exposure(&format!("{at}.demand.exposure_s"), exposure_s)?;
+            }
+            Demand::ExposureWindow { from_km, to_km, .. } => self.check_ranges(at, from_km, to_km)?,
+        }
+        let Some(Find { parameter, from, to, want: _ }) = requirement.find else { return Ok(()) };
+        let path = |field: &str| format!("{at}.find.{field}");
+        let (limit, expected) = match parameter {
+            Parameter::ExposureS => ([1e-6, 1000.0], "1e-6 to 1000 s"),
+            Parameter::ApertureDiameterMm => ([0.01, 10_000.0], "0.01 to 10000 mm"),
+            Parameter::FocalLengthMm => ([0.01, 1e6], "0.01 to 1e6 mm"),
+        };
+        require(path("from"), from, expected, |v| (limit[0]..=limit[1]).contains(&v))?;
+        require(path("to"), to, "more than `from`, within the parameter's range", |v| {
+            v > from && v <= limit[1]
+        })?;
+        let by_exposure = parameter == Parameter::ExposureS;
+        if by_exposure && matches!(requirement.demand, Demand::ExposureWindow { .. }) {
+            let expected = "another one: the window is one of exposures";
+            return Err(OutOfRange::new(path("parameter"), "\"exposure_s\"", expected));
+        }
+        Ok(())
+    }
+
+    fn check_exposure(&self, path: &str, exposure_s: Option<f64>) -> Result<(), OutOfRange> {
+        let ExposureTable { min_s, max_s, .. } = self.exposure;
+        exposure_s.map_or(Ok(()), |exposure_s| {
+            require(path, exposure_s, "exposure.min_s to exposure.max_s", |v| (min_s..=max_s).contains(&v))
+        })
+    }
+
+    fn check_ranges(&self, at: &str, from_km: f64, to_km: f64) -> Result<(), OutOfRange> {
+        if self.target.is_none() {
+            let expected = "the table [target] in the file";
+            return Err(OutOfRange::new(format!("{at}.demand.kind"), "about a target", expected));
+        }
+        require(format!("{at}.demand.to_km"), to_km, "demand.from_km to 1e5", |v| v >= from_km)
+    }
+}
+
+impl TargetTable {
+    fn check(&self) -> Result<(), OutOfRange> {
+        let [near, far] = self.ranges_km;
+        require("target.ranges_km[1]", far, "a second number beyond the first, to 1e5", |v| v > near)?;
+        match &self.light {
+            TargetLight::Phases { phases_deg, .. } if !phases_deg.is_sorted_by(|a, b| a < b) => {
+                Err(OutOfRange::new("target.light.phases_deg", "not growing", "growing angles"))
+            }
+            TargetLight::Phases { .. } | TargetLight::Orbit { .. } => Ok(()),
+        }
+    }
+}

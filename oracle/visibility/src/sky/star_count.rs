@@ -1,0 +1,140 @@
+//! How many stars are detected at one exposure, boresight by boresight.
+
+use rayon::prelude::*;
+
+use crate::camera::CameraModel;
+use crate::law::detection::{DetectionCurve, background_e};
+use crate::law::pixel::readout_e;
+use crate::law::poisson_binomial::at_least;
+use crate::requirement::{DetectionRule, MotionGuidance, MotionTable, Over};
+use crate::sky::{Field, Sky};
+
+/// Chances below this are left out of sums over stars.
+const LEAST_CHANCE: f64 = 1e-9;
+/// Step from one level of the background to the next, in standard deviations of an empty pixel: a chance that is normal in the
+/// background is then interpolated to 0.002.
+const LEVEL_STEP: f64 = 0.25;
+/// Most levels; beyond, as near the Sun, they are farther apart.
+const MOST_LEVELS: usize = 24;
+
+/// Detection curves of one exposure at several levels of the background.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curves {
+    ln_exposure: f64,
+    levels_e_per_s: Vec<f64>,
+    curves: Vec<DetectionCurve>,
+}
+
+/// What is detected at one boresight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// Stars, expected number.
+    pub expected: f64,
+    /// P(N ≥ n_min).
+    pub chance: f64,
+}
+
+impl Curves {
+    /// The curves of stars for backgrounds from `low_e_per_s` to `high_e_per_s`.
+    pub fn new(
+        camera: &CameraModel,
+        rule: &DetectionRule,
+        motion: &MotionTable,
+        exposure_s: f64,
+        [low_e_per_s, high_e_per_s]: [f64; 2],
+    ) -> Self {
+        let trail_px = star_trail_px(camera, motion, exposure_s);
+        let read_e = readout_e(&camera.config.sensor);
+        let variance =
+            |light_e_per_s| background_e(camera, exposure_s, light_e_per_s) + read_e * read_e + 1.0;
+        let ratio = variance(high_e_per_s) / variance(low_e_per_s);
+        let growth = LEVEL_STEP / variance(low_e_per_s).sqrt();
+        let steps = ((libm::log(ratio.max(1.0)) / growth).ceil() as usize).min(MOST_LEVELS - 1);
+        let levels_e_per_s: Vec<f64> = (0..=steps)
+            .map(|i| {
+                let grown = variance(low_e_per_s) * libm::pow(ratio, i as f64 / steps.max(1) as f64);
+                low_e_per_s + (grown - variance(low_e_per_s)) / exposure_s
+            })
+            .collect();
+        let curve = |level: &f64| DetectionCurve::new(camera, rule, trail_px, exposure_s, *level);
+        let curves = levels_e_per_s.par_iter().map(curve).collect();
+        Self { ln_exposure: libm::log(exposure_s), levels_e_per_s, curves }
+    }
+
+    /// Those of a sky's boresights that count.
+    pub fn of_sky(
+        camera: &CameraModel,
+        rule: &DetectionRule,
+        motion: &MotionTable,
+        exposure_s: f64,
+        sky: &Sky,
+    ) -> Self {
+        let nothing = [f64::INFINITY, 0.0_f64];
+        let [low, high] = sky.counted().fold(nothing, |[low, high], field| {
+            [low.min(field.background_e_per_s), high.max(field.background_e_per_s)]
+        });
+        Self::new(camera, rule, motion, exposure_s, [low.min(high), high])
+    }
+
+    /// The chance that a star of exp(`ln_e_per_s`) electrons a second is detected over a background.
+    pub fn chance(&self, ln_e_per_s: f64, background_e_per_s: f64) -> f64 {
+        let (below, part) = self.place(background_e_per_s);
+        self.between(below, part, ln_e_per_s + self.ln_exposure)
+    }
+
+    /// What is detected of the stars of a field.
+    pub fn seen(&self, field: &Field, n_min: usize, law: &mut Vec<f64>) -> Seen {
+        let (below, part) = self.place(field.background_e_per_s);
+        let mut expected = 0.0;
+        let chances =
+            field.stars.iter().map(|star| self.between(below, part, star.ln_e_per_s + self.ln_exposure));
+        let chances = chances.take_while(|p| *p > LEAST_CHANCE).inspect(|p| expected += p);
+        let chance = at_least(n_min, chances, law);
+        Seen { expected, chance }
+    }
+
+    /// What is detected at each boresight of the sky that counts, in their order.
+    pub fn seen_over(&self, sky: &Sky, n_min: usize) -> Vec<Seen> {
+        let counted: Vec<&Field> = sky.counted().collect();
+        counted.par_iter().map_init(Vec::new, |law, field| self.seen(field, n_min, law)).collect()
+    }
+
+    fn between(&self, below: usize, part: f64, ln_electrons: f64) -> f64 {
+        let low = self.curves[below].at_ln(ln_electrons);
+        match self.curves.get(below + 1).filter(|_| part > 0.0) {
+            Some(above) => low + part * (above.at_ln(ln_electrons) - low),
+            None => low,
+        }
+    }
+
+    fn place(&self, background_e_per_s: f64) -> (usize, f64) {
+        let levels = &self.levels_e_per_s;
+        let above = levels.partition_point(|level| *level <= background_e_per_s);
+        match (above.checked_sub(1), levels.get(above)) {
+            (None, _) => (0, 0.0),
+            (Some(below), None) => (below, 0.0),
+            (Some(below), Some(high)) => {
+                (below, (background_e_per_s - levels[below]) / (high - levels[below]))
+            }
+        }
+    }
+}
+
+/// How far stars are smeared in an exposure, px.
+pub fn star_trail_px(camera: &CameraModel, motion: &MotionTable, exposure_s: f64) -> f64 {
+    match motion.guidance {
+        MotionGuidance::LocalOrbital => camera.trail_px(motion, exposure_s),
+        MotionGuidance::Inertial => 0.0,
+    }
+}
+
+/// The probability over a sky: the mean, or the smallest; 0 where no boresight counts.
+pub fn over_sky(seen: &[Seen], over: Over) -> f64 {
+    if seen.is_empty() {
+        return 0.0;
+    }
+    match over {
+        Over::Sky => seen.iter().map(|seen| seen.chance).sum::<f64>() / seen.len() as f64,
+        Over::EveryPointing => seen.iter().map(|seen| seen.chance).fold(1.0, f64::min),
+    }
+}
