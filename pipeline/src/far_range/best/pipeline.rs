@@ -379,10 +379,11 @@ impl BestPipeline {
         let mut matched = matches_by_offset(&candidates, &expected, sigma_px, sigma_roll);
         let mut fits: Vec<Option<Option<FittedSource>>> = vec![None; candidates.len()];
         let mut error = prior;
+        let (mut measured, mut of_match) = (Vec::new(), Vec::new());
         // Once with the stars of the common offset, once with all that are where they then must be.
         for _ in 0..2 {
-            let mut measured = Vec::new();
-            let mut of_match = Vec::new();
+            measured.clear();
+            of_match.clear();
             matched.sort_by(|a, b| candidates[b.0].flux_e.total_cmp(&candidates[a.0].flux_e).then(a.cmp(b)));
             for &(c, s) in &matched {
                 if measured.len() >= self.config.best.max_stars as usize || is_blended(&expected, s) {
@@ -405,6 +406,8 @@ impl BestPipeline {
                 .map(|(pair, _)| *pair)
                 .collect();
             matched.retain(|pair| !dropped.contains(pair));
+            measured = retained(measured, &solved.used);
+            of_match = retained(of_match, &solved.used);
             error = solved.error;
             camera_from_icrs = of(error.mean);
             for star in &mut expected {
@@ -434,6 +437,14 @@ impl BestPipeline {
                 star_of[order[c]] = Some(expected[s].star.id);
                 n_stars += 1;
             }
+        }
+        let is_star: Vec<bool> =
+            of_match.iter().map(|&(c, s)| star_of[order[c]] == Some(expected[s].star.id)).collect();
+        if is_star.contains(&false) {
+            // A star that is not where its own attitude has it gave no attitude.
+            let measured = retained(measured, &is_star);
+            error = solve_attitude(&measured, &prior, of, &self.model).map_or(prior, |solved| solved.error);
+            camera_from_icrs = of(error.mean);
         }
         if overrides.camera_from_icrs.is_none() {
             self.mounting.update(&prior, &error);
@@ -648,6 +659,17 @@ impl BestPipeline {
         Some(target.radius_m / range_m)
     }
 
+    /// Error of the centroid by the structure of the body, px: a body of half the size a with a skewness of 1 shifts what pixels at three widths from the
+    /// centre give by (3² − 3) μ₃/(6 σ²), with its third moment μ₃ = (a/√3)³ (Gram–Charlier series of the image).
+    fn structure_px(&self, flux_e: f64, exposure_s: f64) -> f64 {
+        let Some(radius) = self.angular_radius(flux_e, exposure_s) else { return 0.0 };
+        let (fx, fy) = self.model.focal_px();
+        let deviation_px = radius * fx.max(fy) / 3.0_f64.sqrt();
+        let sigma_px = self.psf.image([0.0; 2]).sigma_px;
+        // A body larger than the image of a point is resolved: its structure is no skewness of a point any more.
+        (deviation_px * deviation_px * deviation_px / (sigma_px * sigma_px)).min(deviation_px)
+    }
+
     /// Standard deviation of the logarithm of the width of the target's image: a uniform body of half the size a widens a Gaussian of width σ by
     /// a²/(6 σ²).
     fn body_log_width(&self, flux_e: f64, exposure_s: f64) -> f64 {
@@ -767,7 +789,9 @@ impl BestPipeline {
         let line_of_sight = self.direction(position, attitude);
         let centroid = match (given, fit) {
             (None, Some(fit)) => {
-                let floor = self.config.best.target_floor_px * self.config.best.target_floor_px;
+                let structure_px = self.structure_px(fit.image.flux_e, exposure_s);
+                let floor = self.config.best.target_floor_px * self.config.best.target_floor_px
+                    + structure_px * structure_px;
                 let misfit = fit.image.misfit().max(1.0);
                 let [xx, xy, yy] = fit.image.covariance_px2.map(|element| misfit * element);
                 Some(Matrix2::new(xx + floor, xy, xy, yy + floor))
@@ -818,6 +842,11 @@ const UNKNOWN_ZERO_MAGNITUDE: f64 = 1.5e6;
 /// Distance of another listed star within which an image is that of both, px, and the part of the flux from which on it disturbs.
 const BLEND_PX: f64 = 5.0;
 const BLEND_FRACTION: f64 = 0.02;
+
+/// The entries whose flag is set.
+fn retained<T>(entries: Vec<T>, flags: &[bool]) -> Vec<T> {
+    entries.into_iter().zip(flags).filter(|(_, flag)| **flag).map(|(entry, _)| entry).collect()
+}
 
 /// Whether another listed star shines into the image of star `s`.
 fn is_blended(stars: &[ExpectedStar], s: usize) -> bool {
