@@ -216,12 +216,6 @@ struct Evaluation {
     equations: NormalEquations,
 }
 
-/// Which parameters are estimated: their places among all, in order.
-struct Estimated {
-    places: [usize; MAX_PARAMETERS],
-    count: usize,
-}
-
 impl ImageFitter {
     /// Fits `model` to the pixels of a window of `columns` × `rows`; `None` with too few pixels, or where no maximum is found within
     /// eight pixels of the window.
@@ -233,8 +227,9 @@ impl ImageFitter {
         model: &ImageModel<'_>,
     ) -> Option<FittedImage> {
         let priors = model.priors();
-        let estimated = Estimated::of(&priors, OWN_PARAMETERS + model.neighbours.len());
-        let n = estimated.count;
+        // Fixed parameters are the last ones.
+        let parameters = OWN_PARAMETERS + model.neighbours.len();
+        let n = priors.iter().take(parameters).position(|prior| prior.variance <= 0.0).unwrap_or(parameters);
         if pixels.len() < n.min(4) {
             return None;
         }
@@ -248,7 +243,7 @@ impl ImageFitter {
             *value = prior.mean;
         }
         self.weights.clear();
-        let mut here = self.evaluate(pixels, noise, model, &priors, &estimated, &at);
+        let mut here = self.evaluate(pixels, noise, model, &priors, n, &at);
         std::mem::swap(&mut self.weights, &mut self.next_weights);
         let mut damping = FIRST_DAMPING;
         for _ in 0..MAX_STEPS {
@@ -257,8 +252,8 @@ impl ImageFitter {
             if decrement < DECREMENT && damping <= UNDAMPED {
                 break;
             }
-            let next = estimated.moved(&at, &step);
-            let there = self.evaluate(pixels, noise, model, &priors, &estimated, &next);
+            let next = moved(&at, &step, n);
+            let there = self.evaluate(pixels, noise, model, &priors, n, &next);
             if there.objective <= here.objective {
                 at = next;
                 here = Evaluation { objective: there.chi_squared + there.prior_part, ..there };
@@ -271,12 +266,11 @@ impl ImageFitter {
                 }
             }
         }
-        let (x, y) = (estimated.place_of(X)?, estimated.place_of(Y)?);
-        let covariance_px2 = here.equations.covariance(x, y)?;
-        let flux_sigma_e = match estimated.place_of(FLUX) {
-            Some(flux) => here.equations.covariance(flux, flux)?[0].sqrt(),
-            None => 0.0,
-        };
+        if n <= FLUX {
+            return None;
+        }
+        let covariance_px2 = here.equations.covariance(X, Y)?;
+        let flux_sigma_e = here.equations.covariance(FLUX, FLUX)?[0].sqrt();
         let inside = |v: f64, n: usize| v >= -0.5 - BEYOND_PX && v <= n as f64 - 0.5 + BEYOND_PX;
         let is_sound = inside(at[X], columns)
             && inside(at[Y], rows)
@@ -299,8 +293,16 @@ impl ImageFitter {
     fn draw_neighbours(&mut self, pixels: &[Pixel], model: &ImageModel<'_>) {
         self.neighbours.clear();
         for neighbour in model.neighbours {
+            let PointImage { sigma_px, halo_sigma_px, halo_fraction, trail_px } = neighbour.image;
+            for (axis, centre) in [neighbour.x_px, neighbour.y_px].into_iter().enumerate() {
+                fill(&mut self.core[axis], centre, smeared(sigma_px, trail_px[axis]));
+                fill(&mut self.halo[axis], centre, smeared(halo_sigma_px, trail_px[axis]));
+            }
+            let (core, halo) = (&self.core, &self.halo);
             self.neighbours.extend(pixels.iter().map(|pixel| {
-                neighbour.image.share(pixel.column as f64 - neighbour.x_px, pixel.row as f64 - neighbour.y_px)
+                let of =
+                    |shares: &[Vec<Share>; 2]| shares[0][pixel.column].value * shares[1][pixel.row].value;
+                (1.0 - halo_fraction) * of(core) + halo_fraction * of(halo)
             }));
         }
     }
@@ -311,12 +313,12 @@ impl ImageFitter {
         noise: PixelNoise,
         model: &ImageModel<'_>,
         priors: &[Prior; MAX_PARAMETERS],
-        estimated: &Estimated,
+        n: usize,
         at: &Vector,
     ) -> Evaluation {
         let sigma_px = model.image.sigma_px * libm::exp(at[LOG_WIDTH]);
         let sigmas_px = [sigma_px, sigma_px * libm::exp(at[ELONGATION])];
-        let has_halo = at[HALO] > 0.0 || estimated.places[..estimated.count].contains(&HALO);
+        let has_halo = at[HALO] > 0.0 || n > HALO;
         for axis in [0, 1] {
             let (centre, trail_px) = (at[axis], model.image.trail_px[axis]);
             fill(&mut self.core[axis], centre, smeared(sigmas_px[axis], trail_px));
@@ -328,7 +330,7 @@ impl ImageFitter {
             objective: 0.0,
             prior_part: 0.0,
             chi_squared: 0.0,
-            equations: NormalEquations::new(estimated.count),
+            equations: NormalEquations::new(n),
         };
         let (flux_e, halo) = (at[FLUX], at[HALO]);
         let mut by: Vector = [0.0; MAX_PARAMETERS];
@@ -361,16 +363,11 @@ impl ImageFitter {
             got.chi_squared += squared;
             got.objective += residual * residual * self.weights.get(i).copied().unwrap_or(1.0 / variance);
             self.next_weights.push(1.0 / variance);
-            let mut chosen: Vector = [0.0; MAX_PARAMETERS];
-            for (chosen, &place) in chosen.iter_mut().zip(&estimated.places[..estimated.count]) {
-                *chosen = by[place];
-            }
-            got.equations.add(residual, &chosen, 1.0 / variance);
+            got.equations.add(residual, &by, 1.0 / variance);
         }
-        for (i, &place) in estimated.places[..estimated.count].iter().enumerate() {
-            let Prior { mean, variance } = priors[place];
+        for (i, Prior { mean, variance }) in priors.iter().take(n).copied().enumerate() {
             if variance.is_finite() {
-                let residual = mean - at[place];
+                let residual = mean - at[i];
                 got.prior_part += residual * residual / variance;
                 got.equations.add_prior(i, residual, variance);
             }
@@ -397,40 +394,22 @@ impl ImageModel<'_> {
     }
 }
 
-impl Estimated {
-    fn of(priors: &[Prior; MAX_PARAMETERS], parameters: usize) -> Self {
-        let mut estimated = Self { places: [0; MAX_PARAMETERS], count: 0 };
-        for (place, prior) in priors.iter().enumerate().take(parameters) {
-            if prior.variance > 0.0 {
-                estimated.places[estimated.count] = place;
-                estimated.count += 1;
-            }
-        }
-        estimated
+/// The first `n` parameters one step farther, no farther than a step may go.
+fn moved(at: &Vector, step: &Vector, n: usize) -> Vector {
+    let longest_of = |parameter: usize| match parameter {
+        X | Y => LONGEST_STEP_PX,
+        LOG_WIDTH | ELONGATION => LARGEST_LOG_STEP,
+        _ => f64::INFINITY,
+    };
+    let steps = || step.iter().take(n).enumerate();
+    let shrink = steps().map(|(i, step)| step.abs() / longest_of(i)).fold(1.0, f64::max);
+    let mut next = *at;
+    for (i, step) in steps() {
+        next[i] += step / shrink;
     }
-
-    fn place_of(&self, parameter: usize) -> Option<usize> {
-        self.places[..self.count].iter().position(|&place| place == parameter)
-    }
-
-    /// The parameters one step farther, no farther than a step may go.
-    fn moved(&self, at: &Vector, step: &Vector) -> Vector {
-        let longest_of = |place: usize| match place {
-            X | Y => LONGEST_STEP_PX,
-            LOG_WIDTH | ELONGATION => LARGEST_LOG_STEP,
-            _ => f64::INFINITY,
-        };
-        let places = &self.places[..self.count];
-        let shrink =
-            places.iter().zip(step).map(|(&place, step)| step.abs() / longest_of(place)).fold(1.0, f64::max);
-        let mut next = *at;
-        for (&place, step) in places.iter().zip(step) {
-            next[place] += step / shrink;
-        }
-        next[LOG_WIDTH] = next[LOG_WIDTH].clamp(libm::log(WIDTHS.0), libm::log(WIDTHS.1));
-        next[HALO] = next[HALO].clamp(0.0, 0.9);
-        next
-    }
+    next[LOG_WIDTH] = next[LOG_WIDTH].clamp(libm::log(WIDTHS.0), libm::log(WIDTHS.1));
+    next[HALO] = next[HALO].clamp(0.0, 0.9);
+    next
 }
 
 /// Width of a Gaussian smeared over a trail: the variance of a uniform distribution is added.
@@ -448,6 +427,9 @@ fn fill(shares: &mut [Share], centre: f64, sigma: f64) {
     }
 }
 
+/// Distance in widths beyond which a Gaussian has nothing left, to 1e-9 of it.
+const FARTHEST: f64 = 6.0;
+
 /// Distance of an edge in widths, cumulative distribution and density there.
 struct Edge {
     t: f64,
@@ -458,6 +440,9 @@ struct Edge {
 impl Edge {
     fn at(offset: f64, sigma: f64) -> Self {
         let t = offset / sigma;
+        if t.abs() > FARTHEST {
+            return Self { t, cumulative: 0.5_f64.copysign(t), density: 0.0 };
+        }
         Self {
             t,
             cumulative: 0.5 * libm::erf(t * std::f64::consts::FRAC_1_SQRT_2),

@@ -1,7 +1,10 @@
 //! Small systems of normal equations.
 
 /// Most parameters of a fit.
-pub(super) const MAX_PARAMETERS: usize = 11;
+pub(super) const MAX_PARAMETERS: usize = 12;
+
+/// Parameters of most fits.
+const FEW: usize = 8;
 
 pub(super) type Vector = [f64; MAX_PARAMETERS];
 pub(super) type Matrix = [[f64; MAX_PARAMETERS]; MAX_PARAMETERS];
@@ -26,11 +29,21 @@ impl NormalEquations {
     /// Adds one datum: its residual, its derivatives by the parameters and its weight, the inverse of its variance.
     #[inline(always)]
     pub(super) fn add(&mut self, residual: f64, by: &Vector, weight: f64) {
-        for i in 0..self.n {
-            let weighted = weight * by[i];
-            self.score[i] += weighted * residual;
-            for j in 0..=i {
-                self.information[i][j] += weighted * by[j];
+        // Whole rows of a fixed length, the half above the diagonal included: the compiler keeps them in registers.
+        if self.n <= FEW {
+            self.add_first::<FEW>(residual, by, weight);
+        } else {
+            self.add_first::<MAX_PARAMETERS>(residual, by, weight);
+        }
+    }
+
+    #[inline(always)]
+    fn add_first<const N: usize>(&mut self, residual: f64, by: &Vector, weight: f64) {
+        for ((row, score), by_row) in self.information.iter_mut().zip(&mut self.score).zip(by).take(N) {
+            let weighted = weight * by_row;
+            *score += weighted * residual;
+            for (element, by) in row.iter_mut().zip(by).take(N) {
+                *element += weighted * by;
             }
         }
     }

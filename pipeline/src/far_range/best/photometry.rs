@@ -275,7 +275,7 @@ impl SourceFitter {
             neighbours,
         };
         let mut best = self.fitter.fit(&self.pixels, window.size(), noise, &model);
-        if start.is_cut && start.is_saturated {
+        if start.is_cut && start.is_saturated && best.is_none_or(|best| best.misfit() > CUT_MISFIT) {
             let rows = self.pixels.iter().map(|pixel| pixel.row);
             let (first, last) = (rows.clone().min()? as f64, rows.max()? as f64);
             for y in [first - 0.5, 0.5 * (y + last), last, last + 0.7, last + 2.0, last + 4.0] {
@@ -403,6 +403,9 @@ impl SourceFitter {
         }
     }
 }
+
+/// Misfit of the image of a cut cluster from which on other positions are tried.
+const CUT_MISFIT: f64 = 1.4;
 
 /// Misfit from which on a wider image is tried.
 const EXTENDED_MISFIT: f64 = 4.0;
