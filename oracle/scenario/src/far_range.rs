@@ -1,14 +1,16 @@
 //! The far-range world: star fields with a distant spacecraft.
 
 use clap::ValueEnum;
-use contract::{AttitudeKnowledge, Calibration, Camera, OutOfRange, PsfCalibration, Readout, bounds};
+use contract::{
+    AttitudeKnowledge, Calibration, Camera, OutOfRange, PsfCalibration, Readout, TargetCalibration, bounds,
+};
 use pipeline::far_range::FarRangeConfig;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sim::Simulation;
 use sim::catalog::{CatalogConfig, CatalogSource};
 use sim::onboard::{RoiConfig, ShutterConfig};
-use sim::optics::{OpticsConfig, PsfConfig, Radiometry, RadiometryConfig};
+use sim::optics::{OpticsConfig, PsfConfig, Radiometry, RadiometryConfig, SUN_V_MAG_AT_1_AU};
 use sim::scene::{BackgroundConfig, TargetConfig};
 use sim::sensor::{SensorConfig, Switch};
 use sim::truth::{AttitudeConfig, GroupConfig, KnowledgeConfig, MountingConfig, OrbitConfig};
@@ -155,6 +157,9 @@ pub struct StarListConfig {
 /// Standard deviation of the nominal mounting about each axis, arcsec: a calibration on ground and the launch after it.
 const MOUNTING_SIGMA_ARCSEC: f64 = 180.0;
 
+/// Reflectance of a spacecraft of which nothing else is known.
+const GREY_REFLECTANCE: f64 = 0.25;
+
 /// Colour B − V of the Sun, mag (Ramírez et al. 2012, ApJ 752, 5: 0.653).
 const SUN_B_MINUS_V: f64 = 0.653;
 
@@ -222,7 +227,7 @@ impl FarRangeScenario {
             zero_magnitude_e_per_s: Radiometry::new(&self.radiometry)
                 .ok()
                 .map(|radiometry| radiometry.zero_point_e_per_s(Some(SUN_B_MINUS_V), None)),
-            target: None,
+            target: self.target_calibration(),
             attitude: Some(AttitudeKnowledge {
                 white_arcsec: knowledge.noise_arcsec,
                 slow_arcsec: knowledge.drift.rms_arcsec,
@@ -233,6 +238,31 @@ impl FarRangeScenario {
             }),
         };
         derived.replaced_by(self.calibration)
+    }
+
+    /// Size and brightness of the target to a factor of two: a Lambert sphere of its size at a phase of 90° (of plates with the reflectance
+    /// [`GREY_REFLECTANCE`]).
+    fn target_calibration(&self) -> Option<TargetCalibration> {
+        let radiometry = Radiometry::new(&self.radiometry).ok()?;
+        let sunlit = |radius_m: f64, reflectance: f64| {
+            // 2/3 of the reflectance at full phase, 1/π of that at 90°.
+            let share =
+                2.0 / 3.0 * reflectance / std::f64::consts::PI * (radius_m * 1e-3) * (radius_m * 1e-3);
+            let e_per_s_at_1_km = radiometry.sunlit(SUN_V_MAG_AT_1_AU) * share;
+            TargetCalibration { radius_m, e_per_s_at_1_km: e_per_s_at_1_km.clamp(1e-3, 1e18) }
+        };
+        Some(match &self.target {
+            TargetConfig::Beacon { magnitude_at_1_km } => TargetCalibration {
+                radius_m: 0.0,
+                e_per_s_at_1_km: radiometry.sunlit(*magnitude_at_1_km).clamp(1e-3, 1e18),
+            },
+            TargetConfig::LambertSphere { radius_m, albedo } => sunlit(*radius_m, *albedo),
+            TargetConfig::Plates { boxes, plates, .. } => {
+                let sides = boxes.iter().flat_map(|cuboid| cuboid.size_m);
+                let sides = sides.chain(plates.iter().flat_map(|plate| [plate.width_m, plate.height_m]));
+                sunlit(0.5 * sides.fold(0.0, f64::max), GREY_REFLECTANCE)
+            }
+        })
     }
 
     /// How the detector's electrons become digital numbers, as its calibration tells a pipeline.

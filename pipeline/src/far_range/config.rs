@@ -52,9 +52,9 @@ pub struct FarRangeConfig {
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
     /// Attitude from prior and stars, hypotheses about the target, fitted images (docs/best-mode.md).
+    #[default]
     Best,
     /// The paper's method.
-    #[default]
     Paper,
 }
 
