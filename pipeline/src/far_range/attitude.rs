@@ -16,49 +16,13 @@ pub struct AttitudeConfig {
     /// 0 takes each solution as it is. (The paper's text says the opposite of its equation.)
     #[schemars(range(min = 0), extend("exclusiveMaximum" = 1))]
     pub filter_lambda: f64,
-    /// The weights ω of the stars in Eq. 14.
-    pub weights: StarWeights,
-    /// Error of a star's place that its fitted centre does not know of (star list, distortion, what the correction of
-    /// aberration leaves), px, 0 to 10: added in square to σ of inverse-variance weights, so that no bright star takes all.
-    #[schemars(range(min = 0, max = 10))]
-    pub weight_floor_px: f64,
-}
-
-/// How much a star counts in Eq. 14.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum StarWeights {
-    /// All alike, as in the paper.
-    #[default]
-    Equal,
-    /// ω = 1/σ², σ that of the fitted centre; needs fitted centres.
-    InverseVariance,
 }
 
 impl Default for AttitudeConfig {
     fn default() -> Self {
-        Self { min_stars: 10, filter_lambda: 0.9, weights: StarWeights::Equal, weight_floor_px: 0.02 }
+        Self { min_stars: 10, filter_lambda: 0.9 }
     }
 }
-
-impl AttitudeConfig {
-    /// The weight ω of a star whose centre has the standard deviation `sigma_px`; `None` for a brightness centre.
-    pub(super) fn weight(&self, sigma_px: Option<f64>) -> f64 {
-        match self.weights {
-            StarWeights::Equal => 1.0,
-            StarWeights::InverseVariance => {
-                let sigma_px = sigma_px.unwrap_or(BRIGHTNESS_CENTRE_SIGMA_PX).max(LEAST_SIGMA_PX);
-                1.0 / (sigma_px * sigma_px + self.weight_floor_px * self.weight_floor_px)
-            }
-        }
-    }
-}
-
-/// Standard deviation that a brightness centre among fitted ones is given, px: known no better than its pixel, 1/√12.
-const BRIGHTNESS_CENTRE_SIGMA_PX: f64 = 0.29;
-
-/// No centre is known better than this, px; keeps weights finite.
-const LEAST_SIGMA_PX: f64 = 1e-4;
 
 /// A star as seen by the camera and as listed, with its weight ω, above 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -181,29 +145,12 @@ mod tests {
             ("min_stars", AttitudeConfig { min_stars: 1, ..good.clone() }),
             ("filter_lambda", AttitudeConfig { filter_lambda: 1.0, ..good.clone() }),
             ("filter_lambda", AttitudeConfig { filter_lambda: -0.1, ..good.clone() }),
-            ("weight_floor_px", AttitudeConfig { weight_floor_px: f64::NAN, ..good.clone() }),
         ] {
             assert!(
                 contract::bounds::check(&bad, "attitude").unwrap_err().to_string().contains(field),
                 "{field}"
             );
         }
-    }
-
-    /// ω = 1/(σ² + floor²): 1/(0.09 + 0.16), with 0.29 px for a brightness centre and 1e-4 px for the best one.
-    #[test]
-    fn a_star_weighs_as_its_centre_is_known() {
-        let config = |weights, weight_floor_px| AttitudeConfig {
-            weights,
-            weight_floor_px,
-            ..AttitudeConfig::default()
-        };
-        let weighing = config(StarWeights::InverseVariance, 0.4);
-        assert!((weighing.weight(Some(0.3)) - 4.0).abs() < 1e-12);
-        assert!((weighing.weight(None) - 1.0 / (0.0841 + 0.16)).abs() < 1e-12);
-        let without_floor = config(StarWeights::InverseVariance, 0.0);
-        assert!((without_floor.weight(Some(1e-9)) - 1e8).abs() < 1e-3);
-        assert_eq!(config(StarWeights::Equal, 0.4).weight(Some(0.3)), 1.0);
     }
 
     fn unit_quaternion() -> impl Strategy<Value = [f64; 4]> {

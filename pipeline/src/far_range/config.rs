@@ -4,9 +4,8 @@ use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::attitude::{AttitudeConfig, StarWeights};
+use super::attitude::AttitudeConfig;
 use super::best::BestConfig;
-use super::centroid::CentroidConfig;
 use super::detect::Weights;
 use super::hotspots::HotspotConfig;
 use super::identify::IdentificationConfig;
@@ -25,8 +24,6 @@ pub struct FarRangeConfig {
     pub thresholds: ThresholdConfig,
     /// What weights the pixels of a cluster: `intensity` as in the paper, or `above_background`.
     pub weights: Weights,
-    /// How the centre of a cluster is measured: `brightness` as in the paper, or `fit`.
-    pub centroid: CentroidConfig,
     /// Most clusters kept in a frame, those of the largest weighted size, 1 to 2000. Bounds the time of linking, which
     /// grows with the cube of the clusters that could all be linked with each other.
     #[schemars(range(min = 1, max = 2000))]
@@ -76,7 +73,6 @@ impl Default for FarRangeConfig {
             best: BestConfig::default(),
             thresholds: ThresholdConfig::default(),
             weights: Weights::default(),
-            centroid: CentroidConfig::default(),
             max_clusters: 500,
             identification: IdentificationConfig::default(),
             tracking: TrackingConfig::default(),
@@ -98,12 +94,6 @@ impl FarRangeConfig {
         self.thresholds.check()?;
         self.tracking.check()?;
         self.hotspots.check()?;
-        if self.attitude.weights == StarWeights::InverseVariance
-            && self.centroid == CentroidConfig::Brightness
-        {
-            let expected = "equal, unless centroid.mode is fit: a brightness centre does not know its error";
-            return Err(OutOfRange::new("attitude.weights", "inverse_variance", expected));
-        }
         Ok(())
     }
 
@@ -122,10 +112,9 @@ impl FarRangeConfig {
             let expected = "intensity, with zero_suppression_dn: the background does not arrive";
             return refused("weights", "above_background", expected);
         }
-        if self.centroid != CentroidConfig::Brightness {
-            let expected =
-                "brightness, with zero_suppression_dn: a fit takes the faint pixels of an image too";
-            return refused("centroid.mode", "fit", expected);
+        if self.mode == Mode::Best {
+            let expected = "paper, with zero_suppression_dn: a fit takes the faint pixels of an image too";
+            return refused("mode", "best", expected);
         }
         match self.thresholds {
             ThresholdConfig::Automatic { .. } => {

@@ -23,27 +23,10 @@ pub enum Weights {
 pub(super) struct Blob {
     /// Brightness centre c (Eq. 1).
     pub(super) centre: PixelPoint,
-    /// The fitted centre, if there is one.
-    pub(super) fitted: Option<FittedCentre>,
     /// Weighted size s (Eq. 2), in units of full scale.
     pub(super) size: f64,
     /// Number of pixels.
     pub(super) pixels: u32,
-}
-
-/// A centre and its error.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct FittedCentre {
-    pub(super) position: PixelPoint,
-    /// Standard deviation along either axis, px, the root mean square of both.
-    pub(super) sigma_px: f64,
-}
-
-impl Blob {
-    /// Where directions are taken from: the fitted centre if there is one, or the brightness centre.
-    pub(super) fn measured(&self) -> PixelPoint {
-        self.fitted.map_or(self.centre, |fitted| fitted.position)
-    }
 }
 
 /// Finds clusters. Owns its buffers: a frame of the same size as the last one allocates nothing.
@@ -251,7 +234,6 @@ impl Detector {
         }
         (sum > 0.0).then(|| Blob {
             centre: PixelPoint::new(sum_x / sum, sum_y / sum),
-            fitted: None,
             size: sum / f64::from(full_scale),
             pixels: (self.members.len() - first) as u32,
         })

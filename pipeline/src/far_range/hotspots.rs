@@ -163,7 +163,7 @@ mod tests {
     use super::*;
 
     fn blob(x: f64, y: f64, pixels: u32) -> Blob {
-        Blob { centre: PixelPoint::new(x, y), fitted: None, size: 1.0, pixels }
+        Blob { centre: PixelPoint::new(x, y), size: 1.0, pixels }
     }
 
     fn track(length: u32, speed: f64) -> Track {

@@ -165,7 +165,7 @@ mod tests {
     }
 
     fn blob(x: f64, y: f64) -> Blob {
-        Blob { centre: PixelPoint::new(x, y), fitted: None, size: 1.0, pixels: 1 }
+        Blob { centre: PixelPoint::new(x, y), size: 1.0, pixels: 1 }
     }
 
     fn predicted(id: u32, x: f64, y: f64, magnitude: f64) -> PredictedStar {

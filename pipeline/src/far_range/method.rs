@@ -22,9 +22,8 @@ impl FarRangePipeline {
     /// A pipeline before its first frame.
     ///
     /// # Errors
-    /// Those of [`FarRangeConfig::check`], of the camera's check and of [`contract::Readout::check`];
-    /// [`contract::OutOfRange`] for fitted centres with a camera whose readout is not known, and for thresholds below the zero
-    /// suppression of the camera.
+    /// Those of the checks of configuration, camera, readout and calibration; [`contract::OutOfRange`] for thresholds below the zero suppression
+    /// of the camera, and for the best mode with one.
     pub fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
         Ok(Self(match config.mode {
             Mode::Paper => Method::Paper(Box::new(PaperPipeline::new(config, setup)?)),

@@ -1,15 +1,14 @@
 //! The paper's mode: its steps in order, and what it remembers from frame to frame.
 
 use contract::{
-    AttitudeSource, Body, CameraFrame, Cluster, ContractError, Frame, Icrs, Label, ListedStar, Measurement,
-    NoSolution, OutOfRange, Outcome, Rotation, Setup, Solution, Telemetry,
+    AttitudeSource, Body, CameraFrame, Cluster, Frame, Icrs, Label, ListedStar, Measurement, NoSolution,
+    Outcome, Rotation, Setup, Solution, Telemetry,
 };
 use hifitime::Epoch;
 
 use super::aberration::aberration_correction;
 use super::attitude::{MountingFilter, StarPair, solve_q_method};
 use super::background::BackgroundEstimator;
-use super::centroid::{CentroidConfig, CentroidFitter};
 use super::config::{AberrationConfig, FarRangeConfig};
 use super::detect::{Blob, Detector, Weights, transmitted_pixels};
 use super::hotspots::Hotspots;
@@ -35,8 +34,6 @@ pub(super) struct PaperPipeline {
     previous: Option<Previous>,
     background: BackgroundEstimator,
     detector: Detector,
-    /// Only with fitted centres.
-    fitter: Option<CentroidFitter>,
 }
 
 /// What is remembered of the previous frame.
@@ -53,24 +50,12 @@ impl PaperPipeline {
     /// A pipeline that has seen no frame.
     ///
     /// # Errors
-    /// Those of [`FarRangeConfig::check`], of the camera's check and of [`contract::Readout::check`];
-    /// [`OutOfRange`] for fitted centres with a camera whose readout is not known, and for thresholds below the zero
-    /// suppression of the camera.
+    /// Those of [`FarRangeConfig::check`] and of the camera's check; [`contract::OutOfRange`] for thresholds below the zero suppression of the
+    /// camera.
     pub(super) fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
         config.check()?;
         config.check_suppression(setup.zero_suppression_dn, setup.bit_depth)?;
         let model = CameraModel::new(&setup.camera)?;
-        let fitter = match (&config.centroid, setup.readout) {
-            (CentroidConfig::Brightness, _) => None,
-            (CentroidConfig::Fit { psf_sigma_px }, Some(readout)) => {
-                readout.check().map_err(ContractError::from)?;
-                Some(CentroidFitter::new(*psf_sigma_px, readout))
-            }
-            (CentroidConfig::Fit { .. }, None) => {
-                let expected = "brightness, for a camera whose readout (gain, bias, read noise, saturation) is not known";
-                return Err(OutOfRange::new("centroid.mode", "fit", expected).into());
-            }
-        };
         Ok(Self {
             stars: StarList::new(&setup.stars, config.identification.max_magnitude, &model),
             mounting: MountingFilter::new(setup.camera_from_body, config.attitude.filter_lambda),
@@ -78,7 +63,6 @@ impl PaperPipeline {
             previous: None,
             background: BackgroundEstimator::default(),
             detector: Detector::default(),
-            fitter,
             model,
             config,
         })
@@ -97,11 +81,8 @@ impl PaperPipeline {
             return Err(NoSolution::SaturatedFrame);
         }
         let base_dn = background.filter(|_| above_background).map_or(0.0, |b| b.median_dn);
-        let mut blobs =
+        let blobs =
             self.detector.detect(frame, thresholds, base_dn, self.config.max_clusters as usize).to_vec();
-        if let Some(fitter) = &mut self.fitter {
-            fitter.fit(frame, &self.detector, &mut blobs);
-        }
         if blobs.is_empty() { Err(NoSolution::EmptyFrame) } else { Ok(blobs) }
     }
 
@@ -119,9 +100,9 @@ impl PaperPipeline {
             .iter()
             .filter_map(|(blob, star)| {
                 Some(StarPair {
-                    camera: self.model.back_project(blob.measured())?,
+                    camera: self.model.back_project(blob.centre)?,
                     icrs: overrides.apparent.map_or(star.direction, |apparent| apparent(star)),
-                    weight: self.config.attitude.weight(blob.fitted.map(|fitted| fitted.sigma_px)),
+                    weight: 1.0,
                 })
             })
             .collect();
@@ -258,7 +239,7 @@ impl PaperPipeline {
         if let Some(centroid) = overrides.centroid {
             for blob in &mut blobs {
                 if let Some(centre) = centroid(blob.centre) {
-                    *blob = Blob { centre, fitted: None, ..*blob };
+                    *blob = Blob { centre, ..*blob };
                 }
             }
         }
@@ -316,8 +297,8 @@ impl PaperPipeline {
 
         let solution = match target {
             Some(i) => Solution::Detected(Measurement::new(
-                blobs[i].measured(),
-                line_of_sight(blobs[i].measured(), &camera_from_icrs, &self.model),
+                blobs[i].centre,
+                line_of_sight(blobs[i].centre, &camera_from_icrs, &self.model),
             )),
             None if has_previous => Solution::NoSolution(NoSolution::NoTarget),
             None => Solution::NoSolution(NoSolution::NoPreviousFrame),
@@ -327,7 +308,7 @@ impl PaperPipeline {
             .zip(labels)
             .enumerate()
             .map(|(i, (blob, label))| Cluster {
-                position: blob.measured(),
+                position: blob.centre,
                 size: blob.size,
                 pixels: blob.pixels,
                 label: if target == Some(i) { Label::Target } else { label },

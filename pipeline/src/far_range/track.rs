@@ -180,7 +180,7 @@ mod tests {
     use nalgebra::Vector3;
 
     fn blob(x: f64, y: f64, size: f64) -> Blob {
-        Blob { centre: PixelPoint::new(x, y), fitted: None, size, pixels: 1 }
+        Blob { centre: PixelPoint::new(x, y), size, pixels: 1 }
     }
 
     fn track(x: f64, y: f64, is_star: bool) -> Track {

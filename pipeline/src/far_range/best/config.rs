@@ -34,7 +34,7 @@ impl Default for BestConfig {
     fn default() -> Self {
         Self {
             sequence: true,
-            star_floor_px: 0.03,
+            star_floor_px: 0.015,
             target_floor_px: 0.0,
             psf_width_error: 0.05,
             max_stars: 12,

@@ -170,8 +170,8 @@ struct FitWindow {
 }
 
 impl SourceFitter {
-    /// Fits a star, or a candidate as if it were a point; `None` where there is no maximum. The response of pixels counts as known to 3 %, so
-    /// that an error of the point's image spoils no bright star; the halo, a few percent of the flux, counts as background.
+    /// Fits a star, or a candidate as if it were a point; `None` where there is no maximum. The
+    /// halo, a few percent of the flux, counts as background.
     pub(super) fn point(
         &mut self,
         light: FrameLight<'_>,
@@ -201,7 +201,7 @@ impl SourceFitter {
             image,
             neighbours: &[],
         };
-        let noise = light.model.noise(light.model.response.max(0.03));
+        let noise = light.model.noise(light.model.response);
         let fitted = self.fitter.fit(&self.pixels, window.size(), noise, &model)?;
         Some(window.in_frame(fitted))
     }

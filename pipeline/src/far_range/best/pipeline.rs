@@ -110,7 +110,7 @@ const LEAST_BODY_LOG_WIDTH: f64 = 0.001;
 
 /// Distance of the centre of brightness of a sunlit body from its centre, along an axis, over half its size: standard deviation. That of a Lambert
 /// sphere is up to 0.6 at a phase of 90°, that of a plate with the Sun behind the camera 0.
-const BRIGHTNESS_OFFSET: f64 = 0.3;
+const BRIGHTNESS_OFFSET: f64 = 0.35;
 
 /// Odds of a track from which on its target is looked for where no cluster is, and the signal-to-noise ratio that its light must have there.
 const FORCED_LOG_ODDS: f64 = 4.0;
