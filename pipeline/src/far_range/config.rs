@@ -168,19 +168,18 @@ mod tests {
             config.check_suppression(Some(67), 12).map_err(|error| error.to_string())
         };
         let constant = |low: f64, more: &str| {
-            format!(r#"{{"thresholds": {{"mode": "constant", "low": {low}, "high": 0.03}}{more}}}"#)
+            format!(
+                r#"{{"mode": "paper", "thresholds": {{"mode": "constant", "low": {low}, "high": 0.03}}{more}}}"#
+            )
         };
         // Full scale is 4095: 0.0165 is 67.6 DN, a pixel passes from 68 on.
         assert_eq!(checked(&constant(0.0165, "")), Ok(()));
         let expected = "thresholds.low is 0.016, 65 DN, expected zero_suppression_dn or more: below it pixels arrive as 0";
         assert_eq!(checked(&constant(0.016, "")), Err(expected.to_owned()));
         for (json, field) in [
-            ("{}".to_owned(), "thresholds.mode is automatic"),
+            (r#"{"mode": "paper"}"#.to_owned(), "thresholds.mode is automatic"),
             (constant(0.0165, r#", "weights": "above_background""#), "weights is above_background"),
-            (
-                constant(0.0165, r#", "centroid": {"mode": "fit", "psf_sigma_px": 0.8}"#),
-                "centroid.mode is fit",
-            ),
+            ("{}".to_owned(), "mode is best"),
         ] {
             assert!(checked(&json).unwrap_err().starts_with(field), "{json}");
         }

@@ -1,6 +1,6 @@
 //! The correction of aberration on an image of stars that special relativity has moved.
 
-use boresight_pipeline::far_range::{AberrationConfig, FarRangeConfig, FarRangeFactory, Weights};
+use boresight_pipeline::far_range::{AberrationConfig, FarRangeConfig, FarRangeFactory, Mode, Weights};
 use contract::{
     AttitudeSource, CameraFrame, Direction, Frame, Icrs, ListedStar, PipelineFactory, Rotation, Setup,
     Telemetry,
@@ -59,8 +59,12 @@ fn image() -> Vec<u16> {
 
 /// How far the boresight that the pipeline finds is from the true one, arcsec.
 fn error_arcsec(aberration: AberrationConfig) -> f64 {
-    let config =
-        FarRangeConfig { aberration, weights: Weights::AboveBackground, ..FarRangeConfig::default() };
+    let config = FarRangeConfig {
+        mode: Mode::Paper,
+        aberration,
+        weights: Weights::AboveBackground,
+        ..FarRangeConfig::default()
+    };
     let setup = Setup {
         camera: camera(),
         camera_from_body: Rotation::identity(),

@@ -2,8 +2,8 @@
 //! hotspot that stays.
 
 use boresight_pipeline::far_range::{
-    AberrationConfig, AttitudeConfig, CentroidConfig, FarRangeConfig, FarRangeFactory, FarRangePipeline,
-    HotspotConfig, Identity, Overrides, StarWeights, Weights,
+    AberrationConfig, AttitudeConfig, FarRangeConfig, FarRangeFactory, FarRangePipeline, HotspotConfig,
+    Identity, Mode, Overrides, Weights,
 };
 use contract::{
     AttitudeSource, Body, Camera, CameraFrame, Direction, FarRange, Frame, Icrs, Label, ListedStar,
@@ -116,18 +116,15 @@ fn setup() -> Setup {
 const READOUT: Readout =
     Readout { gain_e_per_dn: 10.0, bias_dn: 90.0, read_noise_e: 10.0, saturation_dn: 4095 };
 
-/// Fitted centroids and weighted stars.
+/// The best mode.
 fn best() -> FarRangeConfig {
-    FarRangeConfig {
-        centroid: CentroidConfig::Fit { psf_sigma_px: None },
-        attitude: AttitudeConfig { weights: StarWeights::InverseVariance, ..AttitudeConfig::default() },
-        ..config()
-    }
+    FarRangeConfig { mode: Mode::Best, ..config() }
 }
 
-/// The hotspot is known; the sequence has no aberration.
+/// The paper's mode. The hotspot is known; the sequence has no aberration.
 fn config() -> FarRangeConfig {
     FarRangeConfig {
+        mode: Mode::Paper,
         weights: Weights::AboveBackground,
         hotspots: HotspotConfig::List { pixels: vec![(HOTSPOT.0 as u32, HOTSPOT.1 as u32)] },
         aberration: AberrationConfig::Ignore,
@@ -316,7 +313,7 @@ fn windows_alone_are_enough() {
 #[test]
 fn the_far_range_pipeline_keeps_the_contract() {
     for hotspots in [HotspotConfig::default(), HotspotConfig::Off] {
-        let factory = FarRangeFactory::new(FarRangeConfig { hotspots, ..FarRangeConfig::default() }).unwrap();
+        let factory = FarRangeFactory::new(FarRangeConfig { hotspots, ..config() }).unwrap();
         assert_eq!(conformance::check(&factory, &setup()), Ok(()));
         let distorted = Camera { radial: [2.6e-8, 0.0, 0.0], ..camera() };
         assert_eq!(conformance::check(&factory, &Setup { camera: distorted, ..setup() }), Ok(()));
@@ -354,21 +351,13 @@ fn the_best_mode_keeps_the_contract() {
 }
 
 #[test]
-fn fitted_centres_need_a_readout_and_weights_need_fitted_centres() {
-    let unknown = Setup { readout: None, ..setup() };
-    let error = FarRangePipeline::new(best(), &unknown).unwrap_err().to_string();
-    assert!(
-        error.starts_with("centroid.mode is fit, expected brightness, for a camera whose readout"),
-        "{error}"
-    );
+fn a_calibration_that_cannot_be_is_refused_by_name() {
     let wrong = Setup { readout: Some(Readout { gain_e_per_dn: 0.0, ..READOUT }), ..setup() };
     let error = FarRangePipeline::new(best(), &wrong).unwrap_err().to_string();
     assert_eq!(error, "readout.gain_e_per_dn is 0, expected 0.001 to 1e6");
-    let no_fit = FarRangeConfig { centroid: CentroidConfig::Brightness, ..best() };
-    let error = no_fit.check().unwrap_err().to_string();
-    assert!(error.starts_with("attitude.weights is inverse_variance, expected equal"), "{error}");
-    let narrow = FarRangeConfig { centroid: CentroidConfig::Fit { psf_sigma_px: Some(0.1) }, ..config() };
-    assert_eq!(narrow.check().unwrap_err().to_string(), "centroid.psf_sigma_px is 0.1, expected 0.3 to 10");
+    let calibration = contract::Calibration { full_well_e: Some(0.0), ..Default::default() };
+    let error = FarRangePipeline::new(best(), &Setup { calibration, ..setup() }).unwrap_err().to_string();
+    assert_eq!(error, "calibration.full_well_e is 0, expected 1 to 1e9");
 }
 
 #[test]

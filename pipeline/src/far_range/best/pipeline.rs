@@ -20,7 +20,7 @@ use super::stars::{
 use super::tracks::{TargetCandidate, TrackModel, Tracks};
 use crate::far_range::aberration::apparent_direction;
 use crate::far_range::background::{Background, BackgroundEstimator};
-use crate::far_range::config::FarRangeConfig;
+use crate::far_range::config::{AberrationConfig, FarRangeConfig};
 use crate::far_range::detect::{Blob, Detector, transmitted_pixels};
 use crate::far_range::identify::StarList;
 use crate::far_range::overrides::{Identity, Overrides};
@@ -80,6 +80,8 @@ struct FrameAttitude {
     star_of: Vec<Option<u32>>,
     n_stars: u32,
     expected: Vec<ExpectedStar>,
+    /// Fitted positions of stars, by their clusters.
+    fitted: Vec<(usize, PixelPoint)>,
 }
 
 /// Clusters looked at in the search for stars, the brightest.
@@ -309,8 +311,14 @@ impl BestPipeline {
             None if sources.is_empty() => Solution::NoSolution(NoSolution::EmptyFrame),
             None => Solution::NoSolution(NoSolution::NoTarget),
         };
+        let mut positions: Vec<PixelPoint> = sources.iter().map(|source| source.centre).collect();
+        let targets =
+            cluster_of.iter().zip(&fits).filter_map(|(i, fit)| Some(((*i)?, fit.as_ref()?.position)));
+        for (i, position) in attitude.fitted.iter().copied().chain(targets) {
+            positions[i] = position;
+        }
         let clusters = sources.iter().enumerate().map(|(i, source)| Cluster {
-            position: source.centre,
+            position: positions[i],
             size: source.blob.size,
             pixels: source.blob.pixels,
             label: match attitude.star_of[i] {
@@ -455,7 +463,9 @@ impl BestPipeline {
             1 => AttitudeSource::TooFewStars,
             _ => AttitudeSource::Stars,
         };
-        FrameAttitude { camera_from_icrs, error, source, star_of, n_stars, expected }
+        let fitted =
+            fits.iter().zip(&order).filter_map(|(fit, &i)| Some((i, fit.flatten()?.position))).collect();
+        FrameAttitude { camera_from_icrs, error, source, star_of, n_stars, expected, fitted }
     }
 
     /// The attitude with the identities of clusters given from outside.
@@ -496,7 +506,7 @@ impl BestPipeline {
         self.mounting.update(&prior, &error);
         let n_stars = measured.len() as u32;
         let source = if n_stars >= 2 { AttitudeSource::Stars } else { AttitudeSource::TooFewStars };
-        FrameAttitude { camera_from_icrs, error, source, star_of, n_stars, expected }
+        FrameAttitude { camera_from_icrs, error, source, star_of, n_stars, expected, fitted: Vec::new() }
     }
 
     /// Listed stars where they are expected, by an attitude of the camera.
@@ -513,9 +523,10 @@ impl BestPipeline {
             .into_iter()
             .filter_map(|predicted| {
                 let star = predicted.star;
-                let apparent = match overrides.apparent {
-                    Some(apparent) => *apparent(&star).vector(),
-                    None => {
+                let apparent = match (overrides.apparent, self.config.aberration) {
+                    (Some(apparent), _) => *apparent(&star).vector(),
+                    (None, AberrationConfig::Ignore) => *star.direction.vector(),
+                    (None, AberrationConfig::Correct) => {
                         apparent_direction(telemetry.time, telemetry.velocity_km_s, star.direction.vector())
                     }
                 };
