@@ -29,7 +29,7 @@ fn camera_file() -> CameraFile {
         calibration: Calibration {
             psf: Some(PsfCalibration { sigma_px: 0.8, halo_sigma_px: 4.0, halo_fraction: 0.0434 }),
             full_well_e: Some(41_000.5),
-            target_e_per_s: Some([1e3, 1e7]),
+            target: Some(contract::TargetCalibration { radius_m: 0.5, e_per_s_at_1_km: 1e9 }),
             attitude: Some(AttitudeKnowledge {
                 white_arcsec: [53.5; 3],
                 slow_arcsec: [20.0, 0.1, 0.0],
@@ -194,11 +194,7 @@ fn a_bad_camera_file_names_the_field() {
     check("full_well_e = 41000.5", "full_well_e = 0.0", "calibration.full_well_e");
     check("full_well_e = 41000.5", "full_wel_e = 41000.5", "unknown field `full_wel_e`");
     check("sigma_px = 0.8", "sigma_px = nan", "calibration.psf.sigma_px");
-    check(
-        "target_e_per_s = [1000.0,",
-        "target_e_per_s = [100000000.0,",
-        "calibration.target_e_per_s[1]: is 10000000, expected at least 100000000",
-    );
+    check("radius_m = 0.5", "radius_m = -0.5", "calibration.target.radius_m");
 }
 
 #[test]

@@ -343,8 +343,10 @@ impl SourceFitter {
     /// Whether the fitted image fills a well so far that charge spills, the full well wrong by [`WELL_ERROR`].
     fn spills(&self, fitted: &FittedImage, model: &PhotometryModel, image: &PointImage) -> bool {
         let image = PointImage { sigma_px: image.sigma_px * fitted.width, ..*image };
-        self.saturated.iter().any(|&(column, row)| {
-            let share = image.share(column as f64 - fitted.x_px, row as f64 - fitted.y_px);
+        // The brightest pixel of a column decides, transmitted or not.
+        let brightest_row = fitted.y_px.round() - fitted.y_px;
+        self.saturated.iter().any(|&(column, _)| {
+            let share = image.share(column as f64 - fitted.x_px, brightest_row);
             fitted.background_e + fitted.flux_e * share > (1.0 - WELL_ERROR) * model.full_well_e
         })
     }
