@@ -66,6 +66,27 @@ fn dependencies_point_down_and_nowhere_else() {
     assert_eq!(arrows, expected);
 }
 
+/// Most modules at the root of a crate of `oracle/`, or of the package itself: files of one idea are in a folder.
+const MOST_MODULES: usize = 12;
+
+#[test]
+fn the_root_of_a_crate_reads_like_a_table_of_contents() {
+    let mut crates = 0;
+    for package in workspace().packages {
+        let of_the_oracle = package.manifest_path.starts_with(concat!(env!("CARGO_MANIFEST_DIR"), "/oracle"));
+        if !of_the_oracle && package.name.as_str() != "boresight" {
+            continue;
+        }
+        let library = package.targets.iter().find(|target| target.is_lib()).expect("a library");
+        let items = syn::parse_file(&read(library.src_path.as_std_path())).expect("Rust").items;
+        let is_test = |module: &syn::ItemMod| module.attrs.iter().any(|a| a.path().is_ident("cfg"));
+        let modules = items.iter().filter(|item| matches!(item, syn::Item::Mod(m) if !is_test(m))).count();
+        assert!(modules <= MOST_MODULES, "{}: {modules} modules at its root", package.name);
+        crates += 1;
+    }
+    assert_eq!(crates, 13, "crates of the oracle, and the package itself");
+}
+
 /// Arrow was a fifth of the release build. The tables are flat; Python alone needs it, to hand them over.
 #[test]
 fn only_the_python_package_depends_on_arrow() {

@@ -1,18 +1,21 @@
 //! A world of its own, registered in one line: a dot that blinks on a line of pixels. It runs through render, process, run, score, study,
 //! gate and report, none of which knows it.
 
-use std::fmt::Debug;
-use std::path::{Path, PathBuf};
-use std::str::FromStr;
+use std::path::Path;
 use std::sync::Once;
 
 use boresight::failure::Failure;
-use boresight::files::{FileError, RunDirectory, WholeFile, toml_file};
-use boresight::run::world::{Answers, Dataset, Judgement, Scorer};
-use boresight::run::{Flight, Of, OpenDataset, Options, ScenarioSource, World, refuse_attitude, register};
+use boresight::files::{
+    CsvLine, CsvReader, CsvWriter, FileError, RunDirectory, WholeFile, read_csv, table, toml_file,
+};
+use boresight::run::plain::{CsvAnswers, CsvImages, ScoredUnit, UnitJudgement, UnitScorer};
+use boresight::run::world::{Dataset, Scorer};
+use boresight::run::{
+    ByNumber, Flight, Of, OpenDataset, Options, ScenarioSource, World, refuse_attitude, register,
+};
 use boresight::run_file::RunFile;
 use boresight::scenario::{AttitudeChoice, scenario_file};
-use boresight::score::{Definition, Figure, FigureSpec, FigureTerms, Reduction, UnitTable, UnitVerdict};
+use boresight::score::{Definition, Figure, FigureSpec, Reduction, UnitVerdict};
 use contract::{ContractError, Interface, Pipeline, PipelineFactory};
 use indexmap::IndexMap;
 use pipeline::external::{Protocol, WriteTime};
@@ -22,10 +25,9 @@ use serde_json::{Value, json};
 
 use crate::support::Bench;
 
-const COLUMNS: usize = 32;
 const SCENARIO: &str = "world = \"blinking_dot\"\ntitle = \"A dot that blinks\"\nseed = 1\nframes = 300\nnoise_dn = 40\n\n[blinking_dot]\nthreshold_dn = 50\n";
 
-/// What it is about. The dot has 90 DN in two frames of three, noise up to `noise_dn`.
+/// The scenario. The dot has 90 DN in two frames of three, noise up to `noise_dn`.
 #[derive(Debug, Clone, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Scene {
@@ -46,40 +48,41 @@ struct Detector {
 
 scenario_file!(Scene, "blinking_dot");
 
-impl Scene {
-    fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
-        Vec::new()
-    }
-
-    /// Column of the dot, where it is on, and the pixels.
-    fn frame(&self, number: u64) -> (Truth, Line) {
-        let hash = |place: u64| (self.seed + place + 97 * number).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33;
-        let column = (!number.is_multiple_of(3)).then(|| (number as usize * 7) % COLUMNS);
-        let noise = |place: usize| (hash(place as u64) % (u64::from(self.noise_dn) + 1)) as u8;
-        let pixels = (0..COLUMNS).map(|place| noise(place) + if column == Some(place) { 90 } else { 0 });
-        (Truth { number, column }, Line { number, pixels: pixels.collect() })
+table! {
+    /// An image.
+    #[derive(Debug, Clone)]
+    struct Line: csv {
+        /// number of the frame
+        number: u64,
+        /// values of the pixels
+        pixels_dn: [f64; 6] = ["p0_dn", "p1_dn", "p2_dn", "p3_dn", "p4_dn", "p5_dn"],
     }
 }
 
-#[derive(Debug, Clone)]
-struct Line {
-    number: u64,
-    pixels: Vec<u8>,
-}
-
-struct Truth {
-    number: u64,
-    column: Option<usize>,
+table! {
+    /// The column of the dot: the true one, or the answer.
+    struct Dot: csv {
+        /// number of the frame
+        number: u64,
+        /// its column; none where it is off, or the pipeline failed
+        column: Option<u32>,
+    }
 }
 
 /// A column, no dot, or the reason of a failure.
-type Answer = Result<Option<usize>, String>;
+type Answer = Result<Option<u32>, String>;
+
+impl From<(u64, &Answer)> for Dot {
+    fn from((number, answer): (u64, &Answer)) -> Self {
+        Self { number, column: answer.clone().unwrap_or_default() }
+    }
+}
 
 /// What its pipelines receive and answer.
 enum Blinks {}
 
 impl Interface for Blinks {
-    type Setup = usize;
+    type Setup = ();
     type Image = Line;
     type Telemetry = ();
     type Outcome = Answer;
@@ -99,48 +102,66 @@ impl Interface for Blinks {
 }
 
 impl Protocol for Blinks {
-    const EXTENSION: &'static str = "txt";
+    const EXTENSION: &'static str = "csv";
 
-    fn greeting(columns: &usize) -> Result<Vec<u8>, String> {
-        Ok(format!("{}\n", json!({ "columns": columns })).into_bytes())
+    fn greeting((): &()) -> Result<Vec<u8>, String> {
+        Ok(b"{}\n".to_vec())
     }
 
     fn request(image: &Line, (): &(), _: WriteTime, path: &Path) -> Result<Vec<u8>, String> {
         Ok(format!("{}\n", json!({ "line": image.number, "path": path })).into_bytes())
     }
 
-    fn outcome(answer: &[u8], _: u64, _: &usize) -> Result<Answer, String> {
+    fn outcome(answer: &[u8], _: u64, (): &()) -> Result<Answer, String> {
         serde_json::from_slice(answer).map(Ok).map_err(|error| error.to_string())
     }
 }
 
-/// The brightest pixel above a threshold.
 impl PipelineFactory<Blinks> for Detector {
     fn name(&self) -> String {
         "blinking_dot".to_owned()
     }
 
-    fn build(&self, _: &usize) -> Result<Box<dyn Pipeline<Blinks>>, ContractError> {
+    fn build(&self, (): &()) -> Result<Box<dyn Pipeline<Blinks>>, ContractError> {
         Ok(Box::new(*self))
     }
 }
 
+/// The brightest pixel above a threshold.
 impl Pipeline<Blinks> for Detector {
     fn process(&mut self, image: &Line, (): &()) -> Answer {
-        let brightest = image.pixels.iter().enumerate().max_by_key(|(_, dn)| **dn);
-        Ok(brightest.filter(|(_, dn)| **dn > self.threshold_dn).map(|(column, _)| column))
+        let brightest = (0..).zip(image.pixels_dn).max_by(|(_, a), (_, b)| a.total_cmp(b));
+        Ok(brightest.filter(|(_, dn)| *dn > f64::from(self.threshold_dn)).map(|(column, _)| column))
     }
 }
 
-/// The one format of images: a table with a line of pixels a row.
-#[derive(Clone, Copy)]
-struct Table;
+/// The true and the answered column.
+struct Unit(Dot, Dot);
 
-impl FromStr for Table {
-    type Err = String;
+impl ScoredUnit<BlinkingDot> for Unit {
+    fn new(truth: &Dot, (): &(), answer: &Answer) -> Self {
+        let Dot { number, column } = *truth;
+        Self(Dot { number, column }, Dot::from((number, answer)))
+    }
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        if text == "csv" { Ok(Self) } else { Err(format!("`{text}` is no format of lines; expected csv")) }
+    fn definitions() -> Vec<Definition<'static, Self>> {
+        vec![
+            Definition::rate("correct_rate", "correct rate", |Unit(truth, answer): &Unit| {
+                Some(truth.column == answer.column)
+            }),
+            Definition::of(
+                "column_rms_px",
+                "column RMS",
+                "px",
+                Reduction::Rms,
+                |Unit(truth, answer): &Unit| Some(f64::from(truth.column?) - f64::from(answer.column?)),
+            ),
+        ]
+    }
+
+    fn verdict(&self) -> UnitVerdict {
+        let verdict = if self.0.column == self.1.column { "correct" } else { "wrong" }.to_owned();
+        UnitVerdict { number: self.0.number, group: "all".to_owned(), verdict, cause: None }
     }
 }
 
@@ -151,23 +172,22 @@ impl World for BlinkingDot {
     const STARTING_POINT: &'static str = SCENARIO;
     const SETUP_FILE: &'static str = "dot.toml";
     const TRUTH_FILE: &'static str = "truth/dots.csv";
-    const EVIDENCE_FILE: Option<&'static str> = None;
     const HEADLINE: &'static str = "correct_rate";
-    const IMAGES: Table = Table;
-    const PICTURES: &'static str = "csv";
+    const IMAGES: CsvImages = CsvImages;
+    const PICTURES: &'static str = CsvImages::WORD;
 
     type Scenario = Scene;
     type Config = Detector;
     type Interface = Blinks;
-    type Images = Table;
-    type Exposure = (Truth, Line);
+    type Images = CsvImages;
+    type Exposure = (Line, Dot);
     type Workspace<'a> = ();
-    type Truth = Truth;
+    type Truth = Dot;
     type Feedback = ();
-    type Dataset<'a> = Files<'a>;
-    type Answers = AnswerFile;
-    type Scorer<'a> = Judge;
-    type Judgement = Judge;
+    type Dataset<'a> = Files;
+    type Answers = CsvAnswers<Dot>;
+    type Scorer<'a> = UnitScorer<Unit>;
+    type Judgement = UnitJudgement;
 
     fn prepare(source: &ScenarioSource, scene: &Scene, _: Options) -> Result<Self, Failure> {
         Ok(Self(RunFile::new(&source.name, scene, source.files()?, None, None)?))
@@ -185,63 +205,63 @@ impl World for BlinkingDot {
         Ok(Box::new(*config))
     }
 
-    fn write_image(image: &Line, (): &(), path: &Path) -> Result<(), String> {
-        std::fs::write(path, format!("{:?}", image.pixels)).map_err(|error| error.to_string())
-    }
-
-    fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure> {
-        let config = toml_file::parse(&directory.join("dot.toml"), &text(&directory.join("dot.toml"))?)?;
-        let line = |(number, row): (usize, &str)| {
-            Ok((Line { number: number as u64, pixels: row.split(' ').flat_map(str::parse).collect() }, ()))
-        };
-        let images: Vec<_> = text(&directory.join("lines.csv"))?.lines().enumerate().map(line).collect();
-        let count = Some(images.len() as u64);
-        Ok(OpenDataset { setup: COLUMNS, config, count, images: Box::new(images.into_iter()) })
-    }
-
-    fn telemetry_rows(_: &Path, _: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
-        Ok(())
-    }
-
     fn figures() -> Vec<FigureSpec> {
-        figures().into_iter().map(|definition| definition.figure).collect()
+        Unit::definitions().into_iter().map(|definition| definition.figure).collect()
     }
 
     fn frame_count(&self) -> u64 {
         self.scenario().frames
     }
 
-    fn setup(&self) -> &usize {
-        &COLUMNS
+    fn setup(&self) -> &() {
+        &()
     }
 
     fn exposure_bytes(&self) -> usize {
-        COLUMNS
+        size_of::<Line>()
     }
 
     fn workspace(&self) -> Result<(), Failure> {
         Ok(())
     }
 
-    fn expose(&self, (): &mut (), frame: u64) -> Result<(Truth, Line), Failure> {
-        Ok(self.scenario().frame(frame))
+    fn expose(&self, (): &mut (), number: u64) -> Result<(Line, Dot), Failure> {
+        let Scene { seed, noise_dn, .. } = *self.scenario();
+        let hash = |place: u64| (seed + place + 97 * number).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 33;
+        let column = (!number.is_multiple_of(3)).then_some((number * 7 % 6) as u32);
+        let noise = |place: usize| (hash(place as u64) % (u64::from(noise_dn) + 1)) as f64;
+        let light = |place: usize| if column == Some(place as u32) { 90.0 } else { 0.0 };
+        let pixels_dn = std::array::from_fn(|place| noise(place) + light(place));
+        Ok((Line { number, pixels_dn }, Dot { number, column }))
     }
 
-    fn receive((truth, line): (Truth, Line), (): &()) -> (Line, (), Truth) {
+    fn receive((line, truth): (Line, Dot), (): &()) -> (Line, (), Dot) {
         (line, (), truth)
     }
 
-    fn feedback((): (), _: &Answer) {}
-
-    fn dataset<'a>(&'a self, directory: &'a RunDirectory, _: &Flight<Table>) -> Result<Files<'a>, Failure> {
-        self.0.write(&directory.run())?;
-        let config = format!("threshold_dn = {}\n", self.scenario().blinking_dot.threshold_dn);
-        WholeFile::with_text(&directory.path().join("dot.toml"), &config)?.commit_new()?;
-        Ok(Files { directory, lines: String::new(), truth: String::new() })
+    fn write_image(image: &Line, (): &(), path: &Path) -> Result<(), String> {
+        std::fs::write(path, format!("{:?}", image.pixels_dn)).map_err(|error| error.to_string())
     }
 
-    fn scorer(&self) -> Judge {
-        Judge::default()
+    fn dataset<'a>(&'a self, directory: &'a RunDirectory, _: &Flight<CsvImages>) -> Result<Files, Failure> {
+        self.0.write(&directory.run())?;
+        let config = format!("threshold_dn = {}\n", self.scenario().blinking_dot.threshold_dn);
+        WholeFile::with_text(&directory.path().join(Self::SETUP_FILE), &config)?.commit_new()?;
+        let lines = CsvWriter::create(&directory.path().join("lines.csv"))?;
+        Ok(Files { lines, truth: CsvWriter::create(&directory.path().join(Self::TRUTH_FILE))? })
+    }
+
+    fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure> {
+        let setup = directory.join(Self::SETUP_FILE);
+        let text = toml_file::read_text(&setup).map_err(|error| Failure::Usage(error.to_string()))?;
+        let lines: Vec<Line> = read_csv(&directory.join("lines.csv"))?;
+        let (config, count) = (toml_file::parse(&setup, &text)?, Some(lines.len() as u64));
+        let images = Box::new(lines.into_iter().map(|line| Ok((line, ()))));
+        Ok(OpenDataset { setup: (), config, count, images })
+    }
+
+    fn scorer(&self) -> UnitScorer<Unit> {
+        UnitScorer::default()
     }
 
     fn score_files(
@@ -249,128 +269,36 @@ impl World for BlinkingDot {
         measurements: &Path,
         _: Option<&Path>,
         attitude: Option<AttitudeChoice>,
-    ) -> Result<Judge, Failure> {
+    ) -> Result<UnitJudgement, Failure> {
         refuse_attitude(attitude)?;
-        let answers = text(measurements)?;
-        let mut answers = answers.lines().map(|row| row.split_once(' ').unwrap_or_default());
-        let mut judge = Judge::default();
-        for row in text(&directory.join(Self::TRUTH_FILE))?.lines() {
-            let (number, column) = row.split_once(' ').unwrap_or_default();
-            let truth = Truth { number: number.parse().unwrap_or_default(), column: column.parse().ok() };
-            let answer = answers.find(|(answered, _)| *answered == number).map_or("", |(_, column)| column);
-            Scorer::add(&mut judge, &truth, &(), &Ok(answer.parse().ok()))?;
+        let truth = directory.join(Self::TRUTH_FILE);
+        let answers = CsvReader::open::<Dot>(measurements)?
+            .read_rows(|row, _| Dot::read(row).map(|answer| (answer.number, Ok(answer.column))))?;
+        let mut answers = ByNumber::new(answers, measurements, "number", &truth);
+        let mut scorer = UnitScorer::<Unit>::default();
+        for dot in read_csv::<Dot>(&truth)? {
+            let answer = answers.of(dot.number)?.unwrap_or(Ok(None));
+            Scorer::<Self>::add(&mut scorer, &dot, &(), &answer)?;
         }
-        Ok(judge)
+        answers.end()?;
+        Ok(Scorer::<Self>::finish(scorer))
     }
 }
 
-fn text(path: &Path) -> Result<String, Failure> {
-    toml_file::read_text(path).map_err(|error| Failure::Usage(format!("{}: {error}", path.display())))
+struct Files {
+    lines: CsvWriter<Line>,
+    truth: CsvWriter<Dot>,
 }
 
-/// A column, or a dash.
-fn word(column: Option<usize>) -> String {
-    column.map_or_else(|| "-".to_owned(), |column| column.to_string())
-}
-
-struct Files<'a> {
-    directory: &'a RunDirectory,
-    lines: String,
-    truth: String,
-}
-
-impl Dataset<BlinkingDot> for Files<'_> {
-    fn add(&mut self, line: &Line, (): (), truth: Truth) -> Result<(), FileError> {
-        self.lines += &(line.pixels.iter().map(u8::to_string).collect::<Vec<_>>().join(" ") + "\n");
-        self.truth += &format!("{} {}\n", truth.number, word(truth.column));
-        Ok(())
+impl Dataset<BlinkingDot> for Files {
+    fn add(&mut self, line: &Line, (): (), truth: Dot) -> Result<(), FileError> {
+        self.truth.line(&truth)?;
+        self.lines.line(line)
     }
 
     fn finish(self) -> Result<(), FileError> {
-        WholeFile::with_text(&self.directory.path().join("lines.csv"), &self.lines)?.commit_new()?;
-        WholeFile::with_text(&self.directory.path().join("truth/dots.csv"), &self.truth)?.commit_new()
-    }
-}
-
-struct AnswerFile {
-    path: PathBuf,
-    text: String,
-}
-
-impl Answers<Blinks> for AnswerFile {
-    fn files(measurements: &Path) -> Vec<PathBuf> {
-        vec![measurements.to_owned()]
-    }
-
-    fn create(files: &[PathBuf]) -> Result<Self, FileError> {
-        Ok(Self { path: files.iter().collect(), text: String::new() })
-    }
-
-    fn add(&mut self, number: u64, answer: &Answer) -> Result<(), FileError> {
-        self.text += &format!("{number} {}\n", word(answer.clone().unwrap_or_default()));
-        Ok(())
-    }
-
-    fn finish(self) -> Result<(), FileError> {
-        WholeFile::with_text(&self.path, &self.text)?.commit_new()
-    }
-}
-
-/// Judges answers: (true column, answered column) by number.
-#[derive(Default)]
-struct Judge {
-    units: Vec<(u64, Option<usize>, Option<usize>)>,
-    score: IndexMap<String, Figure>,
-}
-
-type Unit = (u64, Option<usize>, Option<usize>);
-
-fn figures() -> [Definition<'static, Unit>; 2] {
-    [
-        Definition::rate("correct_rate", "correct rate", |(_, truth, answer): &Unit| Some(truth == answer)),
-        Definition::of("column_rms_px", "column RMS", "px", Reduction::Rms, |(_, truth, answer): &Unit| {
-            Some((*truth)? as f64 - (*answer)? as f64)
-        }),
-    ]
-}
-
-impl Scorer<BlinkingDot> for Judge {
-    fn add(&mut self, truth: &Truth, (): &(), answer: &Answer) -> Result<(), Failure> {
-        self.units.push((truth.number, truth.column, answer.clone().unwrap_or_default()));
-        let sequence: Vec<&Unit> = self.units.iter().collect();
-        self.score = figures().iter().map(|d| (d.figure.name.clone(), d.figure(&[&sequence]))).collect();
-        Ok(())
-    }
-
-    fn finish(self) -> Self {
-        self
-    }
-}
-
-impl Judgement for Judge {
-    type Score = IndexMap<String, Figure>;
-
-    fn score(&self) -> &Self::Score {
-        &self.score
-    }
-
-    fn figures(&self) -> &IndexMap<String, Figure> {
-        &self.score
-    }
-
-    fn units(&self) -> UnitTable {
-        let verdict =
-            |(_, truth, answer): &Unit| if truth == answer { "correct" } else { "wrong" }.to_owned();
-        let unit = |unit: &Unit| UnitVerdict {
-            number: unit.0,
-            group: "all".to_owned(),
-            verdict: verdict(unit),
-            cause: None,
-        };
-        UnitTable {
-            units: self.units.iter().map(unit).collect(),
-            figures: figures().iter().map(|figure| FigureTerms::new(figure, &self.units)).collect(),
-        }
+        self.truth.finish()?;
+        self.lines.finish()
     }
 }
 

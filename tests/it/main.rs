@@ -25,6 +25,7 @@ mod files_astropy;
 mod files_by_hand;
 mod files_dataset;
 mod files_truth;
+mod formats;
 mod frozen;
 mod gate;
 mod golden_docking;

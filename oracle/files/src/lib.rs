@@ -28,7 +28,10 @@ mod table;
 pub mod toml_file;
 mod video;
 
-pub use self::csv::{AnswerOrigin, Lines, line_of, read_column, read_origins};
+pub use self::csv::{
+    AnswerOrigin, CsvLine, CsvReader, CsvRow, CsvWriter, Lines, line_of, read_column, read_csv, read_origins,
+    write_csv,
+};
 pub use self::parquet::{
     ParquetFile, Row, TableOptions, TableReader, TableWriter, table_sha256, write_table,
 };
@@ -48,8 +51,8 @@ pub use frame::{
     read_radiance, write_expected, write_frame, write_radiance,
 };
 pub use table::{
-    Cell, Cells, Column, ColumnType, ColumnValues, Columns, Declared, Nanoseconds, TextCells, format_utc,
-    parse_utc,
+    Atom, Cell, Cells, Column, ColumnType, ColumnValues, Columns, Declared, Field, Names, Nanoseconds, Table,
+    TextCells, Value, format_utc, nullable, optional, parse_utc, seldom_repeating,
 };
 pub use video::{
     AviCoding, AviWriter, FieldOrder, FieldSource, FrameSize, Scan, SequenceOptions, Y4mWriter,

@@ -30,6 +30,7 @@ mod read;
 mod report;
 mod sample;
 
+pub use baseline::rows::row_columns;
 pub use baseline::{Baseline, BaselineFigure, BaselineHeader, BlockRule, Replace};
 pub use comparison::compare::compare;
 pub use comparison::flips::{Flip, FlipKind, Flips};

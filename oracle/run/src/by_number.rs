@@ -7,7 +7,7 @@ use std::vec::IntoIter;
 use files::{Failure, line_of};
 
 /// Rows in ascending order of their numbers, which must all be numbers of the truth.
-pub(crate) struct ByNumber<'a, T> {
+pub struct ByNumber<'a, T> {
     rows: Peekable<IntoIter<(u64, T)>>,
     path: &'a Path,
     /// Column of the numbers.
@@ -17,7 +17,7 @@ pub(crate) struct ByNumber<'a, T> {
 
 impl<'a, T> ByNumber<'a, T> {
     /// The rows of the file `path`, which belong to the frames of the table `truth`.
-    pub(crate) fn new(rows: Vec<(u64, T)>, path: &'a Path, key: &'static str, truth: &'a Path) -> Self {
+    pub fn new(rows: Vec<(u64, T)>, path: &'a Path, key: &'static str, truth: &'a Path) -> Self {
         Self { rows: rows.into_iter().peekable(), path, key, truth }
     }
 
@@ -25,7 +25,7 @@ impl<'a, T> ByNumber<'a, T> {
     ///
     /// # Errors
     /// [`Failure::Usage`] for a row of an earlier frame, which the truth does not have.
-    pub(crate) fn of(&mut self, number: u64) -> Result<Option<T>, Failure> {
+    pub fn of(&mut self, number: u64) -> Result<Option<T>, Failure> {
         let next = self.rows.peek().map(|(next, _)| *next);
         match next.filter(|next| *next < number) {
             Some(earlier) => Err(self.foreign(earlier)),
@@ -37,7 +37,7 @@ impl<'a, T> ByNumber<'a, T> {
     ///
     /// # Errors
     /// [`Failure::Usage`] for a row of a frame that the truth does not have.
-    pub(crate) fn end(mut self) -> Result<(), Failure> {
+    pub fn end(mut self) -> Result<(), Failure> {
         self.rows.next().map_or(Ok(()), |(number, _)| Err(self.foreign(number)))
     }
 

@@ -46,7 +46,7 @@ pub trait World: Sized + Send + Sync + 'static {
     /// The table of a run directory with a row for every frame of the truth.
     const TRUTH_FILE: &'static str;
     /// The file beside the measurements that a score reads as well, if it is there.
-    const EVIDENCE_FILE: Option<&'static str>;
+    const EVIDENCE_FILE: Option<&'static str> = None;
     /// The rate by which runs are good or bad, a figure of the score.
     const HEADLINE: &'static str;
     /// Whether a group of frames is apart from the next in time, so that what went wrong in the one says nothing of the other.
@@ -175,11 +175,14 @@ pub trait World: Sized + Send + Sync + 'static {
     /// A [`Failure`] with the first thing that is missing or wrong.
     fn open(directory: &Path) -> Result<OpenDataset<Self>, Failure>;
 
-    /// Hands over what pipelines were told of every frame of a run besides its image: telemetry, transmitted regions.
+    /// Passes on, for every frame of a run, what a pipeline received besides the image: telemetry, transmitted regions. The default is a
+    /// world without telemetry.
     ///
     /// # Errors
     /// A [`Failure`] for a file that cannot be read.
-    fn telemetry_rows(directory: &Path, add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure>;
+    fn telemetry_rows(_directory: &Path, _add: &mut dyn FnMut(&dyn Debug)) -> Result<(), Failure> {
+        Ok(())
+    }
 
     /// The figures of a score. A key that another world has too is the same figure.
     fn figures() -> Vec<FigureSpec>;
@@ -216,8 +219,10 @@ pub trait World: Sized + Send + Sync + 'static {
         feedback: &Self::Feedback,
     ) -> (ImageOf<Self>, TelemetryOf<Self>, Self::Truth);
 
-    /// What holds from the next frame on, after an answer.
-    fn feedback(before: Self::Feedback, outcome: &OutcomeOf<Self>) -> Self::Feedback;
+    /// The feedback from the next frame on, after an answer: that of before, unless a world closes the loop.
+    fn feedback(before: Self::Feedback, _outcome: &OutcomeOf<Self>) -> Self::Feedback {
+        before
+    }
 
     /// Writes what is kept of an exposure in files of its own, on the thread that made it.
     ///

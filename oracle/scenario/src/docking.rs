@@ -70,10 +70,10 @@ pub enum DockingWorld {
     Docking,
 }
 
-scenario_file!(DockingScenario, "docking");
+scenario_file!(DockingScenario, "docking", paths_of_files);
 
 impl DockingScenario {
-    fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
+    fn paths_of_files(&mut self) -> Vec<(&'static str, &mut String)> {
         match TargetFile::built_in(&self.target) {
             Some(_) => Vec::new(),
             None => vec![("target", &mut self.target)],

@@ -163,10 +163,10 @@ const GREY_REFLECTANCE: f64 = 0.25;
 /// Colour B − V of the Sun, mag (Ramírez et al. 2012, ApJ 752, 5: 0.653).
 const SUN_B_MINUS_V: f64 = 0.653;
 
-scenario_file!(FarRangeScenario, "far_range");
+scenario_file!(FarRangeScenario, "far_range", paths_of_files);
 
 impl FarRangeScenario {
-    fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
+    fn paths_of_files(&mut self) -> Vec<(&'static str, &mut String)> {
         let catalog = match &mut self.catalog.source {
             CatalogSource::File(path) => Some(("catalog.source", path)),
             CatalogSource::Hipparcos2 => None,

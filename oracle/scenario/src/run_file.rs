@@ -120,15 +120,18 @@ pub trait ScenarioFile: Clone + Debug + Send + Sync + 'static {
     fn set_seed(&mut self, seed: u64);
 
     /// The paths of the files that it reads, which start from the folder of its file, each under its role: the place of its key, as in
-    /// `psf.path`.
-    fn paths(&mut self) -> Vec<(&'static str, &mut String)>;
+    /// `psf.path`. The default is a scenario that reads none.
+    fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
+        Vec::new()
+    }
 }
 
-/// Implements [`ScenarioFile`](crate::run_file::ScenarioFile) for a type with serde's traits, `JsonSchema`, fields `title` and `seed`, and a
-/// method `paths`: `scenario_file!(MyScenario, "my_world")`.
+/// Implements [`ScenarioFile`](crate::run_file::ScenarioFile) for a type with serde's traits, `JsonSchema` and fields `title` and
+/// `seed`: `scenario_file!(MyScenario, "my_world")`. Of a scenario that reads files, a method gives their paths:
+/// `scenario_file!(MyScenario, "my_world", paths_of_files)`.
 #[macro_export]
 macro_rules! scenario_file {
-    ($scenario:ty, $world:literal) => {
+    ($scenario:ty, $world:literal $(, $paths:ident)?) => {
         impl $crate::run_file::ScenarioFile for $scenario {
             const WORLD: &'static str = $world;
 
@@ -177,9 +180,9 @@ macro_rules! scenario_file {
                 self.seed = seed;
             }
 
-            fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
-                self.paths()
-            }
+            $(fn paths(&mut self) -> Vec<(&'static str, &mut String)> {
+                self.$paths()
+            })?
         }
     };
 }

@@ -6,7 +6,8 @@ use std::path::Path;
 
 use files::sha256::hex;
 use files::{
-    Cell, Cells, Column, ColumnType, ColumnValues, FileError, ParquetFile, TableOptions, write_table,
+    Cell, Cells, Column, ColumnType, ColumnValues, Columns, Declared, FileError, ParquetFile, Row, Table,
+    TableOptions, table, write_table,
 };
 use indexmap::IndexMap;
 use score::{attitude_word, names};
@@ -63,6 +64,27 @@ pub struct CaseRow {
     pub figures: Vec<CaseFigure>,
     /// Frames by cause, in the order of the table's columns.
     pub causes: Vec<u32>,
+}
+
+table! {
+    /// The columns that every study has.
+    struct CaseHead: parquet(case) {
+        /// number of the case; ascending
+        case: u64,
+        /// seed of its scenario
+        seed: u64,
+        /// whether the pipeline itself failed at one frame or more: it crashed, gave no answer in time, or none that can be read
+        has_failed: bool,
+        /// why the case cannot be run; null where it can
+        error: Option<String>,
+        /// frames that count
+        frames: u64,
+    }
+}
+
+/// The columns of `cases.parquet` that every study has.
+pub fn case_columns() -> Vec<Declared> {
+    CaseHead::declared()
 }
 
 /// Rows with their columns.
@@ -142,13 +164,14 @@ impl CaseTable {
     #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
     fn columns(&self) -> Vec<Column> {
         let rows = || self.rows.iter();
-        let mut columns = vec![
-            Column::new("case", rows().map(|row| row.case)),
-            Column::new("seed", rows().map(|row| row.seed)),
-            Column::new("has_failed", rows().map(|row| row.has_failed)),
-            Column::nullable_texts("error", rows().map(|row| row.error.as_ref())),
-            Column::new("frames", rows().map(|row| row.frames)),
-        ];
+        let head = |row: &CaseRow| CaseHead {
+            case: row.case,
+            seed: row.seed,
+            has_failed: row.has_failed,
+            error: row.error.clone(),
+            frames: row.frames,
+        };
+        let mut columns = CaseHead::columns(&rows().map(head).collect::<Vec<_>>());
         for (index, (name, is_number)) in self.drawn.iter().enumerate() {
             let name = format!("{SET}{name}");
             let cells = rows().map(|row| &row.drawn[index]);
@@ -241,21 +264,18 @@ impl CaseTable {
             Some(ColumnValues::Utf8(texts)) => Ok(texts),
             _ => Err(no_column(path, name, ColumnType::Utf8)),
         };
-        let failed = cells::<bool>(path, batch, "has_failed", ColumnType::Boolean)?.values();
-        let rows = whole("case")?.iter().zip(whole("seed")?).zip(failed).zip(whole("frames")?);
-        let mut rows: Vec<CaseRow> = rows
-            .zip(texts("error")?.iter())
-            .map(|((((&case, &seed), &has_failed), &frames), error)| CaseRow {
-                case,
-                seed,
-                has_failed,
-                error: error.map(str::to_owned),
-                frames,
-                drawn: Vec::with_capacity(self.drawn.len()),
-                figures: Vec::with_capacity(self.figures.len()),
-                causes: Vec::with_capacity(self.causes.len()),
-            })
-            .collect();
+        let heads = CaseHead::rows(&Columns::new(path, batch, self.rows.len() as u64))?;
+        let row = |head: CaseHead| CaseRow {
+            case: head.case,
+            seed: head.seed,
+            has_failed: head.has_failed,
+            error: head.error,
+            frames: head.frames,
+            drawn: Vec::with_capacity(self.drawn.len()),
+            figures: Vec::with_capacity(self.figures.len()),
+            causes: Vec::with_capacity(self.causes.len()),
+        };
+        let mut rows: Vec<CaseRow> = heads.into_iter().map(row).collect();
         for (name, is_number) in &self.drawn {
             let name = format!("{SET}{name}");
             if *is_number {

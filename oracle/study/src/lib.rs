@@ -31,7 +31,7 @@ mod findings;
 mod shard;
 
 pub use campaign::{Campaign, Known};
-pub use cases::{CaseFigure, CaseRow, CaseTable, Drawn};
+pub use cases::{CaseFigure, CaseRow, CaseTable, Drawn, case_columns};
 pub use definition::design::DesignKind;
 pub use definition::file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};
 pub use definition::law::Law;

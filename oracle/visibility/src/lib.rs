@@ -52,7 +52,7 @@ pub use design::{AspectGroup, Design, Reached, between};
 pub use law::detection::{DetectionCurve, FrameThresholds, ImageShares, background_e, is_flooded};
 pub use law::pixel::{PixelThreshold, readout_e};
 pub use law::poisson_binomial::at_least;
-pub use report::write::{read_sky, write_report};
+pub use report::write::{read_sky, tables, write_report};
 pub use report::{
     CameraFigures, DetectionPoint, Found, LimitPoint, PointingStars, RangeByPhase, Simulated, SimulatedPoint,
     SkySummary, StarsLost, Status, Verdict, VisibilityReport, WindowPoint,

@@ -8,3 +8,4 @@ pub(crate) mod table;
 pub use column::read_column;
 pub use lines::Lines;
 pub use origin::{AnswerOrigin, line_of, read_origins};
+pub use table::{CsvLine, CsvReader, CsvRow, CsvWriter, read_csv, write_csv};

@@ -11,12 +11,15 @@ use crate::table::declared::Table;
 use crate::table::field::Atom;
 use crate::{FileError, WholeFile};
 
-/// A row of a CSV, as [`crate::table::declaration::table`] declares it.
+/// A row of a CSV, as [`table!`](crate::table!) declares it.
 pub trait CsvLine: Table {
-    /// Its cells, in the order of the columns.
+    /// The cells, in the order of the columns.
     fn cells(&self) -> Vec<String>;
 
-    /// Reads it.
+    /// Reads a row.
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for a cell that is not as declared.
     fn read(row: &CsvRow<'_>) -> Result<Self, FileError>;
 }
 
@@ -29,7 +32,7 @@ struct CsvColumn {
 }
 
 /// A table being read, row by row.
-pub(crate) struct CsvReader {
+pub struct CsvReader {
     path: PathBuf,
     columns: Vec<CsvColumn>,
     reader: csv::Reader<Lines<File>>,
@@ -38,12 +41,18 @@ pub(crate) struct CsvReader {
 
 impl CsvReader {
     /// Opens a table and checks its header: every required column, no unknown one, none twice.
-    pub(crate) fn open<T: Table>(path: &Path) -> Result<Self, FileError> {
+    ///
+    /// # Errors
+    /// [`FileError`] for a file that cannot be opened, or a header with a column that is missing, unknown or there twice.
+    pub fn open<T: Table>(path: &Path) -> Result<Self, FileError> {
         Self::open_with::<T>(path, &[])
     }
 
     /// [`CsvReader::open`] of a table that may have the columns `others` as well.
-    pub(crate) fn open_with<T: Table>(path: &Path, others: &[&'static str]) -> Result<Self, FileError> {
+    ///
+    /// # Errors
+    /// As [`CsvReader::open`].
+    pub fn open_with<T: Table>(path: &Path, others: &[&'static str]) -> Result<Self, FileError> {
         let file = Lines::new(open_regular(path)?);
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::Headers).from_reader(file);
         let header = reader.headers().map_err(|error| csv_error(path, &error))?.clone();
@@ -70,7 +79,10 @@ impl CsvReader {
     }
 
     /// All rows; `parse` is given the row before too.
-    pub(crate) fn read_rows<T>(
+    ///
+    /// # Errors
+    /// [`FileError`] for a row that cannot be read, with its line, and what `parse` says.
+    pub fn read_rows<T>(
         mut self,
         parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
     ) -> Result<Vec<T>, FileError> {
@@ -82,7 +94,10 @@ impl CsvReader {
     }
 
     /// All rows, each with its line in the file; `parse` is given the row before too. A table without rows is an error.
-    pub(crate) fn read_all<T>(
+    ///
+    /// # Errors
+    /// As [`CsvReader::read_rows`].
+    pub fn read_all<T>(
         self,
         parse: impl Fn(&CsvRow<'_>, Option<&T>) -> Result<T, FileError>,
     ) -> Result<Vec<(u64, T)>, FileError> {
@@ -98,7 +113,10 @@ impl CsvReader {
     }
 
     /// The next row; `None` at the end.
-    pub(crate) fn next_row(&mut self) -> Result<Option<CsvRow<'_>>, FileError> {
+    ///
+    /// # Errors
+    /// [`FileError`] for a row that cannot be read, with its line.
+    pub fn next_row(&mut self) -> Result<Option<CsvRow<'_>>, FileError> {
         let more =
             self.reader.read_record(&mut self.record).map_err(|error| csv_error(&self.path, &error))?;
         let line = self.record.position().map_or(0, csv::Position::line);
@@ -115,12 +133,13 @@ fn layout<T: Table>() -> impl Iterator<Item = (&'static str, bool)> {
 /// One row of a table.
 pub struct CsvRow<'a> {
     table: &'a CsvReader,
-    pub(crate) line: u64,
+    /// Line of the file in which it begins, from 1.
+    pub line: u64,
 }
 
 impl CsvRow<'_> {
     /// The cell of a column as it stands; empty when the file has no such column.
-    pub(crate) fn text(&self, column: &str) -> &str {
+    pub fn text(&self, column: &str) -> &str {
         let declared = self.table.columns.iter().find(|declared| declared.name == column);
         debug_assert!(declared.is_some(), "`{column}` is not declared");
         let position = declared.and_then(|declared| declared.position);
@@ -128,17 +147,23 @@ impl CsvRow<'_> {
     }
 
     /// What the cell of a column holds.
-    pub(crate) fn cell<'r, T: Atom<'r>>(&'r self, column: &'static str) -> Result<T, FileError> {
+    ///
+    /// # Errors
+    /// [`FileError::Value`] with the line, the column and what was expected.
+    pub fn cell<'r, T: Atom<'r>>(&'r self, column: &'static str) -> Result<T, FileError> {
         T::parse(self.text(column)).ok_or_else(|| self.error(column, T::EXPECTED))
     }
 
     /// The error of a cell that is not what was `expected`.
-    pub(crate) fn error(&self, column: &'static str, expected: impl Into<String>) -> FileError {
+    pub fn error(&self, column: &'static str, expected: impl Into<String>) -> FileError {
         FileError::value(&self.table.path, Place::Line(self.line), column, self.text(column), expected)
     }
 
     /// Refuses the number of the row's frame, field or star unless it is larger than that of the row before.
-    pub(crate) fn check_ascends(
+    ///
+    /// # Errors
+    /// [`FileError::Value`].
+    pub fn check_ascends(
         &self,
         column: &'static str,
         number: u64,
@@ -210,7 +235,10 @@ impl<T: CsvLine> CsvWriter<T> {
     }
 
     /// Writes a row. Numbers are written so that they read back to the same bits.
-    pub(crate) fn line(&mut self, row: &T) -> Result<(), FileError> {
+    ///
+    /// # Errors
+    /// [`FileError::Io`].
+    pub fn line(&mut self, row: &T) -> Result<(), FileError> {
         self.record(row.cells())
     }
 
@@ -232,6 +260,24 @@ impl<T: CsvLine> CsvWriter<T> {
         self.flush()?;
         self.file.take().map_or(Ok(()), WholeFile::commit_new)
     }
+}
+
+/// Reads all rows of a table.
+///
+/// # Errors
+/// [`FileError`] for a file that cannot be read, or a cell that is not as declared, with line and column.
+pub fn read_csv<T: CsvLine>(path: &Path) -> Result<Vec<T>, FileError> {
+    CsvReader::open::<T>(path)?.read_rows(|row, _| T::read(row))
+}
+
+/// Writes a table of these rows.
+///
+/// # Errors
+/// [`FileError::Io`] when the file exists or cannot be written.
+pub fn write_csv<T: CsvLine>(path: &Path, rows: &[T]) -> Result<(), FileError> {
+    let mut table = CsvWriter::create(path)?;
+    rows.iter().try_for_each(|row| table.line(row))?;
+    table.finish()
 }
 
 fn unknown_column(path: &Path, column: &str, known: &[CsvColumn]) -> FileError {

@@ -3,7 +3,7 @@
 
 use contract::docking::{Circle, Features};
 
-use crate::table::declaration::{nullable, table};
+use crate::{nullable, table};
 
 table! {
     /// A feature and the field it was found in.

@@ -12,8 +12,8 @@ use super::pose::{self, POSE};
 use crate::FileError;
 use crate::csv::origin;
 use crate::csv::table::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use crate::table::declaration::{optional, table};
 use crate::table::field::Atom;
+use crate::{optional, table};
 
 const SIGMA: [&str; 6] =
     ["sigma_d1_m", "sigma_d2_m", "sigma_d3_m", "sigma_phi1_deg", "sigma_phi2_deg", "sigma_phi3_deg"];

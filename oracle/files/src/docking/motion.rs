@@ -11,7 +11,7 @@ use super::covariance::{self, CELLS, upper_triangle};
 use super::pose::{self, angle_as_filed};
 use crate::FileError;
 use crate::csv::table::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use crate::table::declaration::{optional, table};
+use crate::{optional, table};
 
 const SIGMA: [&str; 7] = [
     "sigma_rho_m",

@@ -6,7 +6,7 @@ use contract::docking::{Digitiser, FieldTelemetry, Lines};
 
 use crate::FileError;
 use crate::csv::table::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use crate::table::declaration::{optional, table};
+use crate::{optional, table};
 
 table! {
     /// A row of the file.

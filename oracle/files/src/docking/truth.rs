@@ -8,7 +8,7 @@ use sim::docking::{FieldTruth, GlintImage};
 use sim::television::VideoTruth;
 
 use super::pose::{self, POSE};
-use crate::table::declaration::table;
+use crate::table;
 use crate::table::field::{value, words};
 use crate::{Column, Columns, FileError, Row};
 

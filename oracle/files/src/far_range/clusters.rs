@@ -6,7 +6,7 @@ use crate::FileError;
 use crate::parquet::table::Row;
 use crate::table::batch::Columns;
 use crate::table::column::Column;
-use crate::table::declaration::{seldom_repeating, table};
+use crate::{seldom_repeating, table};
 
 /// A cluster and the frame it was found in.
 #[derive(Debug, Clone, Copy, PartialEq)]

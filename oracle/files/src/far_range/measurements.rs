@@ -11,8 +11,8 @@ use contract::{
 use crate::FileError;
 use crate::csv::origin;
 use crate::csv::table::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use crate::table::declaration::{optional, table};
 use crate::table::field::Atom;
+use crate::{optional, table};
 
 const POSITION: [&str; 2] = ["x_px", "y_px"];
 const LINE_OF_SIGHT: [&str; 3] = ["los_j2000_x", "los_j2000_y", "los_j2000_z"];

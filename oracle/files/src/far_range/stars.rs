@@ -5,8 +5,8 @@ use std::path::Path;
 use contract::{Angle, Direction, ListedStar};
 
 use crate::FileError;
-use crate::csv::table::{CsvLine, CsvReader, CsvWriter};
-use crate::table::declaration::table;
+use crate::csv::table::{CsvLine, CsvReader, write_csv};
+use crate::table;
 
 table! {
     /// One row of the list: catalogued place, ICRS, proper motion applied, without aberration.
@@ -38,9 +38,7 @@ impl StarRow {
 /// # Errors
 /// [`FileError::Io`] when the file exists or cannot be written.
 pub fn write_stars(path: &Path, stars: &[StarRow]) -> Result<(), FileError> {
-    let mut table = CsvWriter::create(path)?;
-    stars.iter().try_for_each(|star| table.line(star))?;
-    table.finish()
+    write_csv(path, stars)
 }
 
 /// Reads the list; numbers ascend, each once.

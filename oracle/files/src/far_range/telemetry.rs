@@ -7,9 +7,9 @@ use nalgebra::Vector3;
 
 use crate::FileError;
 use crate::csv::table::{CsvLine, CsvReader, CsvRow, CsvWriter};
-use crate::table::declaration::{optional, table};
 use crate::table::time::{format_utc, parse_utc};
 use crate::table::windows;
+use crate::{optional, table};
 
 /// Components of the velocity.
 const VELOCITY: [&str; 3] = ["v_orbital_j2000_x_km_s", "v_orbital_j2000_y_km_s", "v_orbital_j2000_z_km_s"];

@@ -9,8 +9,8 @@ use hifitime::Epoch;
 use nalgebra::Vector3;
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
 
-use crate::table::declaration::{seldom_repeating, table};
 use crate::table::field::words;
+use crate::{seldom_repeating, table};
 
 words!(Shadow, Visibility, ObjectKind);
 

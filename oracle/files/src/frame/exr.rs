@@ -12,7 +12,7 @@ use exr::prelude::{
 use sim::vector::RadianceImage;
 
 use super::raw_image::{RawImage, Size, Told, check_claim, checked_size, dn_of_all};
-use crate::error::{Place, create_new};
+use crate::error::file_error::{Place, create_new};
 use crate::table::windows;
 use crate::{FileError, FrameHeader};
 

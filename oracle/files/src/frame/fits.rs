@@ -17,7 +17,7 @@ use fitsio_pure::value::Value;
 
 use super::fits_cards;
 use super::raw_image::{RawImage, Size, Told, checked_size, dn_of_all};
-use crate::error::{Place, create_new, open_regular};
+use crate::error::file_error::{Place, create_new, open_regular};
 use crate::table::time::parse_utc;
 use crate::table::windows;
 use crate::{FileError, FrameHeader};

@@ -9,7 +9,7 @@ use image::{ExtendedColorType, ImageBuffer, ImageDecoder, ImageEncoder, ImageRea
 
 use super::raw_image::{RawImage, Size, Told, check_claim, checked_size};
 use crate::FileError;
-use crate::error::{Place, create_new, open_regular};
+use crate::error::file_error::{Place, create_new, open_regular};
 
 /// Most bytes that a decoder makes of what a file says besides its pixels.
 const ABOUT_PIXELS_BYTES: u64 = 1 << 23;

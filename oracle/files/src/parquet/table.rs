@@ -136,7 +136,7 @@ impl<R: Row> TableReader<R> {
     fn peek_frame(&mut self) -> Result<Option<u64>, FileError> {
         while self.waiting.is_empty() {
             let Some(batch) = self.batches.next().transpose()? else { return Ok(None) };
-            let columns = Columns { path: &self.path, batch: &batch, first_row: self.rows_read };
+            let columns = Columns::new(&self.path, &batch, self.rows_read);
             let rows = R::rows(&columns)?;
             for (i, row) in rows.iter().enumerate() {
                 let frame = row.frame();

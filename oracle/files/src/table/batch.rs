@@ -8,12 +8,17 @@ use crate::error::Place;
 
 /// The columns of a batch, by name.
 pub struct Columns<'a> {
-    pub(crate) path: &'a Path,
-    pub(crate) batch: &'a [Column],
-    pub(crate) first_row: u64,
+    path: &'a Path,
+    batch: &'a [Column],
+    first_row: u64,
 }
 
-impl Columns<'_> {
+impl<'a> Columns<'a> {
+    /// The columns of a batch of a file, of which `first_row` rows come before.
+    pub fn new(path: &'a Path, batch: &'a [Column], first_row: u64) -> Self {
+        Self { path, batch, first_row }
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.batch.first().map_or(0, |column| column.values().len())

@@ -9,7 +9,7 @@ use crate::{Columns, FileError};
 
 /// Columns of one field of a row.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Names<const N: usize> {
+pub struct Names<const N: usize> {
     pub(crate) names: [&'static str; N],
     is_optional: bool,
     is_nullable: bool,
@@ -23,23 +23,23 @@ impl<const N: usize> From<[&'static str; N]> for Names<N> {
 }
 
 /// Columns that a CSV may lack.
-pub(crate) fn optional<const N: usize>(names: [&'static str; N]) -> Names<N> {
+pub fn optional<const N: usize>(names: [&'static str; N]) -> Names<N> {
     Names { is_optional: true, ..names.into() }
 }
 
 /// Columns of a Parquet file that are declared nullable although every row has a value.
-pub(crate) fn nullable<const N: usize>(names: [&'static str; N]) -> Names<N> {
+pub fn nullable<const N: usize>(names: [&'static str; N]) -> Names<N> {
     Names { is_nullable: true, ..names.into() }
 }
 
 /// Columns of a Parquet file whose values seldom repeat ([`Column::seldom_repeating`]).
-pub(crate) fn seldom_repeating<const N: usize>(names: [&'static str; N]) -> Names<N> {
+pub fn seldom_repeating<const N: usize>(names: [&'static str; N]) -> Names<N> {
     Names { is_seldom_repeating: true, ..names.into() }
 }
 
 impl<const N: usize> Names<N> {
     /// What the table says of the field.
-    pub(crate) fn declared<F: Field<N>>(&self, meaning: &str) -> Declared {
+    pub fn declared<F: Field<N>>(&self, meaning: &str) -> Declared {
         Declared {
             names: self.names.to_vec(),
             column_type: CellOf::<'static, F, N>::TYPE,
@@ -50,7 +50,7 @@ impl<const N: usize> Names<N> {
     }
 
     /// The columns of a Parquet file.
-    pub(crate) fn columns<'a, F: Field<N> + 'a>(&self, fields: impl Iterator<Item = &'a F>) -> Vec<Column> {
+    pub fn columns<'a, F: Field<N> + 'a>(&self, fields: impl Iterator<Item = &'a F>) -> Vec<Column> {
         let cells: Vec<Option<[CellOf<'a, F, N>; N]>> =
             fields.map(|field| field.value().map(Value::to_cells)).collect();
         let column = |(i, name)| {
@@ -62,7 +62,10 @@ impl<const N: usize> Names<N> {
     }
 
     /// The field of each row of a Parquet file: absent where one of its cells is null.
-    pub(crate) fn read_columns<F: Field<N>>(&self, columns: &Columns<'_>) -> Result<Vec<F>, FileError> {
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for a null where a value must be, or a cell that is not as declared.
+    pub fn read_columns<F: Field<N>>(&self, columns: &Columns<'_>) -> Result<Vec<F>, FileError> {
         let mut parts = Vec::with_capacity(N);
         for name in self.names {
             parts.push(CellOf::<'_, F, N>::cells(columns, name)?);
@@ -91,7 +94,7 @@ impl<const N: usize> Names<N> {
     }
 
     /// The cells of the field in a row of a CSV.
-    pub(crate) fn texts(&self, field: &impl Field<N>) -> [String; N] {
+    pub fn texts(&self, field: &impl Field<N>) -> [String; N] {
         field.value().map_or_else(
             || std::array::from_fn(|_| String::new()),
             |value| value.to_cells().map(|cell| cell.text()),
@@ -99,7 +102,10 @@ impl<const N: usize> Names<N> {
     }
 
     /// Reads the field from a row of a CSV: all cells of it, or none where it may be absent.
-    pub(crate) fn read_texts<F: Field<N>>(&self, row: &CsvRow<'_>) -> Result<F, FileError> {
+    ///
+    /// # Errors
+    /// [`FileError::Value`] for a cell that is not as declared.
+    pub fn read_texts<F: Field<N>>(&self, row: &CsvRow<'_>) -> Result<F, FileError> {
         let is_absent = F::IS_NULLABLE && self.names.iter().all(|name| row.text(name).trim().is_empty());
         let mut cells = [Default::default(); N];
         for (cell, name) in cells.iter_mut().zip(self.names).filter(|_| !is_absent) {
@@ -122,35 +128,42 @@ type CellOf<'a, F, const N: usize> = <<F as Field<N>>::Value as Value<N>>::Cell<
 /// Declares a table: either a new struct, or one that there is (`for`). Each field has its meaning as a comment, its type, and the names
 /// of its columns, where these are not the field's own name. `csv` makes it a row of a CSV; `parquet(FIELD)` one of a Parquet
 /// file, ordered by a field that is the number of the frame or field.
+#[macro_export]
 macro_rules! table {
+    (@names $field:ident) => {
+        $crate::Names::from([stringify!($field)])
+    };
+    (@names $field:ident $names:expr) => {
+        $crate::Names::from($names)
+    };
     ($(#[$meta:meta])* $vis:vis struct $row:ident: $kind:ident $(($frame:ident))? {
         $($(#[doc = $meaning:literal])+ $field:ident: $type:ty $(= $names:expr)?,)+
     }) => {
         $(#[$meta])*
         $vis struct $row { $($(#[doc = $meaning])+ $vis $field: $type,)+ }
-        $crate::table::declaration::table!(for $row: $kind $(($frame))? {
+        $crate::table!(for $row: $kind $(($frame))? {
             $($(#[doc = $meaning])+ $field: $type $(= $names)?,)+
         });
     };
     (for $row:ident: $kind:ident $(($frame:ident))? {
         $($(#[doc = $meaning:literal])+ $field:ident: $type:ty $(= $names:expr)?,)+
     }) => {
-        impl $crate::table::declared::Table for $row {
-            fn declared() -> Vec<$crate::table::declared::Declared> {
-                vec![$($crate::table::declaration::names!($field $($names)?).declared::<$type>(concat!($($meaning),+))),+]
+        impl $crate::Table for $row {
+            fn declared() -> Vec<$crate::Declared> {
+                vec![$($crate::table!(@names $field $($names)?).declared::<$type>(concat!($($meaning),+))),+]
             }
         }
-        $crate::table::declaration::table!(@$kind $row $($frame)? { $($field: $type = $crate::table::declaration::names!($field $($names)?),)+ });
+        $crate::table!(@$kind $row $($frame)? { $($field: $type = $crate::table!(@names $field $($names)?),)+ });
     };
     (@csv $row:ident { $($field:ident: $type:ty = $names:expr,)+ }) => {
-        impl $crate::csv::table::CsvLine for $row {
+        impl $crate::CsvLine for $row {
             fn cells(&self) -> Vec<String> {
                 let mut cells = Vec::new();
                 $(cells.extend($names.texts(&self.$field));)+
                 cells
             }
 
-            fn read(row: &$crate::csv::table::CsvRow<'_>) -> Result<Self, $crate::FileError> {
+            fn read(row: &$crate::CsvRow<'_>) -> Result<Self, $crate::FileError> {
                 Ok(Self { $($field: $names.read_texts(row)?),+ })
             }
         }
@@ -179,18 +192,6 @@ macro_rules! table {
     };
 }
 
-/// The columns of a field: those that are given, or the one of its own name.
-macro_rules! names {
-    ($field:ident) => {
-        $crate::table::declaration::Names::from([stringify!($field)])
-    };
-    ($field:ident $names:expr) => {
-        $crate::table::declaration::Names::from($names)
-    };
-}
-
-pub(crate) use {names, table};
-
 #[cfg(test)]
 mod tests {
     use std::fs::File;
@@ -199,8 +200,7 @@ mod tests {
     use contract::{Body, Icrs, Rotation};
 
     use super::*;
-    use crate::table::declared::Table;
-    use crate::{ColumnType, Row, TableOptions, TableReader, write_table};
+    use crate::{ColumnType, Row, Table, TableOptions, TableReader, write_table};
 
     table! {
         /// A row with a field of every kind.

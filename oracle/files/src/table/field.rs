@@ -1,5 +1,7 @@
 //! What a field of a row is in a table: a cell, or several of a kind that stand together.
 
+use std::borrow::Cow;
+
 use contract::{Angle, Direction, Icrs, PixelPoint, Rotation};
 use hifitime::Epoch;
 use nalgebra::Vector3;
@@ -11,7 +13,7 @@ use super::unit;
 use crate::FileError;
 
 /// What a cell holds, as long as `'a` lives.
-pub(crate) trait Atom<'a>: Copy + Default {
+pub trait Atom<'a>: Copy + Default {
     /// Type of its column.
     const TYPE: ColumnType;
     /// What the cell of a CSV must be.
@@ -21,6 +23,9 @@ pub(crate) trait Atom<'a>: Copy + Default {
     /// The values of a column.
     fn values(cells: impl Iterator<Item = Option<Self>>) -> ColumnValues;
     /// The column of a name.
+    ///
+    /// # Errors
+    /// [`FileError`] for a column that is not there or has another type.
     fn cells(columns: &'a Columns<'_>, name: &str) -> Result<&'a Self::Cells, FileError>;
     /// The cell of a row; `None` if it is null.
     fn get(cells: &'a Self::Cells, row: usize) -> Option<Self>;
@@ -84,17 +89,20 @@ impl<'a> Atom<'a> for &'a str {
 }
 
 /// A value that takes `N` cells of a kind.
-pub(crate) trait Value<const N: usize>: Sized {
+pub trait Value<const N: usize>: Sized {
     /// What each of them holds.
     type Cell<'a>: Atom<'a>;
     /// The cells.
     fn to_cells(&self) -> [Self::Cell<'_>; N];
     /// The value of its cells, or what was expected of them.
+    ///
+    /// # Errors
+    /// What was expected.
     fn of_cells(cells: [Self::Cell<'_>; N]) -> Result<Self, String>;
 }
 
 /// A field of a row: a value, or one that may be absent; then its cells are empty, or null.
-pub(crate) trait Field<const N: usize>: Sized {
+pub trait Field<const N: usize>: Sized {
     /// The value.
     type Value: Value<N>;
     /// Whether it may be absent.
@@ -168,6 +176,7 @@ value!(u32: [u32; 1], |count| [*count], |[count]| Ok(count));
 value!(u64: [u64; 1], |count| [*count], |[count]| Ok(count));
 value!(f64: [f64; 1], |number| [*number], |[number]| Ok(number));
 value!(String: [&'a str; 1], |text| [text], |[text]| Ok(text.to_owned()));
+value!(Cow<'static, str>: [&'a str; 1], |text| [text], |[text]| Ok(text.to_owned().into()));
 // A place in a list, of at most 32 bits.
 value!(usize: [u32; 1], |index| [*index as u32], |[index]| Ok(index as usize));
 // UTC; leap seconds are not counted.

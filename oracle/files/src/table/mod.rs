@@ -11,5 +11,7 @@ pub(crate) mod windows;
 
 pub use batch::Columns;
 pub use column::{Cell, Cells, Column, ColumnType, ColumnValues, Nanoseconds, TextCells};
-pub use declared::Declared;
+pub use declaration::{Names, nullable, optional, seldom_repeating};
+pub use declared::{Declared, Table};
+pub use field::{Atom, Field, Value};
 pub use time::{format_utc, parse_utc};

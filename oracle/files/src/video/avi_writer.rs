@@ -9,7 +9,7 @@ use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
 
 use super::weaver::Weaver;
-use crate::error::{Place, create_new};
+use crate::error::file_error::{Place, create_new};
 use crate::{FileError, PartialFiles};
 
 /// How frames are stored.

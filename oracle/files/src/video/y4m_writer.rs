@@ -7,7 +7,7 @@ use contract::docking::{Field, Lines};
 
 use super::avi_writer::check_frames;
 use super::weaver::Weaver;
-use crate::error::create_new;
+use crate::error::file_error::create_new;
 use crate::{FileError, PartialFiles};
 
 /// Writes fields as Y4M, two of a frame woven into one image.

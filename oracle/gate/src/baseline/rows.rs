@@ -4,7 +4,8 @@ use std::fs::File;
 use std::path::Path;
 
 use files::{
-    Cell, Cells, Column, ColumnValues, FileError, ParquetFile, Place, TableOptions, TextCells, write_table,
+    Cell, Cells, Column, ColumnValues, Columns, Declared, FileError, ParquetFile, Place, Row, Table,
+    TableOptions, table, write_table,
 };
 use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 
@@ -12,6 +13,27 @@ use score::{FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 const OF: &str = ".of";
 /// Rows read at a time.
 const BATCH_ROWS: usize = 8192;
+
+table! {
+    /// The columns that the rows of every baseline have.
+    struct UnitRow: parquet(number) {
+        /// number of the frame, field or case; ascending
+        number: u64,
+        /// number of the block that the unit belongs to, from 0; ascending by one
+        block: u32,
+        /// group of the unit: its day, range or lens
+        group: String,
+        /// verdict: far range `correct`, `wrong`, `missed`; docking `success`, `range_only`, `wrong`, `missed`; of a case `37 of 40`, the frames that are right
+        verdict: String,
+        /// cause of the verdict; null where there is none
+        cause: Option<String>,
+    }
+}
+
+/// The columns of `rows.parquet` that every baseline has.
+pub fn row_columns() -> Vec<Declared> {
+    UnitRow::declared()
+}
 
 /// Writes the rows, with the number of each one's block, into a file that will be `path`.
 pub(crate) fn write(
@@ -21,13 +43,14 @@ pub(crate) fn write(
     block_of: impl Fn(usize) -> usize,
 ) -> Result<(), FileError> {
     let units = &table.units;
-    let mut columns = vec![
-        Column::new("number", units.iter().map(|unit| unit.number)),
-        Column::new("block", (0..units.len()).map(|unit| block_of(unit) as u32)),
-        Column::texts("group", units.iter().map(|unit| &unit.group)),
-        Column::texts("verdict", units.iter().map(|unit| &unit.verdict)),
-        Column::nullable_texts("cause", units.iter().map(|unit| unit.cause.as_ref())),
-    ];
+    let row = |(index, unit): (usize, &UnitVerdict)| UnitRow {
+        number: unit.number,
+        block: block_of(index) as u32,
+        group: unit.group.clone(),
+        verdict: unit.verdict.clone(),
+        cause: unit.cause.clone(),
+    };
+    let mut columns = UnitRow::columns(&units.iter().enumerate().map(row).collect::<Vec<_>>());
     for figure in &table.figures {
         let sums = figure.terms.iter().map(|term| (term.of > 0).then_some(term.sum as f32));
         let sums = Column::nullable(&figure.name, sums);
@@ -59,6 +82,12 @@ pub(crate) fn read(
     };
     let mut blocks = Vec::new();
     let file = ParquetFile::open(path)?;
+    for column in UnitRow::columns(&[]) {
+        let column_type = Ok(column.values().column_type());
+        if file.column(column.name()).is_none_or(|found| found.column_type != column_type) {
+            return Err(no_column(path, column.name()));
+        }
+    }
     // What is there: a column that is missing is missed by its type below.
     let names: Vec<String> = names(figures).filter(|name| file.column(name).is_some()).collect();
     let of_other_type = names.iter().find(|name| file.column(name).is_some_and(|c| c.column_type.is_err()));
@@ -115,24 +144,10 @@ fn add(
     ) -> Result<&'a Cells<T>, FileError> {
         found.and_then(T::cells).ok_or_else(|| no_column(path, name))
     }
-    let texts = |name: &str| -> Result<&TextCells, FileError> {
-        match find(name) {
-            Some(ColumnValues::Utf8(texts)) => Ok(texts),
-            _ => Err(no_column(path, name)),
-        }
-    };
     let first_row = table.units.len();
-    let numbers: &Cells<u64> = cells(path, find("number"), "number")?;
-    let of_blocks: &Cells<u32> = cells(path, find("block"), "block")?;
-    let (groups, verdicts, causes) = (texts("group")?, texts("verdict")?, texts("cause")?);
-    let units = numbers.values().iter().zip(of_blocks.values()).enumerate();
-    for (row, (&number, &block)) in units {
-        table.units.push(UnitVerdict {
-            number,
-            group: groups.value(row).to_owned(),
-            verdict: verdicts.value(row).to_owned(),
-            cause: causes.get(row).map(str::to_owned),
-        });
+    for row in UnitRow::rows(&Columns::new(path, batch, first_row as u64))? {
+        let UnitRow { number, block, group, verdict, cause } = row;
+        table.units.push(UnitVerdict { number, group, verdict, cause });
         blocks.push(block as usize);
     }
     for figure in &mut table.figures {

@@ -234,8 +234,6 @@ impl World for FarRangeMission {
         (frame, telemetry, SceneTruth { frame: truth, objects })
     }
 
-    fn feedback((): (), _: &Outcome) {}
-
     fn save(
         &self,
         camera: &sim::SimulatedCamera<'_>,

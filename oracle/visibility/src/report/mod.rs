@@ -9,6 +9,7 @@ pub(crate) mod write;
 
 use std::borrow::Cow;
 
+use files::table;
 use scenario::run_file::FileDigests;
 use serde::{Deserialize, Serialize};
 
@@ -198,19 +199,21 @@ pub struct SimulatedPoint {
     pub analytic: f64,
 }
 
-/// A point of the limiting magnitude.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct LimitPoint {
-    /// Exposure, s.
-    pub exposure_s: f64,
-    /// Johnson V at which half of the stars are detected; `None` when none are.
-    pub half: Option<f64>,
-    /// Johnson V at which they are with the probability that is asked for.
-    pub asked: Option<f64>,
-    /// Stars detected at a boresight, mean over the sky.
-    pub stars: f64,
-    /// P(N ≥ n_min) over the sky.
-    pub probability: f64,
+table! {
+    /// A point of the limiting magnitude.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+    pub struct LimitPoint: csv {
+        /// exposure, s
+        exposure_s: f64,
+        /// V of the stars of which half are detected; none when fewer are
+        half: Option<f64> = ["magnitude_half"],
+        /// V of the stars detected with the probability that is asked for
+        asked: Option<f64> = ["magnitude_asked"],
+        /// stars detected at a boresight, mean over the sky
+        stars: f64,
+        /// probability of enough of them, over the sky
+        probability: f64,
+    }
 }
 
 /// The sky in figures.
@@ -237,46 +240,50 @@ pub struct SkySummary {
     pub map: Vec<PointingStars>,
 }
 
-/// The stars at one pointing.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PointingStars {
-    /// Right ascension, degrees.
-    pub ra_deg: f64,
-    /// Declination, degrees.
-    pub dec_deg: f64,
-    /// Roll, −180 to 180 degrees: the turn from the image with north up, as in a scenario's inertial guidance.
-    pub roll_deg: f64,
-    /// When.
-    pub time_utc: String,
-    /// What excludes it; `None` when it counts.
-    pub excluded: Option<Cow<'static, str>>,
-    /// Light of the background, electrons a second and pixel.
-    pub background_e_per_s: f64,
-    /// Stars in the field to the limiting magnitude of the probability that is asked for.
-    pub in_field: u64,
-    /// Stars detected, expected number.
-    pub stars: f64,
-    /// P(N ≥ n_min).
-    pub probability: f64,
+table! {
+    /// The stars at one pointing.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct PointingStars: csv {
+        /// right ascension of the boresight, 0 to 360
+        ra_deg: f64,
+        /// its declination, −90 to 90
+        dec_deg: f64,
+        /// roll, −180 to 180: the turn from the image with north up, as in a scenario's inertial guidance
+        roll_deg: f64,
+        /// time, UTC
+        time_utc: String,
+        /// what excludes the pointing: `sun`, `moon`, `earth`; none when it counts
+        excluded: Option<Cow<'static, str>>,
+        /// background, electrons per second and pixel
+        background_e_per_s: f64,
+        /// stars in the field down to the limiting magnitude of the probability that is asked for
+        in_field: u64,
+        /// expected number of stars detected
+        stars: f64,
+        /// probability of enough of them
+        probability: f64,
+    }
 }
 
-/// Exposures at one range.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct WindowPoint {
-    /// Range, km.
-    pub range_km: f64,
-    /// Longest exposure that leaves the target not over-exposed with the probability that is asked for, s, cut to the camera's longest.
-    pub longest_s: f64,
-    /// The same in half of the aspects.
-    pub median_s: f64,
-    /// Shortest exposure with enough stars at that probability, s; `None` when there is none.
-    pub shortest_s: Option<f64>,
-    /// Whether there is an exposure that does both.
-    pub is_open: bool,
-    /// Stars detected at the median exposure, mean over the sky.
-    pub stars: f64,
-    /// P(N ≥ n_min) at the median exposure.
-    pub probability: f64,
+table! {
+    /// Exposures at one range.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+    pub struct WindowPoint: csv {
+        /// range of the target
+        range_km: f64,
+        /// longest exposure that does not over-expose the target with the probability that is asked for, at most the camera's longest
+        longest_s: f64,
+        /// the same for half of the aspects
+        median_s: f64,
+        /// shortest exposure with enough stars at that probability; none where there is none
+        shortest_s: Option<f64>,
+        /// whether an exposure does both
+        is_open: bool,
+        /// stars detected at the median exposure, mean over the sky
+        stars: f64,
+        /// probability of enough of them at the median exposure
+        probability: f64,
+    }
 }
 
 /// From where on, approaching, stars are too few.
@@ -291,14 +298,16 @@ pub struct StarsLost {
     pub half_of_frames_km: Option<f64>,
 }
 
-/// Greatest range by phase angle.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct RangeByPhase {
-    /// Smallest and largest phase angle, degrees.
-    pub phases_deg: [f64; 2],
-    /// Greatest range at which the target is detected with the probability that is asked for at the nominal exposure, km; `None` when it
-    /// is not at 10 m.
-    pub nominal_km: Option<f64>,
-    /// The same at the longest exposure.
-    pub longest_km: Option<f64>,
+table! {
+    /// Greatest range by phase angle.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+    pub struct RangeByPhase: csv {
+        /// smallest and largest phase angle
+        phases_deg: [f64; 2] = ["phase_low_deg", "phase_high_deg"],
+        /// greatest range at which the target is detected with the probability that is asked for at the nominal exposure;
+        /// none where it is not detected at 10 m
+        nominal_km: Option<f64>,
+        /// the same at the longest exposure
+        longest_km: Option<f64>,
+    }
 }

@@ -1,20 +1,42 @@
 //! The files of a report: `visibility.json`, `visibility.md`, and a CSV a curve.
 use std::path::{Path, PathBuf};
 
-use files::{Failure, FileError, Lines, WholeFile, open_regular};
+use files::{CsvLine, Declared, Failure, FileError, Table, WholeFile, read_csv, table, write_csv};
 
-use crate::report::{PointingStars, VisibilityReport};
+use crate::report::{DetectionPoint, LimitPoint, PointingStars, RangeByPhase, VisibilityReport, WindowPoint};
 
-/// Files that a report has, in the order in which they are written.
-const NAMES: [&str; 7] = [
-    "detection.csv",
-    "limiting_magnitude.csv",
-    "sky.csv",
-    "exposure_window.csv",
-    "target_range.csv",
-    "visibility.md",
-    "visibility.json",
-];
+table! {
+    /// A point of the detection curve, with what was simulated about its magnitude.
+    struct DetectionRow: csv {
+        /// V of a star of mean colour
+        magnitude: f64,
+        /// its electrons at the nominal exposure
+        electrons: f64,
+        /// probability of detection by the analytic law
+        probability: f64,
+        /// stars of simulated frames about the magnitude that the detector found
+        simulated_count: Option<u64>,
+        /// stars of those frames
+        simulated_of: Option<u64>,
+        /// lower limit of their rate, 95 % two-sided (Wilson)
+        simulated_low: Option<f64>,
+        /// upper limit
+        simulated_high: Option<f64>,
+        /// mean probability of those stars by the analytic law
+        simulated_analytic: Option<f64>,
+    }
+}
+
+/// The tables of a report, by name: their columns.
+pub fn tables() -> [(&'static str, Vec<Declared>); 5] {
+    [
+        ("detection.csv", DetectionRow::declared()),
+        ("limiting_magnitude.csv", LimitPoint::declared()),
+        ("sky.csv", PointingStars::declared()),
+        ("exposure_window.csv", WindowPoint::declared()),
+        ("target_range.csv", RangeByPhase::declared()),
+    ]
+}
 
 /// Writes a report into a new or empty directory, each file at once or not at all, `visibility.json` last: where it is, all is.
 /// `markdown` is the report for a person.
@@ -29,22 +51,28 @@ pub fn write_report(
     prepare(folder)?;
     let json = serde_json::to_string_pretty(report)
         .map_err(|error| Failure::Usage(format!("the report cannot be written as JSON: {error}")))?;
-    let texts = [
-        detection(report),
-        limiting_magnitude(report),
-        sky(report),
-        exposure_window(report),
-        target_range(report),
-        markdown.to_owned(),
-        json + "\n",
+    let paths = [
+        write(folder, "detection.csv", &detection(report))?,
+        write(folder, "limiting_magnitude.csv", &report.limiting_magnitude)?,
+        write(folder, "sky.csv", &report.sky.map)?,
+        write(folder, "exposure_window.csv", &report.exposure_window)?,
+        write(folder, "target_range.csv", &report.target_range)?,
+        write_text(folder, "visibility.md", markdown)?,
+        write_text(folder, "visibility.json", &(json + "\n"))?,
     ];
-    let mut paths = Vec::new();
-    for (name, text) in NAMES.iter().zip(texts) {
-        let path = folder.join(name);
-        WholeFile::with_text(&path, &text)?.commit_new()?;
-        paths.push(path);
-    }
-    Ok(paths)
+    Ok(paths.to_vec())
+}
+
+fn write<T: CsvLine>(folder: &Path, name: &str, rows: &[T]) -> Result<PathBuf, FileError> {
+    let path = folder.join(name);
+    write_csv(&path, rows)?;
+    Ok(path)
+}
+
+fn write_text(folder: &Path, name: &str, text: &str) -> Result<PathBuf, FileError> {
+    let path = folder.join(name);
+    WholeFile::with_text(&path, text)?.commit_new()?;
+    Ok(path)
 }
 
 fn io(path: &Path, doing: &'static str) -> impl Fn(std::io::Error) -> FileError {
@@ -61,81 +89,28 @@ fn prepare(folder: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// A table of lines that `header` names the columns of.
-fn table(header: &str, lines: impl Iterator<Item = String>) -> String {
-    let mut text = format!("{header}\n");
-    for line in lines {
-        text.push_str(&line);
-        text.push('\n');
-    }
-    text
-}
-
-/// A number as it reads back to the bit; empty where there is none.
-fn cell(value: Option<f64>) -> String {
-    value.map_or_else(String::new, |value| format!("{value:?}"))
-}
-
-fn cells(values: &[Option<f64>]) -> String {
-    values.iter().map(|value| cell(*value)).collect::<Vec<_>>().join(",")
-}
-
-fn detection(report: &VisibilityReport) -> String {
-    let lines = report.detection.iter().map(|point| {
+/// The detection curve beside the simulated rates.
+fn detection(report: &VisibilityReport) -> Vec<DetectionRow> {
+    let row = |point: &DetectionPoint| {
         let simulated = report.detection_simulated.iter().find(|s| s.magnitude == point.magnitude);
-        let own = [Some(point.magnitude), Some(point.electrons), Some(point.probability)];
-        let counts = simulated.map_or_else(|| ",".to_owned(), |s| format!("{},{}", s.count, s.of));
-        let rates = simulated.map_or([None; 3], |s| [Some(s.low), Some(s.high), Some(s.analytic)]);
-        format!("{},{counts},{}", cells(&own), cells(&rates))
-    });
-    let header = "magnitude,electrons,probability,simulated_count,simulated_of,simulated_low,simulated_high,simulated_analytic";
-    table(header, lines)
-}
-
-fn limiting_magnitude(report: &VisibilityReport) -> String {
-    let lines = report.limiting_magnitude.iter();
-    let lines =
-        lines.map(|p| cells(&[Some(p.exposure_s), p.half, p.asked, Some(p.stars), Some(p.probability)]));
-    table("exposure_s,magnitude_half,magnitude_asked,stars,probability", lines)
-}
-
-fn sky(report: &VisibilityReport) -> String {
-    let lines = report.sky.map.iter().map(|p| {
-        format!(
-            "{},{},{},{},{},{}",
-            cells(&[Some(p.ra_deg), Some(p.dec_deg), Some(p.roll_deg)]),
-            p.time_utc,
-            p.excluded.as_deref().unwrap_or(""),
-            cell(Some(p.background_e_per_s)),
-            p.in_field,
-            cells(&[Some(p.stars), Some(p.probability)])
-        )
-    });
-    table("ra_deg,dec_deg,roll_deg,time_utc,excluded,background_e_per_s,in_field,stars,probability", lines)
+        DetectionRow {
+            magnitude: point.magnitude,
+            electrons: point.electrons,
+            probability: point.probability,
+            simulated_count: simulated.map(|s| s.count),
+            simulated_of: simulated.map(|s| s.of),
+            simulated_low: simulated.map(|s| s.low),
+            simulated_high: simulated.map(|s| s.high),
+            simulated_analytic: simulated.map(|s| s.analytic),
+        }
+    };
+    report.detection.iter().map(row).collect()
 }
 
 /// Reads `sky.csv`.
 ///
 /// # Errors
-/// [`FileError`] for a file that cannot be read, or a row that is none of its.
+/// [`FileError`] for a file that cannot be read, or a cell that is not as it should be, with line and column.
 pub fn read_sky(path: &Path) -> Result<Vec<PointingStars>, FileError> {
-    let format = |error: csv::Error| FileError::format(path, "sky.csv", error);
-    let file = Lines::new(open_regular(path)?);
-    csv::Reader::from_reader(file).deserialize().map(|row| row.map_err(format)).collect()
-}
-
-fn exposure_window(report: &VisibilityReport) -> String {
-    let lines = report.exposure_window.iter().map(|p| {
-        let exposures = cells(&[Some(p.range_km), Some(p.longest_s), Some(p.median_s), p.shortest_s]);
-        format!("{exposures},{},{}", p.is_open, cells(&[Some(p.stars), Some(p.probability)]))
-    });
-    table("range_km,longest_s,median_s,shortest_s,is_open,stars,probability", lines)
-}
-
-fn target_range(report: &VisibilityReport) -> String {
-    let lines = report.target_range.iter().map(|p| {
-        let [low, high] = p.phases_deg;
-        cells(&[Some(low), Some(high), p.nominal_km, p.longest_km])
-    });
-    table("phase_low_deg,phase_high_deg,nominal_km,longest_km", lines)
+    read_csv(path)
 }

@@ -1,0 +1,119 @@
+//! Pieces of a world whose files are tables of text and whose figures are counted unit by unit.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use contract::Interface;
+use files::{CsvLine, CsvWriter, Failure, FileError};
+use indexmap::IndexMap;
+use score::{Definition, Figure, FigureTerms, UnitTable, UnitVerdict};
+
+use crate::world::{Answers, Judgement, OutcomeOf, Scorer, TelemetryOf, World, paths};
+
+/// The format of a world that keeps its images in one way alone; its word is `csv`.
+#[derive(Debug, Clone, Copy)]
+pub struct CsvImages;
+
+impl CsvImages {
+    /// The word of the format.
+    pub const WORD: &'static str = "csv";
+}
+
+impl FromStr for CsvImages {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let refused = || format!("`{text}` is no format of these images; expected {}", Self::WORD);
+        if text == Self::WORD { Ok(Self) } else { Err(refused()) }
+    }
+}
+
+/// Writes answers as one CSV, a row per answer.
+pub struct CsvAnswers<L>(CsvWriter<L>);
+
+impl<I: Interface, L: CsvLine + for<'a> From<(u64, &'a I::Outcome)>> Answers<I> for CsvAnswers<L> {
+    fn files(measurements: &Path) -> Vec<PathBuf> {
+        vec![measurements.to_owned()]
+    }
+
+    fn create(files: &[PathBuf]) -> Result<Self, FileError> {
+        let [measurements] = paths(files)?;
+        CsvWriter::create(measurements).map(Self)
+    }
+
+    fn add(&mut self, number: u64, outcome: &I::Outcome) -> Result<(), FileError> {
+        self.0.line(&L::from((number, outcome)))
+    }
+
+    fn finish(self) -> Result<(), FileError> {
+        self.0.finish()
+    }
+}
+
+/// A frame of a world with its answer, as its figures are counted of it.
+pub trait ScoredUnit<W: World>: Sized {
+    /// The unit of an answer.
+    fn new(truth: &W::Truth, telemetry: &TelemetryOf<W>, outcome: &OutcomeOf<W>) -> Self;
+
+    /// The figures of the score, in the order of its file.
+    fn definitions() -> Vec<Definition<'static, Self>>;
+
+    /// Number, group, verdict and cause.
+    fn verdict(&self) -> UnitVerdict;
+}
+
+/// Judges answers whose figures are counted unit by unit.
+pub struct UnitScorer<U>(Vec<U>);
+
+impl<U> Default for UnitScorer<U> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<W: World<Judgement = UnitJudgement>, U: ScoredUnit<W>> Scorer<W> for UnitScorer<U> {
+    fn add(
+        &mut self,
+        truth: &W::Truth,
+        telemetry: &TelemetryOf<W>,
+        outcome: &OutcomeOf<W>,
+    ) -> Result<(), Failure> {
+        self.0.push(U::new(truth, telemetry, outcome));
+        Ok(())
+    }
+
+    fn finish(self) -> UnitJudgement {
+        let sequence: Vec<&U> = self.0.iter().collect();
+        let definitions = U::definitions();
+        let figure = |d: &Definition<'static, U>| (d.figure.name.clone(), d.figure(&[&sequence]));
+        UnitJudgement {
+            figures: definitions.iter().map(figure).collect(),
+            units: UnitTable {
+                units: self.0.iter().map(U::verdict).collect(),
+                figures: definitions.iter().map(|figure| FigureTerms::new(figure, &self.0)).collect(),
+            },
+        }
+    }
+}
+
+/// A run that was scored unit by unit; `score.json` is its figures.
+pub struct UnitJudgement {
+    figures: IndexMap<String, Figure>,
+    units: UnitTable,
+}
+
+impl Judgement for UnitJudgement {
+    type Score = IndexMap<String, Figure>;
+
+    fn score(&self) -> &Self::Score {
+        &self.figures
+    }
+
+    fn figures(&self) -> &IndexMap<String, Figure> {
+        &self.figures
+    }
+
+    fn units(&self) -> UnitTable {
+        self.units.clone()
+    }
+}
