@@ -105,6 +105,7 @@ def make(program, folder):
             if table.exists():
                 keep("csv", f"small-{run}-{name}.csv", "\n".join(table.read_text().splitlines()[:6]) + "\n")
     keep("csv", "small-value.csv", "value\n1\n-2.5e-3\n")
+    keep("csv", "small-covariances.csv", COVARIANCES)
     for path in sorted(folder.glob("far/**/*.parquet")) + sorted(folder.glob("docking/**/*.parquet")):
         keep("parquet", f"small-{path.relative_to(folder).parts[0]}-{path.name}", path)
     keep("json", "small-score.json", folder / "far/score.json")
@@ -167,9 +168,17 @@ def tiff():
     return b"II*\0" + struct.pack("<I", 8 + len(body)) + body + directory
 
 
+COVARIANCES = (
+    "frame,status,x_px,y_px,los_j2000_x,los_j2000_y,los_j2000_z,sigma_x_px,sigma_y_px,correlation_xy,"
+    "sigma_ra_deg,sigma_dec_deg,correlation_ra_dec\n"
+    "1,detected,12.5,8.25,0,0.6,0.8,0.05,0.04,0.1,0.002,0.003,-0.2\n"
+    "2,detected,12.5,8.25,,,,0.05,0.04,-0.999,,,\n"
+    "3,no_target,,,,,,,,,,,\n"
+)
 ANSWER_FAR = (
     '{"frame": 7, "status": "detected", "x_px": 12.5, "y_px": 400.25, "los_j2000": [0, 0.6, 0.8], '
-    '"q_cam_j2000": [1, 0, 0, 0], "n_stars": 12}\n'
+    '"q_cam_j2000": [1, 0, 0, 0], "n_stars": 12, "sigma_x_px": 0.05, "sigma_y_px": 0.04, "correlation_xy": 0.1, '
+    '"sigma_ra_deg": 0.002, "sigma_dec_deg": 0.003, "correlation_ra_dec": -0.2}\n'
 )
 ANSWER_DOCKING = (
     '{"field": 7, "status": "measured", "d_m": [0.1, -0.2, 9.7], "phi_deg": [0.1, 0.0, 1.2], '

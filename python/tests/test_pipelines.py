@@ -43,6 +43,36 @@ def test_answers_of_every_kind_are_read():
     assert run.measurements["los_j2000_z"][1] == 1 and run.measurements["n_stars"][1] == 3
 
 
+def test_covariances_are_recorded_and_scored():
+    scenario = boresight.Scenario.load("argon")
+    truth = {frame.number: frame.truth for frame in scenario.frames(FRAMES)}
+
+    def pipeline(frame, telemetry):
+        of = truth[frame.number]
+        los = [of[f"los_j2000_{axis}"] for axis in "xyz"]
+        return Detection(
+            of["target_x_px"] + 0.5, of["target_y_px"], los, sigma_x_px=0.25, sigma_y_px=0.5, correlation_xy=0.5,
+            sigma_ra_deg=0.001, sigma_dec_deg=0.002, correlation_ra_dec=-0.5,
+        )  # fmt: skip
+
+    run = boresight.run(scenario, frames=FRAMES, pipeline=pipeline)
+    assert set(run.measurements["sigma_x_px"]) == {0.25} and set(run.measurements["correlation_ra_dec"]) == {-0.5}
+    figures = run.score["figures"]
+    correct = figures["correct_rate"]["count"]
+    assert correct > 0 and figures["centroid_nees_mean"]["count"] == correct
+    # The line of sight is the true one: no error, but for rounding.
+    assert figures["line_of_sight_nees_mean"]["value"] < 1e-9
+    assert sum(row["frames"] for row in run.score["consistency"] if row["by"] == "image") == correct
+    again = boresight.score(run, run.measurements)
+    assert again["figures"] == figures and again["consistency"] == run.score["consistency"]
+
+
+def test_a_class_is_made_with_the_calibration():
+    setup = boresight.Scenario.load("argon").setup
+    assert setup["readout"]["gain_e_per_dn"] > 0 and setup["calibration"]["full_well_e"] > 0
+    assert len(setup["calibration"]["attitude"]["white_arcsec"]) == 3
+
+
 def test_what_cannot_be_used_is_an_outcome_with_its_reason():
     def raised(frame, telemetry):
         raise ZeroDivisionError("no stars")
@@ -53,6 +83,8 @@ def test_what_cannot_be_used_is_an_outcome_with_its_reason():
         (lambda f, t: Detection(float("nan"), 1), "expected finite numbers"),
         (lambda f, t: Detection(900, 1), "not on the detector of 752 × 580 pixels"),
         (lambda f, t: Detection(1, 1, los_j2000=(1, 1, 0)), "is not a unit vector"),
+        (lambda f, t: Detection(1, 1, sigma_x_px=0.1), "not all three"),
+        (lambda f, t: Detection(1, 1, sigma_x_px=0.1, sigma_y_px=0, correlation_xy=0), "its sigma_y_px is 0, expected a positive"),
         (lambda f, t: {"status": "detected", "x": 1}, "unknown field `x`"),
         (lambda f, t: NoSolution("tired"), "its status `tired` is not known"),
         (lambda f, t: Pose((0, 0, 9), (0, 0, 0)), "unknown field `d_m`"),

@@ -2,7 +2,19 @@
 //! programs that do everything wrong.
 
 use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
 
+use boresight::files::format_utc;
+use boresight::run::World;
+use boresight::run::far_range::FarRangeMission;
+use contract::{
+    Calibration, Camera, Direction, FarRange, Frame, ListedStar, PipelineFactory, PixelPoint, Rotation,
+    Setup, Telemetry, conformance,
+};
+use hifitime::Epoch;
+use nalgebra::Vector3;
+use pipeline::external::ExternalFactory;
 use serde_json::{Value, json};
 
 use crate::support::{Bench, figure};
@@ -71,6 +83,72 @@ fn the_example_answers_a_dataset_as_it_answers_a_run() {
     bench.boresight(&format!("render starting-point --frames {FRAMES} --format png --out set")).done();
     bench.boresight_words(&["process", "set", "--pipeline", &pipeline]).done();
     bench.check_same("run/measurements.csv", "set/measurements.csv");
+}
+
+/// A small camera at rest, and a listed star whose image is at the pixel (10.5, 40.5).
+fn setup() -> Setup {
+    let star = Vector3::new((10.5 - 31.5) * 8e-3, (40.5 - 23.5) * 8e-3, 20.0);
+    Setup {
+        camera: Camera {
+            columns: 64,
+            rows: 48,
+            focal_length_mm: 20.0,
+            pixel_width_um: 8.0,
+            pixel_height_um: 8.0,
+            principal_x_px: 31.5,
+            principal_y_px: 23.5,
+            radial: [0.0; 3],
+            tangential: [0.0; 2],
+        },
+        camera_from_body: Rotation::identity(),
+        bit_depth: 12,
+        readout: None,
+        calibration: Calibration::default(),
+        zero_suppression_dn: None,
+        stars: vec![ListedStar { id: 7, direction: Direction::from_vector(star).unwrap(), magnitude: 2.0 }],
+    }
+}
+
+/// A frame of level 100 with a square of 2 × 2 pixels at the listed star, and a fainter one about (30.5, 20.5).
+fn star_and_target() -> (Frame, Telemetry) {
+    let mut dn = vec![100; 64 * 48];
+    for (x, y, level) in [(10, 40, 3000), (30, 20, 1000)] {
+        [0, 1, 64, 65].into_iter().for_each(|beside| dn[y * 64 + x + beside] = level);
+    }
+    let telemetry = Telemetry {
+        time: Epoch::from_gregorian_utc_at_midnight(2012, 4, 25),
+        exposure_s: 0.25,
+        body_from_icrs: Rotation::identity(),
+        velocity_km_s: None,
+    };
+    (Frame::new(1, 64, 48, 12, dn, None).unwrap(), telemetry)
+}
+
+/// By the interpreter that has the packages.
+#[test]
+#[ignore = "needs numpy, astropy, sep and photutils; BORESIGHT_PYTHON names the interpreter"]
+fn examples_with_packages_keep_the_contract_and_leave_listed_stars_alone() {
+    let python = std::env::var("BORESIGHT_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let setup = setup();
+    for (name, expected) in [
+        ("argmax", PixelPoint::new(10.0, 40.0)),
+        ("sep_brightest", PixelPoint::new(30.5, 20.5)),
+        ("photutils_brightest", PixelPoint::new(30.5, 20.5)),
+    ] {
+        let scratch = tempfile::tempdir().unwrap();
+        let program = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("docs/examples/{name}.py"));
+        let factory = ExternalFactory::<FarRange>::new(
+            format!("'{python}' '{}'", program.display()),
+            scratch.path().to_owned(),
+            Arc::new(FarRangeMission::write_image),
+            format_utc,
+        );
+        assert_eq!(conformance::check(&factory, &setup), Ok(()), "{name}");
+        let (image, telemetry) = star_and_target();
+        let outcome = factory.build(&setup).unwrap().process(&image, &telemetry);
+        let position = outcome.measurement().unwrap_or_else(|| panic!("{name}: {outcome:?}")).position;
+        assert!(position.distance(expected) < 0.01, "{name}: {position:?}");
+    }
 }
 
 /// A program that greets, answers the frames 100 and 101, and then does `then` in Python with a request in `line`.

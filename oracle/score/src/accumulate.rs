@@ -12,9 +12,10 @@ use super::angles::{
 };
 use super::argon_table2::Table2;
 use super::cause::{Cause, Detector};
-use super::consistency::{self, ImageState};
+use super::consistency;
 use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
 use super::figure_spec::{Better, FigureSpec};
+use super::image_state::ImageState;
 use super::report::{GroupScore, Score, names};
 use super::settled;
 use super::verdict::{FrameVerdict, Taken, Unproject, Verdict, judge};

@@ -36,6 +36,8 @@ pub mod docking;
 mod figure_spec;
 #[cfg(test)]
 mod hand_made;
+mod image_state;
+mod normalised_error;
 mod report;
 mod settled;
 mod verdict;
@@ -47,8 +49,9 @@ pub use angles::{
 pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
 pub use belonging::belonging_to;
 pub use cause::Cause;
-pub use consistency::{ConsistencyRow, ImageState, NormalisedError};
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 pub use figure_spec::{Better, FigureSpec, Kind, Sense, angle};
-pub use report::{Figure, GroupScore, Score, is_zero, names, warm_up_note};
+pub use image_state::ImageState;
+pub use normalised_error::NormalisedError;
+pub use report::{ConsistencyRow, Figure, GroupScore, Score, is_zero, names, warm_up_note};
 pub use verdict::{FrameVerdict, Taken, Unproject, Verdict, VerdictRow};

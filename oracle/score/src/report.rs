@@ -5,8 +5,6 @@ use statistics::{
     Interval, below_median, effective_size, mean_interval, median, median_interval, rms_interval, wilson,
 };
 
-use super::consistency::ConsistencyRow;
-
 /// Names of the far-range figures. Rates are fractions from 0 to 1.
 pub mod names {
     /// Detected, of all frames.
@@ -205,6 +203,19 @@ pub struct Score {
     /// covariance.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub consistency: Vec<ConsistencyRow>,
+}
+
+/// Honesty of the covariances in one kind of frames: a row of `consistency` in `score.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ConsistencyRow {
+    /// What the frames are told apart by: `image` or `attitude`.
+    pub by: String,
+    /// Of `image`: [`crate::ImageState::code`]; of `attitude`: [`contract::AttitudeSource::code`], or `unstated`.
+    pub value: String,
+    /// Correct answers of this kind with a covariance.
+    pub frames: u64,
+    /// The figures of consistency over them, by name.
+    pub figures: IndexMap<String, Figure>,
 }
 
 /// The score of one group of frames.

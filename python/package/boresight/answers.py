@@ -21,6 +21,19 @@ class Detection:
     """Attitude of the camera, unit quaternion (w, x, y, z); recorded, not scored."""
     n_stars: int | None = None
     """Stars identified in the frame."""
+    sigma_x_px: float | None = None
+    """Standard deviation of `x_px`, px, above 0; with `sigma_y_px` and `correlation_xy`, or none of the three."""
+    sigma_y_px: float | None = None
+    """Standard deviation of `y_px`, px, above 0."""
+    correlation_xy: float | None = None
+    """Correlation of both errors, above -1 and below 1."""
+    sigma_ra_deg: float | None = None
+    """Standard deviation of the line of sight across columns of the camera, degrees, above 0, the error of the attitude included; with
+    `los_j2000`, `sigma_dec_deg` and `correlation_ra_dec`, or none of the three."""
+    sigma_dec_deg: float | None = None
+    """Standard deviation across rows, degrees, above 0."""
+    correlation_ra_dec: float | None = None
+    """Correlation of both errors, above -1 and below 1."""
 
     status = "detected"
 
