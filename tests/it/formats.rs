@@ -47,7 +47,7 @@ fn page(old: &str) -> String {
     page
 }
 
-/// `REMAKE=1 cargo test --test it the_page` writes the page anew.
+/// With `REMAKE=1` in the environment this test writes the page anew.
 #[test]
 fn the_page_of_formats_has_every_column() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/formats.md");
@@ -57,6 +57,9 @@ fn the_page_of_formats_has_every_column() {
         std::fs::write(&path, &new).unwrap();
     } else {
         let other = old.lines().zip(new.lines()).find(|(old, new)| old != new);
-        assert!(old == new, "remake docs/formats.md: REMAKE=1 cargo test --test it the_page; {other:#?}");
+        assert!(
+            old == new,
+            "docs/formats.md differs from the declarations; REMAKE=1 writes it anew: {other:#?}"
+        );
     }
 }

@@ -246,7 +246,8 @@ fn zero_suppression_is_told_to_pipelines_and_those_that_look_below_it_are_refuse
         bench.scenario("suppressed.toml", "argon", |table| {
             table.remove("roi");
             table.insert("zero_suppression_dn".into(), 67.into());
-            let thresholds = format!("thresholds = {{ {thresholds} }}").parse::<toml::Table>().unwrap();
+            let thresholds =
+                format!("mode = 'paper'\nthresholds = {{ {thresholds} }}").parse::<toml::Table>().unwrap();
             table.insert("far_range".into(), thresholds.into());
         });
     };

@@ -74,12 +74,14 @@ fn a_check_tells_what_follows_from_the_numbers() {
 fn a_check_asks_the_pipeline_too() {
     let bench = Bench::new();
     let suppressed = format!("zero_suppression_dn = 67\n{STARTING_POINT}");
-    bench.write("suppressed.toml", suppressed);
+    bench.write("suppressed.toml", &suppressed);
     let answer = bench.boresight("scenario check suppressed.toml --json");
     assert_eq!(answer.status, Some(1), "{}", answer.stderr);
     let check = answer.json();
     let error = check["error"].as_str().unwrap();
-    assert!(error.contains("far_range.thresholds.mode") && error.contains("is automatic"), "{error}");
+    assert!(error.contains("far_range.mode") && error.contains("is best, expected paper"), "{error}");
+    bench.boresight("run suppressed.toml --frames 0..1").refused(&["mode is best, expected paper"]);
+    bench.write("suppressed.toml", format!("{suppressed}\n[far_range]\nmode = \"paper\"\n"));
     bench.boresight("run suppressed.toml --frames 0..1").refused(&["thresholds.mode is automatic"]);
     // A program finds its own thresholds.
     bench.boresight("scenario check suppressed.toml --pipeline exec:true").done();

@@ -10,7 +10,7 @@ fn check(old: &str, new: &str, parts: &[&str]) {
 
 #[test]
 fn a_mistake_in_the_camera_is_named() {
-    check("columns = 752", "columns = ", &["camera.toml:29:11"]);
+    check("columns = 752", "columns = ", &["camera.toml:", ":11: string values must be quoted"]);
     check("focal_length_mm", "focal_length", &["`focal_length`", "did you mean `focal_length_mm`?"]);
     check(
         "focal_length_mm = 20.187",
