@@ -12,13 +12,13 @@ use super::angles::{
 };
 use super::argon_table2::Table2;
 use super::cause::{Cause, Detector};
-use super::consistency;
 use super::definition::{Definition, FigureTerms, Reduction, UnitTable, UnitVerdict};
 use super::figure_spec::{Better, FigureSpec};
-use super::image_state::ImageState;
 use super::report::{GroupScore, Score, names};
 use super::settled;
 use super::verdict::{FrameVerdict, Taken, Unproject, Verdict, judge};
+use crate::covariance::consistency;
+use crate::covariance::image_state::ImageState;
 
 /// What the score needs besides the frames.
 pub struct ScoreContext<'a> {

@@ -4,7 +4,7 @@ use contract::{Angle, Camera, CameraFrame, Covariance2, Direction, Icrs, Measure
 use nalgebra::Vector3;
 use sim::truth::FrameTruth;
 
-use super::normalised_error::NormalisedError;
+use crate::covariance::normalised_error::NormalisedError;
 
 /// What "within one pixel" and "within two" mean: an error counts as within a limit when it is strictly smaller.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -26,7 +26,7 @@ mod angles;
 mod argon_table2;
 mod belonging;
 mod cause;
-mod consistency;
+mod covariance;
 mod definition;
 #[allow(
     clippy::indexing_slicing,
@@ -36,8 +36,6 @@ pub mod docking;
 mod figure_spec;
 #[cfg(test)]
 mod hand_made;
-mod image_state;
-mod normalised_error;
 mod report;
 mod settled;
 mod verdict;
@@ -49,9 +47,9 @@ pub use angles::{
 pub use argon_table2::{ARGON_TABLE_2, Table2, Table2Distance};
 pub use belonging::belonging_to;
 pub use cause::Cause;
+pub use covariance::image_state::ImageState;
+pub use covariance::normalised_error::NormalisedError;
 pub use definition::{Definition, FigureTerms, Reduction, Term, UnitTable, UnitVerdict};
 pub use figure_spec::{Better, FigureSpec, Kind, Sense, angle};
-pub use image_state::ImageState;
-pub use normalised_error::NormalisedError;
 pub use report::{ConsistencyRow, Figure, GroupScore, Score, is_zero, names, warm_up_note};
 pub use verdict::{FrameVerdict, Taken, Unproject, Verdict, VerdictRow};

@@ -9,8 +9,8 @@ use sim::truth::{FrameTruth, ObjectKind, ObjectTruth};
 use super::angles::{AnswerError, GrantedAttitude, LineOfSightError};
 use super::belonging::{brightest, members, target, transmitted_electrons};
 use super::cause::{Cause, Detector, cause};
-use super::image_state::ImageState;
-use super::normalised_error::NormalisedError;
+use crate::covariance::image_state::ImageState;
+use crate::covariance::normalised_error::NormalisedError;
 
 /// The true camera's inverse projection: the direction whose image is at a point, `None` where there is none.
 pub type Unproject<'a> = dyn Fn(PixelPoint) -> Option<Direction<CameraFrame>> + 'a;

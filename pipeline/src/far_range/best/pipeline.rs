@@ -58,10 +58,19 @@ struct Calibrated {
 }
 
 /// Scale of the brightness of stars, estimated over frames.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Brightness {
+    /// Natural logarithm of measured flux over that of the calibration, or of [`UNKNOWN_ZERO_MAGNITUDE`].
     log_ratio: f64,
-    frames: u32,
+    knowledge: ScaleKnowledge,
+}
+
+/// Where a brightness scale comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ScaleKnowledge {
+    Nowhere,
+    Calibration,
+    Stars,
 }
 
 /// The frame before.
@@ -145,7 +154,14 @@ impl BestPipeline {
             },
             mounting: MountingFilter::new(setup.camera_from_body, calibration.attitude),
             psf: PointImageEstimate::new(calibration, config.best.psf_width_error),
-            brightness: Brightness::default(),
+            brightness: Brightness {
+                log_ratio: 0.0,
+                // Without a readout, fluxes are in digital numbers.
+                knowledge: match (setup.readout, calibration.zero_magnitude_e_per_s) {
+                    (Some(_), Some(_)) => ScaleKnowledge::Calibration,
+                    _ => ScaleKnowledge::Nowhere,
+                },
+            },
             hot_pixels: HotPixels::default(),
             tracks: Tracks::default(),
             background: BackgroundEstimator::default(),
@@ -253,7 +269,7 @@ impl BestPipeline {
     ) -> Outcome {
         let trail_px = self.trail_px(telemetry, elapsed_s);
         let attitude = self.attitude(light, sources, trail_px, telemetry, overrides);
-        let known = self.known_sources(&attitude, telemetry.exposure_s, trail_px);
+        let known = self.known_sources(&attitude, trail_px);
         let (mut candidates, mut fits, mut cluster_of) = (Vec::new(), Vec::new(), Vec::new());
         let fitted_in_any_case = if self.tracks.is_settled() { 0 } else { MAX_FITTED };
         for i in self.target_clusters(light, sources, &attitude, overrides) {
@@ -457,7 +473,7 @@ impl BestPipeline {
         if overrides.camera_from_icrs.is_none() {
             self.mounting.update(&prior, &error);
         }
-        self.learn(&matched, &candidates, &expected, &fits);
+        self.learn(&matched, &candidates, &expected, &fits, telemetry.exposure_s);
         let source = match n_stars {
             0 => AttitudeSource::NoStars,
             1 => AttitudeSource::TooFewStars,
@@ -516,8 +532,7 @@ impl BestPipeline {
         telemetry: &Telemetry,
         overrides: &Overrides<'_>,
     ) -> Vec<ExpectedStar> {
-        let scale = self.light.zero_magnitude_e_per_s.unwrap_or(UNKNOWN_ZERO_MAGNITUDE)
-            * libm::exp(self.brightness.log_ratio);
+        let scale = libm::exp(self.brightness.log_ratio);
         self.stars
             .predict(camera_from_icrs, &self.model)
             .into_iter()
@@ -531,7 +546,8 @@ impl BestPipeline {
                     }
                 };
                 let position = self.model.project_vector(&camera_from_icrs.rotate(&apparent))?;
-                let flux_e = scale * telemetry.exposure_s * libm::pow(10.0, -0.4 * star.magnitude);
+                let flux_e = (self.brightness.knowledge != ScaleKnowledge::Nowhere)
+                    .then(|| scale * self.unscaled_flux_e(star.magnitude, telemetry.exposure_s));
                 Some(ExpectedStar { star, apparent, position, flux_e })
             })
             .collect()
@@ -564,6 +580,7 @@ impl BestPipeline {
         candidates: &[StarCandidate],
         expected: &[ExpectedStar],
         fits: &[Option<Option<FittedSource>>],
+        exposure_s: f64,
     ) {
         if !self.config.best.sequence {
             return;
@@ -576,37 +593,40 @@ impl BestPipeline {
             }
             self.psf.take(&fit.image);
             if fit.image.flux_e > 0.0 {
-                log_ratios.push(libm::log(fit.image.flux_e / expected[s].flux_e));
+                let star = &expected[s];
+                let unscaled = self.unscaled_flux_e(star.star.magnitude, exposure_s);
+                // An exposure of 0 s gives no scale.
+                let log_ratio = libm::log(fit.image.flux_e / unscaled);
+                log_ratios.extend(Some(log_ratio).filter(|ratio| ratio.is_finite()));
             }
         }
         if log_ratios.len() >= 3 {
             log_ratios.sort_by(f64::total_cmp);
             let median = log_ratios[log_ratios.len() / 2];
-            let gain = if self.brightness.frames == 0 { 0.5 } else { 0.1 };
-            self.brightness.log_ratio += gain * median;
-            self.brightness.frames += 1;
+            let gain = match self.brightness.knowledge {
+                ScaleKnowledge::Nowhere => 1.0,
+                ScaleKnowledge::Calibration => 0.5,
+                ScaleKnowledge::Stars => 0.1,
+            };
+            self.brightness.log_ratio += gain * (median - self.brightness.log_ratio);
+            self.brightness.knowledge = ScaleKnowledge::Stars;
         }
     }
 
-    /// Expected stars as known sources under the image of a target.
-    fn known_sources(
-        &self,
-        attitude: &FrameAttitude,
-        exposure_s: f64,
-        trail_px: [f64; 2],
-    ) -> Vec<KnownSource> {
-        let _ = exposure_s;
+    /// Flux of a star by the calibration alone, electrons.
+    fn unscaled_flux_e(&self, magnitude: f64, exposure_s: f64) -> f64 {
+        let scale = self.light.zero_magnitude_e_per_s.unwrap_or(UNKNOWN_ZERO_MAGNITUDE);
+        scale * exposure_s * libm::pow(10.0, -0.4 * magnitude)
+    }
+
+    /// Expected stars of known flux as known sources under the image of a target.
+    fn known_sources(&self, attitude: &FrameAttitude, trail_px: [f64; 2]) -> Vec<KnownSource> {
         let image = self.psf.image(trail_px);
-        attitude
-            .expected
-            .iter()
-            .map(|star| KnownSource {
-                position: star.position,
-                flux_e: star.flux_e,
-                flux_sigma: STAR_FLUX_SIGMA,
-                image,
-            })
-            .collect()
+        let known = |star: &ExpectedStar| {
+            let flux_e = star.flux_e?;
+            Some(KnownSource { position: star.position, flux_e, flux_sigma: STAR_FLUX_SIGMA, image })
+        };
+        attitude.expected.iter().filter_map(known).collect()
     }
 
     /// Clusters that may be the target, the brightest first.
@@ -861,9 +881,10 @@ fn retained<T>(entries: Vec<T>, flags: &[bool]) -> Vec<T> {
 
 /// Whether another listed star shines into the image of star `s`.
 fn is_blended(stars: &[ExpectedStar], s: usize) -> bool {
+    let flux = |star: &ExpectedStar| libm::pow(10.0, -0.4 * star.star.magnitude);
     stars.iter().enumerate().any(|(other, star)| {
         other != s
             && star.position.distance(stars[s].position) < BLEND_PX
-            && star.flux_e > BLEND_FRACTION * stars[s].flux_e
+            && flux(star) > BLEND_FRACTION * flux(&stars[s])
     })
 }

@@ -14,8 +14,8 @@ pub(super) struct ExpectedStar {
     pub(super) apparent: Vector3<f64>,
     /// Position in the image, px.
     pub(super) position: PixelPoint,
-    /// Expected flux, electrons.
-    pub(super) flux_e: f64,
+    /// Expected flux, electrons; `None` while the brightness scale is not known.
+    pub(super) flux_e: Option<f64>,
 }
 
 /// A cluster that may be a star.
@@ -51,7 +51,8 @@ const SEARCH_SIGMAS: f64 = 3.5;
 
 /// Whether the brightness of a candidate allows it to be the star.
 fn is_as_bright(candidate: &StarCandidate, star: &ExpectedStar) -> bool {
-    let ratio = libm::log(candidate.flux_e.max(1e-9) / star.flux_e.max(1e-9));
+    let Some(flux_e) = star.flux_e else { return true };
+    let ratio = libm::log(candidate.flux_e.max(1e-9) / flux_e.max(1e-9));
     ratio >= LOG_FLUX_RATIO.0 && (ratio <= LOG_FLUX_RATIO.1 || candidate.is_saturated)
 }
 

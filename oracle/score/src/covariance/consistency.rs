@@ -2,13 +2,13 @@
 
 use contract::AttitudeSource;
 
-use super::angles::AnswerError;
-use super::definition::{Definition, Reduction};
-use super::figure_spec::Better;
 use super::image_state::ImageState;
 use super::normalised_error::NormalisedError;
-use super::report::{ConsistencyRow, names};
-use super::verdict::{FrameVerdict, Verdict};
+use crate::angles::AnswerError;
+use crate::definition::{Definition, Reduction};
+use crate::figure_spec::Better;
+use crate::report::{ConsistencyRow, names};
+use crate::verdict::{FrameVerdict, Verdict};
 
 /// Shares of normal errors within one and three standard deviations.
 const HONEST: [(&str, f64, f64); 2] = [("1", 1.0, 0.6827), ("3", 3.0, 0.9973)];
@@ -18,7 +18,7 @@ const UNSTATED: &str = "unstated";
 
 /// The figures of consistency, in their order: of the centroid and of the line of sight the mean NEES and the shares of
 /// components within one and three standard deviations.
-pub(super) fn definitions() -> Vec<Definition<'static, FrameVerdict>> {
+pub(crate) fn definitions() -> Vec<Definition<'static, FrameVerdict>> {
     let centroid = |frame: &FrameVerdict| right(frame)?.centroid_normalised;
     let line_of_sight = |frame: &FrameVerdict| right(frame)?.line_of_sight_normalised;
     let mut list = of_errors(names::CENTROID, "centroid", centroid);
@@ -66,7 +66,7 @@ fn has_covariance(frame: &FrameVerdict) -> bool {
 
 /// The rows of `consistency`: by the state of the image, then by the source of the attitude; kinds that do not occur are left out.
 /// Each sequence is in order of time.
-pub(super) fn rows(sequences: &[&[&FrameVerdict]]) -> Vec<ConsistencyRow> {
+pub(crate) fn rows(sequences: &[&[&FrameVerdict]]) -> Vec<ConsistencyRow> {
     let image = |state: ImageState| move |frame: &FrameVerdict| frame.image == Some(state);
     let of_images =
         ImageState::ALL.into_iter().filter_map(|state| row("image", state.code(), sequences, image(state)));

@@ -3,7 +3,7 @@
 use contract::PixelPoint;
 use sim::truth::ObjectTruth;
 
-use super::belonging::{other_electrons, target, transmitted_electrons};
+use crate::belonging::{other_electrons, target, transmitted_electrons};
 
 /// Share of electrons up to which an image counts as the target's alone, and as whole.
 const SMALL_SHARE: f64 = 0.02;
@@ -22,7 +22,7 @@ pub enum ImageState {
 
 impl ImageState {
     /// Every one, in the order of the tables.
-    pub(super) const ALL: [Self; 3] = [Self::Whole, Self::Cut, Self::Merged];
+    pub(crate) const ALL: [Self; 3] = [Self::Whole, Self::Cut, Self::Merged];
 
     /// The word used in files.
     pub fn code(self) -> &'static str {
@@ -34,7 +34,7 @@ impl ImageState {
     }
 
     /// The state of the target in the cluster at `position`; `None` without a target.
-    pub(super) fn of(position: PixelPoint, objects: &[ObjectTruth]) -> Option<Self> {
+    pub(crate) fn of(position: PixelPoint, objects: &[ObjectTruth]) -> Option<Self> {
         let target = target(objects)?;
         let others = other_electrons(position, target, objects);
         Some(if others > SMALL_SHARE * (transmitted_electrons(target) + others) {
