@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use boresight_pipeline::external::ExternalFactory;
 use contract::{
-    Camera, Direction, FarRange, Frame, ListedStar, NoSolution, Outcome, Pipeline, PipelineFactory,
-    PixelPoint, Rotation, Setup, Solution, Telemetry, conformance,
+    Camera, FarRange, Frame, NoSolution, Outcome, Pipeline, PipelineFactory, Rotation, Setup, Solution,
+    Telemetry, conformance,
 };
 use hifitime::{Epoch, Unit};
 

@@ -732,6 +732,7 @@ impl BestPipeline {
         attitude: &FrameAttitude,
     ) -> TargetCandidate {
         let position = fit.map_or(source.centre, |fit| fit.position);
+        let fitted_flux_e = fit.map(|fit| fit.image.flux_e).filter(|flux_e| *flux_e > 0.0);
         let variance_px2 = fit.map_or(0.1, |fit| {
             let [xx, _, yy] = fit.image.covariance_px2;
             xx.max(yy).min(4.0)
@@ -739,8 +740,8 @@ impl BestPipeline {
         TargetCandidate {
             position,
             variance_px2,
-            flux_e_per_s: source.flux_e / exposure_s,
-            is_flux_bounded: source.saturated > 0 || source.is_cut,
+            flux_e_per_s: fitted_flux_e.unwrap_or(source.flux_e) / exposure_s,
+            is_flux_bounded: fitted_flux_e.is_none() && (source.saturated > 0 || source.is_cut),
             log_odds,
             direction: self.direction(position, attitude),
         }

@@ -60,6 +60,9 @@ const ACCELERATION: f64 = 2e-4;
 const LOG_FLUX_STEP: f64 = 0.25;
 const LOG_FLUX_PER_ROOT_S: f64 = 0.03;
 
+/// Natural logarithm of the flux over that of the visible part of an image.
+const LARGEST_HIDDEN: f64 = 1.2;
+
 /// Part of the target's images that are detected.
 const DETECTED: f64 = 0.95;
 
@@ -137,8 +140,9 @@ impl Track {
         let distance = (dx * dx + dy * dy) / variance;
         let log_flux = libm::log(c.flux_e_per_s.max(1e-9)) - self.log_flux;
         let flux_variance = self.log_flux_variance + LOG_FLUX_STEP * LOG_FLUX_STEP;
-        // A lower bound agrees with any greater flux.
-        let flux_distance = if c.is_flux_bounded { 0.0 } else { log_flux * log_flux / flux_variance };
+        // What a region cuts off and saturation hides is at most some two thirds of the flux.
+        let log_flux = if c.is_flux_bounded { (log_flux + LARGEST_HIDDEN).min(0.0) } else { log_flux };
+        let flux_distance = log_flux * log_flux / flux_variance;
         if distance + flux_distance > GATE {
             return None;
         }
@@ -162,7 +166,7 @@ impl Track {
         let from_stars = with_stars.distance(c.position);
         if from_stars < WITH_STARS_PX && star_step > APART_PX {
             -STAR_MOTION
-        } else if from_stars > APART_PX && position.distance(c.position) > APART_PX {
+        } else if self.hits > 1 && from_stars > APART_PX && position.distance(c.position) > APART_PX {
             OWN_MOTION
         } else {
             0.0
