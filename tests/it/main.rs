@@ -10,6 +10,7 @@ mod bad_input;
 mod best_mode;
 mod blinking_dot;
 mod bounds;
+mod calibration;
 mod docking;
 mod docking_artefacts;
 mod docking_consistency;
