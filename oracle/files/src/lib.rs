@@ -30,7 +30,7 @@ mod video;
 
 pub use self::csv::{AnswerOrigin, Lines, line_of, read_column, read_origins};
 pub use self::parquet::{
-    ParquetFile, Row, TableOptions, TableReader, TableWriter, table_sha256, write_table,
+    ParquetFile, ParquetWriter, Row, TableOptions, TableReader, TableWriter, table_sha256, write_table,
 };
 pub use complete::{
     Checksums, Earlier, PartialFiles, RunDirectory, WholeFile, file_sha256, refuse_unfinished, sha256,

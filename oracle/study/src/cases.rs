@@ -6,7 +6,8 @@ use std::path::Path;
 
 use files::sha256::hex;
 use files::{
-    Cell, Cells, Column, ColumnType, ColumnValues, FileError, ParquetFile, TableOptions, write_table,
+    Cell, Cells, Column, ColumnType, ColumnValues, FileError, ParquetFile, TableOptions, TextCells,
+    write_table,
 };
 use indexmap::IndexMap;
 use score::{attitude_word, names};
@@ -79,11 +80,11 @@ pub struct CaseTable {
 }
 
 /// Before the name of a drawn value's column.
-const SET: &str = "set.";
+pub(super) const SET: &str = "set.";
 /// Before the name of a cause's column.
-const CAUSE: &str = "cause.";
+pub(super) const CAUSE: &str = "cause.";
 /// Rows read at a time.
-const BATCH_ROWS: usize = 8192;
+pub(super) const BATCH_ROWS: usize = 8192;
 
 impl CaseTable {
     /// SHA-256 of the rows and the names of their columns, hexadecimal: what a table says, however it is encoded.
@@ -140,7 +141,7 @@ impl CaseTable {
     }
 
     #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
-    fn columns(&self) -> Vec<Column> {
+    pub(super) fn columns(&self) -> Vec<Column> {
         let rows = || self.rows.iter();
         let mut columns = vec![
             Column::new("case", rows().map(|row| row.case)),
@@ -223,24 +224,10 @@ impl CaseTable {
         Ok((table, notes))
     }
 
-    fn add(&mut self, path: &Path, batch: &[Column]) -> Result<(), FileError> {
-        fn cells<'a, T: Cell>(
-            path: &Path,
-            batch: &'a [Column],
-            name: &str,
-            column_type: ColumnType,
-        ) -> Result<&'a Cells<T>, FileError> {
-            let found = batch.iter().find(|column| column.name() == name);
-            found
-                .and_then(|column| T::cells(column.values()))
-                .ok_or_else(|| no_column(path, name, column_type))
-        }
+    pub(super) fn add(&mut self, path: &Path, batch: &[Column]) -> Result<(), FileError> {
         let whole = |name: &str| cells::<u64>(path, batch, name, ColumnType::UInt64).map(Cells::values);
         let number = |name: &str| cells::<f64>(path, batch, name, ColumnType::Float64);
-        let texts = |name: &str| match batch.iter().find(|column| column.name() == name).map(Column::values) {
-            Some(ColumnValues::Utf8(texts)) => Ok(texts),
-            _ => Err(no_column(path, name, ColumnType::Utf8)),
-        };
+        let texts = |name: &str| texts(path, batch, name);
         let failed = cells::<bool>(path, batch, "has_failed", ColumnType::Boolean)?.values();
         let rows = whole("case")?.iter().zip(whole("seed")?).zip(failed).zip(whole("frames")?);
         let mut rows: Vec<CaseRow> = rows
@@ -345,6 +332,25 @@ impl CaseTable {
     pub(super) fn of(figures: &[&str], rows: Vec<CaseRow>) -> Self {
         let figures = figures.iter().map(|name| (*name).to_owned()).collect();
         Self { drawn: IndexMap::new(), figures, causes: Vec::new(), rows }
+    }
+}
+
+/// The values of a column of a batch.
+pub(super) fn cells<'a, T: Cell>(
+    path: &Path,
+    batch: &'a [Column],
+    name: &str,
+    column_type: ColumnType,
+) -> Result<&'a Cells<T>, FileError> {
+    let found = batch.iter().find(|column| column.name() == name);
+    found.and_then(|column| T::cells(column.values())).ok_or_else(|| no_column(path, name, column_type))
+}
+
+/// The texts of a column of a batch.
+pub(super) fn texts<'a>(path: &Path, batch: &'a [Column], name: &str) -> Result<&'a TextCells, FileError> {
+    match batch.iter().find(|column| column.name() == name).map(Column::values) {
+        Some(ColumnValues::Utf8(texts)) => Ok(texts),
+        _ => Err(no_column(path, name, ColumnType::Utf8)),
     }
 }
 
