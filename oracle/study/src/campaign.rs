@@ -151,9 +151,14 @@ impl<'a> Campaign<'a> {
     /// # Errors
     /// As [`Campaign::shard`].
     pub fn run(&self, workers: Workers<'_>, done: impl Fn(Known<'_>) + Sync) -> Result<CaseFile, Failure> {
-        self.gather(1, |shards| {
-            shards.iter().map(|shard| Ok(Some(self.shard(*shard, workers, &done)?.0))).collect()
-        })
+        let mut stopping = Stopping::new(self.study);
+        for shard in 1..=self.store.plan().shards {
+            let (table, _) = self.shard(shard, workers, &done)?;
+            if stopping.add(&table).is_some() {
+                break;
+            }
+        }
+        self.gather()
     }
 
     /// All cases, or as many as the stopping rule asks for, of the shards that are there.
@@ -162,12 +167,7 @@ impl<'a> Campaign<'a> {
     /// [`Failure::Usage`] when shards are missing or damaged, or files are there that are none of the plan's.
     pub fn merge(&self) -> Result<CaseFile, Failure> {
         self.store.check_foreign()?;
-        let empty = self.study.table();
-        // Enough that no thread waits for long, and few in memory.
-        self.gather(4 * rayon::current_num_threads(), |shards| {
-            let read = |shard: &u64| Ok(self.store.read(*shard, &empty)?.map(|(table, _)| table));
-            shards.par_iter().map(read).collect()
-        })
+        self.gather()
     }
 
     /// What to say of the shards that are not there, of which one is known. That one is not looked for again: another process may have
@@ -186,18 +186,19 @@ impl<'a> Campaign<'a> {
         )))
     }
 
-    /// Writes the cases of the shards in order, up to where the stopping rule stops; `read` gives some shards at a time.
-    fn gather(
-        &self,
-        at_a_time: usize,
-        read: impl Fn(&[u64]) -> Result<Vec<Option<CaseTable>>, Failure>,
-    ) -> Result<CaseFile, Failure> {
+    /// Writes the cases of the shards in order, up to where the stopping rule stops. Shards are read on all threads, some at a time.
+    fn gather(&self) -> Result<CaseFile, Failure> {
         let empty = self.study.table();
         let mut stopping = Stopping::new(self.study);
         let shards: Vec<u64> = (1..=self.store.plan().shards).collect();
+        let read = |shard: &u64| -> Result<Option<CaseTable>, Failure> {
+            Ok(self.store.read(*shard, &empty)?.map(|(table, _)| table))
+        };
         let path = self.store.write_cases(&empty, |cases| {
-            for some in shards.chunks(at_a_time) {
-                for (shard, table) in some.iter().zip(read(some)?) {
+            // Enough that no thread waits for long, and few in memory.
+            for some in shards.chunks(4 * rayon::current_num_threads()) {
+                let tables: Result<Vec<_>, Failure> = some.par_iter().map(read).collect();
+                for (shard, table) in some.iter().zip(tables?) {
                     let Some(mut table) = table else { return Err(self.missing(*shard)?) };
                     let enough = stopping.add(&table);
                     if let Some(count) = enough {
