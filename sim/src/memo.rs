@@ -2,8 +2,8 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Results that are kept, the latest: enough for a sweep of a few values, few enough that memory stays small.
-const KEPT: usize = 8;
+/// Results that are kept, the latest: enough for a sweep of a few values, few enough that memory stays small: a sky is some 20 MB.
+const KEPT: usize = 4;
 
 /// The latest results of a pure function, shared by all threads of a process. The cases of a study differ in a few values: what the
 /// others give is made once.
