@@ -104,7 +104,7 @@ pub(crate) fn study(
         let campaign = Campaign::open(&study, pipeline.as_ref(), &folder, None)?;
         let workers = Workers { jobs, scratch: scratch.path(), ended: Some(ended) };
         let first_failure: Mutex<Option<(u64, FirstFailure)>> = Mutex::new(None);
-        let table = campaign.run(workers, |case| {
+        let cases = campaign.run(workers, |case| {
             if let Known::Run(Evaluated { row, first_failure: Some(failure), .. }) = case {
                 let mut first = first_failure.lock().unwrap_or_else(PoisonError::into_inner);
                 if first.as_ref().is_none_or(|(case, _)| row.case < *case) {
@@ -112,7 +112,7 @@ pub(crate) fn study(
                 }
             }
         })?;
-        let summary = campaign.finish(&path, &table)?;
+        let summary = campaign.finish(&path, &cases)?;
         let summary = serde_json::to_string(&summary)
             .map_err(|error| Failure::Usage(format!("the summary cannot be written as JSON: {error}")))?;
         Ok((summary, first_failure.into_inner().unwrap_or_else(PoisonError::into_inner)))

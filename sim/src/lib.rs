@@ -39,6 +39,7 @@ mod expose;
 )]
 mod lanes;
 mod limit;
+pub mod memo;
 #[allow(
     clippy::indexing_slicing,
     reason = "indices are computed from the lengths of arrays made here; no input is read"

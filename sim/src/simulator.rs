@@ -1,12 +1,15 @@
 //! A simulation, checked and prepared.
 
+use std::convert::Infallible;
 use std::path::Path;
+use std::sync::Arc;
 
 use contract::{Body, Camera, CameraFrame, OutOfRange, Rotation};
 use hifitime::Unit;
 
 use crate::SimError;
-use crate::catalog::{Catalog, CatalogConfig};
+use crate::catalog::{Catalog, CatalogConfig, CatalogSource};
+use crate::memo::Memo;
 use crate::onboard::{RoiConfig, Shutter, ShutterConfig};
 use crate::optics::{OpticsConfig, Projection, Psf, PsfConfig, Radiometry, RadiometryConfig, Vignetting};
 use crate::randomness::Seed;
@@ -63,7 +66,7 @@ pub struct Simulation {
 #[derive(Debug)]
 pub struct Simulator {
     catalog: Catalog,
-    pub(crate) stars: StarField,
+    pub(crate) stars: Arc<StarField>,
     pub(crate) trajectory: Trajectory,
     pub(crate) schedule: Schedule,
     pub(crate) attitude: Attitude,
@@ -123,7 +126,7 @@ impl Simulator {
                 &radiometry,
             )?
             .map(|background| background.vignetted(&vignetting)),
-            stars: StarField::new(&catalog, &radiometry),
+            stars: star_field(simulation, &catalog, &radiometry),
             catalog,
             trajectory,
             schedule,
@@ -187,6 +190,22 @@ impl Simulator {
     }
 }
 
+/// The stars of embedded catalogues as a camera's radiometry has them.
+static STAR_FIELDS: Memo<(CatalogConfig, RadiometryConfig), StarField> = Memo::new();
+
+fn star_field(simulation: &Simulation, catalog: &Catalog, radiometry: &Radiometry) -> Arc<StarField> {
+    let field = || StarField::new(catalog, radiometry);
+    match simulation.catalog.source {
+        CatalogSource::Hipparcos2 => {
+            let key = (simulation.catalog.clone(), simulation.radiometry.clone());
+            let Ok(shared) = STAR_FIELDS.get(key, |_| Ok::<_, Infallible>(field()));
+            shared
+        }
+        // The file may have changed.
+        CatalogSource::File(_) => Arc::new(field()),
+    }
+}
+
 /// Where the spacecraft are, when images are taken, and for how long; checked with each other.
 fn flight(
     simulation: &Simulation,
@@ -201,7 +220,8 @@ fn flight(
     shutter.check_interval(schedule.shortest_interval_s())?;
     cosmic_rays.map_or(Ok(()), |rays| rays.check_hits(shutter.longest_s()))?;
     check_times(&schedule, &trajectory, shutter.lag_s(), half_interval_s)?;
-    check_separation(&schedule, &trajectory, target)?;
+    let key = (simulation.orbit.clone(), simulation.schedule.clone(), simulation.target.clone());
+    APART.get(key, |_| check_separation(&schedule, &trajectory, target))?;
     Ok((trajectory, schedule, shutter))
 }
 
@@ -223,6 +243,9 @@ fn check_times(
     }
     Ok(())
 }
+
+/// Flights whose frames have the camera off the target.
+static APART: Memo<(OrbitConfig, Vec<GroupConfig>, TargetConfig), ()> = Memo::new();
 
 /// Frames of a schedule at which the separation is looked at, at most: of longer ones every so many.
 const SEPARATIONS: usize = 100_000;

@@ -11,8 +11,8 @@ use run::pipeline_choice::PipelineChoice;
 use run::{Expectation, FirstFailure, Flight, Options};
 use serde::Serialize;
 use study::{
-    Campaign, CaseTable, Evaluated, Known, Plan, RequirementVerdict, ShardManifest, Study, StudyFile,
-    Workers, command_line,
+    Campaign, CaseFile, Evaluated, Known, Plan, RequirementVerdict, ShardManifest, Study, StudyFile, Workers,
+    command_line,
 };
 
 use super::Answer;
@@ -236,9 +236,9 @@ fn run(arguments: &RunArguments, output: &Output) -> Result<Answer, Failure> {
             Answer::Yes
         }
         None => {
-            let table = campaign.run(workers, done);
+            let cases = campaign.run(workers, done);
             progress.finish_and_clear();
-            finish(&campaign, &arguments.study, &table?, output)?
+            finish(&campaign, &arguments.study, &cases?, output)?
         }
     };
     if let Some((case, FirstFailure { frame, reason })) = lock(&failure).as_ref() {
@@ -272,10 +272,10 @@ fn shard_made(campaign: &Campaign<'_>, manifest: &ShardManifest, output: &Output
 fn finish(
     campaign: &Campaign<'_>,
     path: &Path,
-    table: &CaseTable,
+    cases: &CaseFile,
     output: &Output,
 ) -> Result<Answer, Failure> {
-    let summary = campaign.finish(path, table)?;
+    let summary = campaign.finish(path, cases)?;
     let text = study_table(&summary, output.is_terminal());
     let folder = campaign.store().folder().display();
     output.answer(&summary, format!("{text}\nrows and summary in {folder}: cases.parquet, summary.json"))?;

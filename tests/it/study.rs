@@ -194,6 +194,26 @@ fn a_sweep_has_the_same_draws_at_each_of_its_points() {
     }
 }
 
+/// Three replications of two draws at two points of a sweep: the independent draws are the replications.
+#[test]
+fn replications_of_a_design_are_its_independent_draws() {
+    let bench = bench();
+    let study = STUDY.replace("seed = 5", "seed = 5\ndesign = \"latin_hypercube\"\nreplications = 3");
+    let sweep = "\n[[sweep]]\npath = \"sensor.read_noise_e\"\nvalues = [5.0, 30.0]\n";
+    bench.write("replicated.toml", study.replace("cases = 6", "cases = 12") + sweep);
+    let summary = bench.boresight("study run replicated.toml --out out --json").done().json();
+    assert_eq!((&summary["cases"], &summary["draws"]), (&12.into(), &3.into()));
+    assert!(summary["differences"].as_array().unwrap().iter().all(|step| step["draws"].as_u64() <= Some(3)));
+    // Of one design, those of the design are taken for independent.
+    bench.write(
+        "one.toml",
+        fs::read_to_string(bench.path("replicated.toml")).unwrap().replace("replications = 3", ""),
+    );
+    let one = bench.boresight("study run one.toml --out one --json").done().json();
+    assert_eq!(one["draws"], 6);
+    assert_ne!(one["hash"], summary["hash"]);
+}
+
 #[test]
 fn a_study_stops_when_its_figure_is_known_well_enough() {
     let bench = bench();
@@ -392,6 +412,9 @@ fn a_study_that_is_wrong_says_where() {
     refused("frames = \"2000..2002\"", "frames = \"2..1\"", &["frames", "2..1", "A < B"]);
     refused("seed = 5", "seed = 5\ndesign = \"sobel\"", &["design", "sobel", "did you mean `sobol`"]);
     refused("seed = 5", "seed = 5\ndesign = \"saltelli\"", &["stop.cases", "multiple of 4"]);
+    refused("seed = 5", "seed = 5\nreplications = 3", &["replications", "is 3", "latin_hypercube or sobol"]);
+    refused("seed = 5", "seed = 5\nreplications = 0", &["replications", "is 0", "1 to 10000"]);
+    refused("seed = 5", "seed = 5\ndesign = \"sobol\"\nreplications = 4", &["stop.cases", "multiple of 4"]);
     refused(
         "[stop]",
         "[record]\nfigures = [\"hitrate\"]\n[stop]",

@@ -33,7 +33,7 @@ pub use self::csv::{
     write_csv,
 };
 pub use self::parquet::{
-    ParquetFile, Row, TableOptions, TableReader, TableWriter, table_sha256, write_table,
+    ParquetFile, ParquetWriter, Row, TableOptions, TableReader, TableWriter, table_sha256, write_table,
 };
 pub use complete::{
     Checksums, Earlier, PartialFiles, RunDirectory, WholeFile, file_sha256, refuse_unfinished, sha256,

@@ -34,7 +34,7 @@ const CURVES: [&str; 5] = [MEASURED, BESIDE, TRUTH, WRONG, REFERENCE];
 pub struct StudyResult {
     /// `summary.json`.
     pub summary: Summary,
-    /// `cases.parquet`.
+    /// `cases.parquet`; of its figures the one by which the worst cases are the worst.
     pub table: CaseTable,
 }
 
@@ -52,7 +52,11 @@ impl StudyResult {
                 path.display()
             )));
         }
-        let (table, _) = CaseTable::columns_of(&path)?.read(&path)?;
+        let mut columns = CaseTable::columns_of(&path)?;
+        // The charts show one figure case by case.
+        columns.figures.retain(|figure| *figure == summary.worst_by);
+        columns.causes.clear();
+        let (table, _) = columns.read(&path)?;
         if table.rows.len() as u64 != summary.cases {
             let reason = format!("it has {} rows, summary.json {} cases", table.rows.len(), summary.cases);
             return Err(FileError::format(&path, "cases", reason).into());

@@ -4,7 +4,9 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use files::Failure;
+use rayon::prelude::*;
 
+use crate::case_file::CaseFile;
 use crate::cases::{CaseRow, CaseTable};
 use crate::definition::{MOST_FAILED_CASES, Study};
 use crate::evaluate::Evaluated;
@@ -148,25 +150,24 @@ impl<'a> Campaign<'a> {
     ///
     /// # Errors
     /// As [`Campaign::shard`].
-    pub fn run(&self, workers: Workers<'_>, done: impl Fn(Known<'_>) + Sync) -> Result<CaseTable, Failure> {
-        self.gather(|shard| Ok(Some(self.shard(shard, workers, &done)?.0)))
+    pub fn run(&self, workers: Workers<'_>, done: impl Fn(Known<'_>) + Sync) -> Result<CaseFile, Failure> {
+        let mut stopping = Stopping::new(self.study);
+        for shard in 1..=self.store.plan().shards {
+            let (table, _) = self.shard(shard, workers, &done)?;
+            if stopping.add(&table).is_some() {
+                break;
+            }
+        }
+        self.gather()
     }
 
     /// All cases, or as many as the stopping rule asks for, of the shards that are there.
     ///
     /// # Errors
     /// [`Failure::Usage`] when shards are missing or damaged, or files are there that are none of the plan's.
-    pub fn merge(&self) -> Result<CaseTable, Failure> {
+    pub fn merge(&self) -> Result<CaseFile, Failure> {
         self.store.check_foreign()?;
-        let mut first_missing = None;
-        let table = self.gather(|shard| {
-            let read = self.store.read(shard, &self.study.table())?;
-            if read.is_none() {
-                first_missing = Some(shard);
-            }
-            Ok(read.map(|(table, _)| table))
-        })?;
-        first_missing.map_or(Ok(table), |first| Err(self.missing(first)?))
+        self.gather()
     }
 
     /// What to say of the shards that are not there, of which one is known. That one is not looked for again: another process may have
@@ -185,32 +186,42 @@ impl<'a> Campaign<'a> {
         )))
     }
 
-    /// The cases of the shards in order, up to the first that is not to be had, or to where the stopping rule stops.
-    fn gather(
-        &self,
-        mut shard: impl FnMut(u64) -> Result<Option<CaseTable>, Failure>,
-    ) -> Result<CaseTable, Failure> {
-        let mut table = self.study.table();
+    /// Writes the cases of the shards in order, up to where the stopping rule stops. Shards are read on all threads, some at a time.
+    fn gather(&self) -> Result<CaseFile, Failure> {
+        let empty = self.study.table();
         let mut stopping = Stopping::new(self.study);
-        for number in 1..=self.store.plan().shards {
-            let Some(read) = shard(number)? else { break };
-            table.rows.extend(read.rows);
-            if let Some(cases) = stopping.enough(&table) {
-                table.rows.truncate(cases as usize);
-                break;
+        let shards: Vec<u64> = (1..=self.store.plan().shards).collect();
+        let read = |shard: &u64| -> Result<Option<CaseTable>, Failure> {
+            Ok(self.store.read(*shard, &empty)?.map(|(table, _)| table))
+        };
+        let path = self.store.write_cases(&empty, |cases| {
+            // Enough that no thread waits for long, and few in memory.
+            for some in shards.chunks(4 * rayon::current_num_threads()) {
+                let tables: Result<Vec<_>, Failure> = some.par_iter().map(read).collect();
+                for (shard, table) in some.iter().zip(tables?) {
+                    let Some(mut table) = table else { return Err(self.missing(*shard)?) };
+                    let enough = stopping.add(&table);
+                    if let Some(count) = enough {
+                        table.rows.retain(|row| row.case < count);
+                    }
+                    cases.add(&table)?;
+                    if enough.is_some() {
+                        return Ok(());
+                    }
+                }
             }
-        }
-        Ok(table)
+            Ok(())
+        })?;
+        Ok(CaseFile::open(&path, empty, self.study.cases_together())?)
     }
 
-    /// Sums up some cases, and writes them with the summary; `path` is the study's file, for its commands.
+    /// Sums up the cases that were gathered, and writes the summary beside them; `path` is the study's file, for its commands.
     ///
     /// # Errors
     /// A [`Failure`] of files.
-    pub fn finish(&self, path: &Path, table: &CaseTable) -> Result<Summary, Failure> {
-        let summary = Summary::new(self.study, self.pipeline, path, table);
+    pub fn finish(&self, path: &Path, cases: &CaseFile) -> Result<Summary, Failure> {
+        let summary = Summary::new(self.study, self.pipeline, path, cases)?;
         self.store.write_record(&StudyRecord::new(self.study)?)?;
-        self.store.write_cases(table)?;
         self.store.write_summary(&summary)?;
         self.store.seal()?;
         Ok(summary)

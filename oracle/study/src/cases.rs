@@ -7,7 +7,7 @@ use std::path::Path;
 use files::sha256::hex;
 use files::{
     Cell, Cells, Column, ColumnType, ColumnValues, Columns, Declared, FileError, ParquetFile, Row, Table,
-    TableOptions, table, write_table,
+    TableOptions, TextCells, table, write_table,
 };
 use indexmap::IndexMap;
 use score::{attitude_word, names};
@@ -101,11 +101,11 @@ pub struct CaseTable {
 }
 
 /// Before the name of a drawn value's column.
-const SET: &str = "set.";
+pub(super) const SET: &str = "set.";
 /// Before the name of a cause's column.
-const CAUSE: &str = "cause.";
+pub(super) const CAUSE: &str = "cause.";
 /// Rows read at a time.
-const BATCH_ROWS: usize = 8192;
+pub(super) const BATCH_ROWS: usize = 8192;
 
 impl CaseTable {
     /// SHA-256 of the rows and the names of their columns, hexadecimal: what a table says, however it is encoded.
@@ -162,7 +162,7 @@ impl CaseTable {
     }
 
     #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
-    fn columns(&self) -> Vec<Column> {
+    pub(super) fn columns(&self) -> Vec<Column> {
         let rows = || self.rows.iter();
         let head = |row: &CaseRow| CaseHead {
             case: row.case,
@@ -246,24 +246,10 @@ impl CaseTable {
         Ok((table, notes))
     }
 
-    fn add(&mut self, path: &Path, batch: &[Column]) -> Result<(), FileError> {
-        fn cells<'a, T: Cell>(
-            path: &Path,
-            batch: &'a [Column],
-            name: &str,
-            column_type: ColumnType,
-        ) -> Result<&'a Cells<T>, FileError> {
-            let found = batch.iter().find(|column| column.name() == name);
-            found
-                .and_then(|column| T::cells(column.values()))
-                .ok_or_else(|| no_column(path, name, column_type))
-        }
+    pub(super) fn add(&mut self, path: &Path, batch: &[Column]) -> Result<(), FileError> {
         let whole = |name: &str| cells::<u64>(path, batch, name, ColumnType::UInt64).map(Cells::values);
         let number = |name: &str| cells::<f64>(path, batch, name, ColumnType::Float64);
-        let texts = |name: &str| match batch.iter().find(|column| column.name() == name).map(Column::values) {
-            Some(ColumnValues::Utf8(texts)) => Ok(texts),
-            _ => Err(no_column(path, name, ColumnType::Utf8)),
-        };
+        let texts = |name: &str| texts(path, batch, name);
         let heads = CaseHead::rows(&Columns::new(path, batch, self.rows.len() as u64))?;
         let row = |head: CaseHead| CaseRow {
             case: head.case,
@@ -365,6 +351,25 @@ impl CaseTable {
     pub(super) fn of(figures: &[&str], rows: Vec<CaseRow>) -> Self {
         let figures = figures.iter().map(|name| (*name).to_owned()).collect();
         Self { drawn: IndexMap::new(), figures, causes: Vec::new(), rows }
+    }
+}
+
+/// The values of a column of a batch.
+pub(super) fn cells<'a, T: Cell>(
+    path: &Path,
+    batch: &'a [Column],
+    name: &str,
+    column_type: ColumnType,
+) -> Result<&'a Cells<T>, FileError> {
+    let found = batch.iter().find(|column| column.name() == name);
+    found.and_then(|column| T::cells(column.values())).ok_or_else(|| no_column(path, name, column_type))
+}
+
+/// The texts of a column of a batch.
+pub(super) fn texts<'a>(path: &Path, batch: &'a [Column], name: &str) -> Result<&'a TextCells, FileError> {
+    match batch.iter().find(|column| column.name() == name).map(Column::values) {
+        Some(ColumnValues::Utf8(texts)) => Ok(texts),
+        _ => Err(no_column(path, name, ColumnType::Utf8)),
     }
 }
 

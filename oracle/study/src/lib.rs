@@ -24,13 +24,19 @@
 )]
 
 mod campaign;
+mod case_file;
 mod cases;
+#[cfg(test)]
+mod coverage;
 mod definition;
 mod evaluate;
 mod findings;
+#[cfg(test)]
+mod scale;
 mod shard;
 
 pub use campaign::{Campaign, Known};
+pub use case_file::CaseFile;
 pub use cases::{CaseFigure, CaseRow, CaseTable, Drawn, case_columns};
 pub use definition::design::DesignKind;
 pub use definition::file::{Dispersion, Record, Stop, StudyFile, Sweep, Until};

@@ -1,11 +1,14 @@
 """The shards of a study on the workers of a Dask cluster.
 
-    python -m boresight.dask_engine --program boresight --out DIR [--scheduler ADDRESS] [--workers N] < plan.json
+    python -m boresight.dask_engine --program boresight --out DIR|URL [--scheduler ADDRESS] [--workers N] < plan.json
 
 The plan is what `boresight study plan --json` prints. The files that it names travel to every worker, once, by their content: the study, its
 scenario, what its cases read, and the files among the words of a program. Each shard is one call of the program on some worker,
 which writes its file below DIR (a folder that all workers see) and answers with its manifest. The program does nothing for a shard
 that is there and whole, so that a task which the scheduler starts twice costs one look at a file.
+
+With the URL of an object store, as in s3://bucket/study, a worker fetches the shard from there if there is one, runs the program in a folder of
+its own, and puts what it made into the store. At the end the shards are fetched and merged here, and the results are put beside them.
 """
 
 from __future__ import annotations
@@ -20,9 +23,10 @@ import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 
 MISSING = 3
-"""Exit status that tells that Dask is not installed."""
+"""Exit status that tells that Dask is not installed, or what reaches the object store."""
 
 PR_SET_PDEATHSIG = 1
 """`prctl` of Linux: the signal that a process gets when its parent dies."""
@@ -76,17 +80,75 @@ def unpack(files: dict[str, bytes], below: str) -> None:
         whole.replace(copy)
 
 
-def run_shard(command: list[str], folder: str, directory: str, files: list[str]) -> dict:
-    """Runs the program for one shard and gives its manifest, or `failed` with what the program said.
+class Store:
+    """The results of a study in an object store. An object is there whole or not at all."""
 
-    A program that was killed raises an error, and the scheduler tries again; one that ended by itself would end in the same way.
-    """
+    def __init__(self, url: str) -> None:
+        from fsspec.core import url_to_fs
+
+        # Other workers put objects there meanwhile: listings are not kept.
+        self.files, self.root = url_to_fs(url, use_listings_cache=False)
+
+    def fetch(self, name: str, folder: str) -> bytes | None:
+        """Copies an object below a folder, if there is one; its content."""
+        try:
+            content = self.files.cat_file(f"{self.root}/{name}")
+        except FileNotFoundError:
+            return None
+        copy = pathlib.Path(folder, name)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        copy.write_bytes(content)
+        return content
+
+    def put(self, name: str, folder: str, known: bytes | None = None) -> None:
+        """Copies a file below a folder into the store, unless its content is what the store is known to hold."""
+        content = pathlib.Path(folder, name).read_bytes()
+        if content != known:
+            self.files.pipe_file(f"{self.root}/{name}", content)
+
+
+def is_url(out: str) -> bool:
+    return "://" in out
+
+
+def shard_name(shard: int, of: int) -> str:
+    return f"shards/{shard:0{len(str(of))}}-of-{of}.parquet"
+
+
+def run_shard(
+    command: list[str], shard: int, of: int, out: str, folder: str, directory: str, files: list[str]
+) -> dict:
+    """Runs the program for one shard, with its results in `out`; gives its manifest, or `failed` with what the program said."""
     from distributed import get_worker
 
     below = os.path.join(get_worker().local_directory, folder)
     words = [copy_of(word, below) if word in files else word for word in command]
     workdir = copy_of(directory, below)
     os.makedirs(workdir, exist_ok=True)
+    if not is_url(out):
+        return run_program([*words, "--out", out], workdir)
+    names = ("plan.json", shard_name(shard, of))
+    with tempfile.TemporaryDirectory(dir=below) as own:
+        try:
+            store = Store(out)
+            known = {name: store.fetch(name, own) for name in names}
+            manifest = run_program([*words, "--out", own], workdir)
+            if "failed" not in manifest:
+                for name in names:
+                    store.put(name, own, known[name])
+        except Exception as error:
+            # Stores raise what they like; the scheduler tries again.
+            raise RuntimeError(f"worker {get_worker().address}: {out}: {error}") from error
+    return manifest
+
+
+def run_program(words: list[str], workdir: str) -> dict:
+    """Runs the program and gives what it prints as JSON, or `failed` with what it said.
+
+    A program that was killed raises an error, and the scheduler tries again; one that ended by itself would end in the same way.
+    """
+    from distributed import get_worker
+
     try:
         done = subprocess.run(words, cwd=workdir, capture_output=True, text=True, preexec_fn=die_with_parent)
     except OSError as error:
@@ -98,10 +160,31 @@ def run_shard(command: list[str], folder: str, directory: str, files: list[str])
     return json.loads(done.stdout)
 
 
+def merge(program: str, plan: dict, url: str) -> int:
+    """Fetches the shards of a study from a store, has the program merge them, and puts the results into the store; the program's exit status."""
+    store, pieces = Store(url), plan["pieces"]
+    # Those of a shard, without `--shard I/N`.
+    words = list(pieces[0]["arguments"])
+    place = words.index("--shard")
+    del words[place : place + 2]
+    words[words.index("run")] = "merge"
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("plan.json", *(shard_name(piece["shard"], len(pieces)) for piece in pieces)):
+            store.fetch(name, folder)
+        done = subprocess.run([program, *words, "--out", folder], cwd=plan["directory"])
+        # 1: merged, and a requirement is not met.
+        if done.returncode in (0, 1):
+            # The checksums last: they hold for all others.
+            for name in sorted(os.listdir(folder), key=lambda name: name == "SHA256SUMS"):
+                if name not in ("plan.json", "shards") and not name.startswith("."):
+                    store.put(name, folder)
+    return done.returncode
+
+
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="boresight.dask_engine", description=__doc__)
     parser.add_argument("--program", required=True, help="the program boresight, as the workers find it")
-    parser.add_argument("--out", required=True, help="folder of the results, which all workers see")
+    parser.add_argument("--out", required=True, help="folder of the results, which all workers see, or the URL of an object store, as in s3://bucket/study")
     parser.add_argument("--scheduler", help="address of a scheduler; default: a cluster on this machine")
     parser.add_argument("--workers", type=int, help="workers of a cluster on this machine; default: one a core")
     return parser.parse_args()
@@ -131,9 +214,13 @@ def main() -> int:
     plan = json.load(sys.stdin)
     files = {path: pathlib.Path(path).read_bytes() for path in plan["files"]}
     folder = f"boresight-{digest_of(files)[:16]}"
-    commands = [
-        [given.program, "--json", *piece["arguments"], "--out", given.out, "--jobs", "1"] for piece in plan["pieces"]
-    ]
+    commands = [[given.program, "--json", *piece["arguments"], "--jobs", "1"] for piece in plan["pieces"]]
+    if is_url(given.out):
+        try:
+            Store(given.out)
+        except (ImportError, ValueError) as error:
+            print(f"--out is {given.out}: {error}", file=sys.stderr)
+            return MISSING
     dask.config.set({"distributed.scheduler.allowed-failures": DEATHS, "distributed.comm.timeouts.connect": CONNECT_S})
     done = 0
     try:
@@ -145,6 +232,9 @@ def main() -> int:
             futures = client.map(
                 run_shard,
                 commands,
+                [piece["shard"] for piece in plan["pieces"]],
+                of=len(commands),
+                out=given.out,
                 folder=folder,
                 directory=plan["directory"],
                 files=list(files),
@@ -163,6 +253,9 @@ def main() -> int:
                 done += 1
                 print(json.dumps({"done": done, "of": len(commands), "shard": manifest["shard"]}), flush=True)
                 future.release()
+    except RuntimeError as error:
+        print(error, file=sys.stderr)
+        return 1
     except OSError as error:
         where = f"the scheduler at {given.scheduler}" if given.scheduler else "the cluster on this machine"
         print(
@@ -173,7 +266,13 @@ def main() -> int:
         return 1
     if given.scheduler is None:
         cluster.close()
-    return 0
+    if not is_url(given.out):
+        return 0
+    try:
+        return merge(given.program, plan, given.out)
+    except Exception as error:
+        print(f"{given.out}: {error}", file=sys.stderr)
+        return 1
 
 
 if __name__ == "__main__":

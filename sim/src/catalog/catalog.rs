@@ -2,24 +2,38 @@
 
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::{Arc, OnceLock};
 
 use contract::{Angle, Direction};
 use sha2::{Digest, Sha256};
 
-use super::cone::within_cone;
+use super::cone::{ConeIndex, within_cone};
 use super::config::{CatalogConfig, CatalogSource};
 use super::hex::hex;
 use super::parsed::Exclusion;
 use super::{CatalogError, CatalogStar, hipparcos, read};
+use crate::memo::Memo;
 use crate::regular_file;
 
-/// Stars in ascending order of id, each id once.
-#[derive(Debug, Clone, PartialEq)]
+/// Stars in ascending order of id, each id once. A copy shares them.
+#[derive(Debug, Clone)]
 pub struct Catalog {
-    stars: Vec<CatalogStar>,
+    stars: Arc<[CatalogStar]>,
     sha256: String,
     exclusions: Vec<Exclusion>,
+    index: Arc<OnceLock<ConeIndex>>,
 }
+
+impl PartialEq for Catalog {
+    fn eq(&self, other: &Self) -> bool {
+        // The index follows from the stars.
+        let Self { stars, sha256, exclusions, index: _ } = self;
+        *stars == other.stars && *sha256 == other.sha256 && *exclusions == other.exclusions
+    }
+}
+
+/// Cuts of the embedded catalogue.
+static EMBEDDED: Memo<CatalogConfig, Catalog> = Memo::new();
 
 impl Catalog {
     /// The embedded Hipparcos-2: 117 955 stars (van Leeuwen 2007, A&A 474, 653; CDS I/311), with the radial
@@ -32,7 +46,11 @@ impl Catalog {
     /// assert!((pollux.v_mag() - 1.14).abs() < 0.02);
     /// ```
     pub fn hipparcos2() -> Self {
-        Self { stars: hipparcos::stars(), sha256: hipparcos::sha256(), exclusions: Vec::new() }
+        Self::new(hipparcos::stars(), hipparcos::sha256(), Vec::new())
+    }
+
+    fn new(stars: Vec<CatalogStar>, sha256: String, exclusions: Vec<Exclusion>) -> Self {
+        Self { stars: stars.into(), sha256, exclusions, index: Arc::default() }
     }
 
     /// Reads a user's catalogue. The format is told by name and content: a name ending in `.csv` is CSV with
@@ -49,7 +67,7 @@ impl Catalog {
         let bytes = regular_file::read(path, MAX_BYTES)
             .map_err(|source| CatalogError::Io { path: path.to_path_buf(), source })?;
         let (rows, exclusions) = read::parse(path, &bytes)?;
-        Ok(Self { stars: unique(path, rows)?, sha256: hex(&Sha256::digest(&bytes)), exclusions })
+        Ok(Self::new(unique(path, rows)?, hex(&Sha256::digest(&bytes)), exclusions))
     }
 
     /// The stars that a scenario asks for: the source, cut at the magnitude and to the cone. `base_dir` is
@@ -61,20 +79,27 @@ impl Catalog {
     /// # Errors
     /// [`CatalogError`] when the source cannot be read. The configuration is taken as checked.
     pub fn load(config: &CatalogConfig, base_dir: &Path) -> Result<Self, CatalogError> {
-        let mut catalog = match &config.source {
-            CatalogSource::Hipparcos2 => Self::hipparcos2(),
-            CatalogSource::File(path) => Self::read(&base_dir.join(path))?,
-        };
+        match &config.source {
+            CatalogSource::Hipparcos2 => {
+                let cut = EMBEDDED.get(config.clone(), |config| Ok(Self::hipparcos2().cut(config)));
+                cut.map(|catalog| (*catalog).clone())
+            }
+            CatalogSource::File(path) => Ok(Self::read(&base_dir.join(path))?.cut(config)),
+        }
+    }
+
+    fn cut(self, config: &CatalogConfig) -> Self {
+        let mut stars = self.stars.to_vec();
         if let Some(limit) = config.magnitude_limit {
-            catalog.stars.retain(|star| star.v_mag() <= limit);
+            stars.retain(|star| star.v_mag() <= limit);
         }
         if let Some(cone) = &config.cone {
             let centre =
                 Direction::from_ra_dec(Angle::from_degrees(cone.ra_deg), Angle::from_degrees(cone.dec_deg));
             let radius = Angle::from_degrees(cone.radius_deg);
-            catalog.stars.retain(|star| within_cone(&centre, &star.direction(), radius));
+            stars.retain(|star| within_cone(&centre, &star.direction(), radius));
         }
-        Ok(catalog)
+        Self::new(stars, self.sha256, self.exclusions)
     }
 
     /// The stars, in ascending order of id.
@@ -87,6 +112,11 @@ impl Catalog {
         self.stars.binary_search_by_key(&id, |star| star.id).ok().and_then(|index| self.stars.get(index))
     }
 
+    /// The index over the stars' directions at the catalogue's epoch, made when it is first asked for.
+    pub fn index(&self) -> &ConeIndex {
+        self.index.get_or_init(|| ConeIndex::new(&self.stars))
+    }
+
     /// SHA-256 of the source's bytes (for the embedded catalogue: of hip2.dat), in hexadecimal.
     pub fn sha256(&self) -> &str {
         &self.sha256
@@ -95,6 +125,14 @@ impl Catalog {
     /// The stars of the file that are not in the catalogue, in the order of the file.
     pub fn exclusions(&self) -> &[Exclusion] {
         &self.exclusions
+    }
+}
+
+#[cfg(test)]
+impl Catalog {
+    /// A catalogue of these stars, in ascending order of id.
+    pub(crate) fn of(stars: Vec<CatalogStar>) -> Self {
+        Self::new(stars, String::new(), Vec::new())
     }
 }
 

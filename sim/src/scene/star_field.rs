@@ -3,7 +3,7 @@
 use contract::{Angle, CameraFrame, Direction, Icrs, PixelPoint, Rotation};
 
 use super::{CameraMotion, Source};
-use crate::catalog::{Catalog, ConeIndex};
+use crate::catalog::Catalog;
 use crate::optics::{Projection, Radiometry};
 use crate::truth::{ObjectKind, Observer, StarMotion};
 
@@ -15,7 +15,7 @@ const CATALOG_MARGIN: Angle = Angle::from_degrees(0.2);
 /// The catalogue, ready to be looked at.
 #[derive(Debug, Clone)]
 pub struct StarField {
-    index: ConeIndex,
+    catalog: Catalog,
     stars: Vec<PreparedStar>,
     /// Of the brightest star.
     brightest_e_per_s: f64,
@@ -43,7 +43,7 @@ impl StarField {
             })
             .collect();
         let brightest_e_per_s = stars.iter().map(|star| star.electrons_per_s).fold(0.0, f64::max);
-        Self { index: ConeIndex::new(catalog.stars()), stars, brightest_e_per_s }
+        Self { catalog: catalog.clone(), stars, brightest_e_per_s }
     }
 
     /// Appends the stars whose image comes onto the detector during the exposure, by number: `reach_px` tells how far an
@@ -115,7 +115,7 @@ impl StarField {
         let (x_px_per_rad, y_px_per_rad) = projection.plate_scale_px_per_rad();
         let margin = Angle::from_radians(margin_px / x_px_per_rad.min(y_px_per_rad));
         let radius = projection.half_diagonal() + margin + CATALOG_MARGIN;
-        self.index.within(&boresight, radius).into_iter().map(|index| &self.stars[index])
+        self.catalog.index().within(&boresight, radius).into_iter().map(|index| &self.stars[index])
     }
 }
 
@@ -239,8 +239,8 @@ mod tests {
             let at = projection().project(&(camera_from_icrs * observer().apparent(&motion))).unwrap();
             assert!(at.is_on_detector(300, 200), "{at:?}");
             let prepared = PreparedStar { id: 1, motion, magnitude: 5.0, electrons_per_s: 1e4 };
-            let field =
-                StarField { index: ConeIndex::new(&[star]), stars: vec![prepared], brightest_e_per_s: 1e4 };
+            let catalog = Catalog::of(vec![star]);
+            let field = StarField { catalog, stars: vec![prepared], brightest_e_per_s: 1e4 };
             seen(&field, camera_from_icrs, 0.0).len()
         };
         assert_eq!((found(10.4), found(90.0)), (1, 0));

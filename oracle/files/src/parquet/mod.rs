@@ -11,4 +11,4 @@ mod writer;
 pub use digest::table_sha256;
 pub use file::ParquetFile;
 pub use table::{Row, TableReader, TableWriter};
-pub use writer::{TableOptions, write_table};
+pub use writer::{ParquetWriter, TableOptions, write_table};

@@ -57,8 +57,8 @@ pub fn write_table(
     writer.finish()
 }
 
-/// A Parquet file that is being written.
-pub(crate) struct ParquetWriter<W: Write + Send> {
+/// A Parquet file that is being written, rows at a time.
+pub struct ParquetWriter<W: Write + Send> {
     path: PathBuf,
     file: SerializedFileWriter<BufWriter<W>>,
     properties: WriterPropertiesPtr,
@@ -74,12 +74,10 @@ struct RowGroup {
 
 impl<W: Write + Send> ParquetWriter<W> {
     /// Begins a file with the names, types and codings of these columns, whose rows are not written yet.
-    pub(crate) fn new(
-        out: W,
-        path: &Path,
-        columns: &[Column],
-        options: TableOptions,
-    ) -> Result<Self, FileError> {
+    ///
+    /// # Errors
+    /// [`FileError`], of `path`, when the file cannot be written.
+    pub fn new(out: W, path: &Path, columns: &[Column], options: TableOptions) -> Result<Self, FileError> {
         let properties = Arc::new(properties(columns, &options));
         let out = BufWriter::with_capacity(BUFFER_BYTES, out);
         let file =
@@ -90,7 +88,10 @@ impl<W: Write + Send> ParquetWriter<W> {
     }
 
     /// Adds rows: columns of the same names and types as the file's, and of one length.
-    pub(crate) fn write(&mut self, columns: &[Column]) -> Result<(), FileError> {
+    ///
+    /// # Errors
+    /// [`FileError`] for columns of several lengths, a null where there may be none, and when the file cannot be written.
+    pub fn write(&mut self, columns: &[Column]) -> Result<(), FileError> {
         let rows = columns.first().map_or(0, |column| column.values().len());
         check(columns, rows)
             .and_then(|()| self.encode(columns, rows))
@@ -98,7 +99,10 @@ impl<W: Write + Send> ParquetWriter<W> {
     }
 
     /// Completes the file.
-    pub(crate) fn finish(mut self) -> Result<(), FileError> {
+    ///
+    /// # Errors
+    /// [`FileError`] when the file cannot be written.
+    pub fn finish(mut self) -> Result<(), FileError> {
         self.end_row_group()
             .and_then(|()| self.file.finish().map(drop))
             .map_err(|error| unwritten(&self.path, error))

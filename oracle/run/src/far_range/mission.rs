@@ -1,11 +1,16 @@
 //! A scenario of the far range, ready to fly.
 
-use contract::{Setup, bounds};
+use std::convert::Infallible;
+use std::sync::Arc;
+
+use contract::{ListedStar, Setup, bounds};
 use files::{Failure, StarRow};
 use hifitime::Epoch;
 use scenario::run_file::RunFile;
 use scenario::{AttitudeChoice, FarRangeScenario, Stage};
 use sim::Simulator;
+use sim::catalog::{CatalogConfig, CatalogSource};
+use sim::memo::Memo;
 use sim::truth::{FrameTruth, ObjectTruth};
 
 use super::star_list::star_list;
@@ -68,9 +73,9 @@ impl FarRangeMission {
             .schedule()
             .frame(0)
             .ok_or_else(|| Failure::Usage(format!("scenario `{}` has no frame", source.name)))?;
-        let stars = star_list(simulator.catalog(), scenario.star_list.magnitude_limit, star_epoch);
-        let setup = setup(&run_file.scenario, &stars);
-        Ok(Self { simulator, run_file, setup, stars, star_epoch })
+        let (stars, listed) = &*uploaded(&scenario, &simulator, star_epoch);
+        let setup = setup(&run_file.scenario, listed.clone());
+        Ok(Self { simulator, run_file, setup, stars: stars.clone(), star_epoch })
     }
 
     /// What makes its frames.
@@ -90,7 +95,31 @@ pub fn simulator(source: &ScenarioSource, scenario: &FarRangeScenario) -> Result
     Simulator::new(&scenario.simulation(), &source.folder).map_err(|error| source.explain(error))
 }
 
-fn setup(scenario: &FarRangeScenario, stars: &[StarRow]) -> Setup {
+/// A star list as a file has it, and as a pipeline has it.
+type Uploaded = (Vec<StarRow>, Vec<ListedStar>);
+
+/// Star lists of embedded catalogues, by magnitude limit and epoch.
+static UPLOADED: Memo<(CatalogConfig, f64, Epoch), Uploaded> = Memo::new();
+
+fn uploaded(scenario: &FarRangeScenario, simulator: &Simulator, epoch: Epoch) -> Arc<Uploaded> {
+    let limit = scenario.star_list.magnitude_limit;
+    let list = || {
+        let stars = star_list(simulator.catalog(), limit, epoch);
+        let listed = stars.iter().map(StarRow::listed).collect();
+        (stars, listed)
+    };
+    match scenario.catalog.source {
+        CatalogSource::Hipparcos2 => {
+            let key = (scenario.catalog.clone(), limit, epoch);
+            let Ok(shared) = UPLOADED.get(key, |_| Ok::<_, Infallible>(list()));
+            shared
+        }
+        // The file may have changed.
+        CatalogSource::File(_) => Arc::new(list()),
+    }
+}
+
+fn setup(scenario: &FarRangeScenario, stars: Vec<ListedStar>) -> Setup {
     Setup {
         camera: scenario.camera.clone(),
         camera_from_body: scenario.mounting.nominal.camera_from_body(),
@@ -98,6 +127,6 @@ fn setup(scenario: &FarRangeScenario, stars: &[StarRow]) -> Setup {
         readout: Some(scenario.readout()),
         calibration: scenario.calibration(),
         zero_suppression_dn: scenario.zero_suppression_dn,
-        stars: stars.iter().map(StarRow::listed).collect(),
+        stars,
     }
 }

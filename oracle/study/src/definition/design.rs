@@ -34,15 +34,16 @@ const UNIT: f64 = 1.0 / 9_007_199_254_740_992.0;
 pub(crate) struct Design {
     kind: DesignKind,
     dimensions: usize,
-    /// Points of the whole design.
+    /// Points of a replication.
     points: u64,
+    /// Of the first replication; the others have their own.
     seed: u64,
     /// By dimension, then by bit: direction numbers of 64 bits.
     directions: Vec<Vec<u64>>,
 }
 
 impl Design {
-    /// A design of so many points.
+    /// A design of so many points a replication, or of any number of points that are drawn each by itself.
     ///
     /// # Errors
     /// What is expected, for a number of points or dimensions that the design cannot have.
@@ -70,41 +71,42 @@ impl Design {
     }
 
     /// The point of a number, from 0: as many numbers of the open unit interval as there are dimensions.
+    ///
+    /// Replications follow each other: the same kind of design, each by a seed of its own.
     pub(crate) fn point(&self, number: u64) -> Vec<f64> {
         let all = 0..self.dimensions;
+        let (replication, number) = (number / self.points, number % self.points);
+        let seed = match replication {
+            0 => self.seed,
+            _ => Seed { seed: self.seed, case: replication }.streams(2, Effect::StudyDesign).word(0),
+        };
         match self.kind {
-            DesignKind::Random => all.map(|dimension| self.draw(number, dimension)).collect(),
+            DesignKind::Random => all.map(|dimension| draw(seed, number, dimension)).collect(),
             DesignKind::LatinHypercube => all
                 .map(|dimension| {
-                    let stratum = self.shuffled(number, dimension);
+                    let stratum = self.shuffled(seed, number, dimension);
                     // As far from the ends as a number of 53 bits can be.
-                    ((stratum as f64 + self.draw(number, dimension)) / self.points as f64)
+                    ((stratum as f64 + draw(seed, number, dimension)) / self.points as f64)
                         .clamp(0.5 * UNIT, 1.0 - 0.5 * UNIT)
                 })
                 .collect(),
-            DesignKind::Sobol => all.map(|dimension| self.sobol(number, dimension)).collect(),
+            DesignKind::Sobol => all.map(|dimension| self.sobol(seed, number, dimension)).collect(),
             DesignKind::Saltelli => {
                 let block = self.dimensions as u64 + 2;
                 let (base, member) = (number / block, (number % block) as usize);
                 all.map(|dimension| {
                     let is_of_b = member == 1 || member == dimension + 2;
-                    self.sobol(base, if is_of_b { self.dimensions + dimension } else { dimension })
+                    self.sobol(seed, base, if is_of_b { self.dimensions + dimension } else { dimension })
                 })
                 .collect()
             }
         }
     }
 
-    fn draw(&self, number: u64, dimension: usize) -> f64 {
-        let mut stream =
-            Seed { seed: self.seed, case: number }.stream(0, Effect::StudyParameter, dimension as u64);
-        uniform(&mut stream)
-    }
-
     /// Points of the sequence come in the order of its Gray code, the XOR of one direction number for each bit; the XOR with
     /// a random word keeps what makes the sequence even.
     #[allow(clippy::indexing_slicing, reason = "there are directions for every dimension of the study")]
-    fn sobol(&self, number: u64, dimension: usize) -> f64 {
+    fn sobol(&self, seed: u64, number: u64, dimension: usize) -> f64 {
         let gray = number ^ (number >> 1);
         let directions = &self.directions[dimension];
         let point = directions
@@ -112,22 +114,18 @@ impl Design {
             .enumerate()
             .filter(|(bit, _)| gray >> bit & 1 == 1)
             .fold(0, |point, (_, direction)| point ^ direction);
-        let shift = self.word(dimension);
+        let shift = shift(seed, dimension);
         (((point ^ shift) >> 11) as f64 + 0.5) * UNIT
-    }
-
-    fn word(&self, dimension: usize) -> u64 {
-        Seed { seed: self.seed, case: 0 }.streams(0, Effect::StudyDesign).word(dimension as u64)
     }
 
     /// Where a number goes in a permutation of 0 to `points`, one for each dimension: Feistel's network over the next even
     /// number of bits, walked on while it leads beyond (Black & Rogaway 2002, cycle walking). So a case is known without the
     /// others.
-    fn shuffled(&self, number: u64, dimension: usize) -> u64 {
+    fn shuffled(&self, seed: u64, number: u64, dimension: usize) -> u64 {
         let bits = u64::BITS - (self.points.max(2) - 1).leading_zeros();
         let half = bits.div_ceil(2);
         let mask = (1u64 << half) - 1;
-        let streams = Seed { seed: self.seed, case: dimension as u64 }.streams(1, Effect::StudyDesign);
+        let streams = Seed { seed, case: dimension as u64 }.streams(1, Effect::StudyDesign);
         let mut at = number;
         loop {
             let (mut left, mut right) = (at >> half, at & mask);
@@ -141,6 +139,15 @@ impl Design {
             }
         }
     }
+}
+
+fn draw(seed: u64, number: u64, dimension: usize) -> f64 {
+    uniform(&mut Seed { seed, case: number }.stream(0, Effect::StudyParameter, dimension as u64))
+}
+
+/// The random word of a dimension of Sobol's sequence.
+fn shift(seed: u64, dimension: usize) -> u64 {
+    Seed { seed, case: 0 }.streams(0, Effect::StudyDesign).word(dimension as u64)
 }
 
 #[cfg(test)]
@@ -191,7 +198,7 @@ mod tests {
         for (k, expected) in published.iter().enumerate() {
             for (dimension, expected) in expected.iter().enumerate() {
                 let bits = (expected / UNIT) as u64;
-                let shifted = ((bits ^ (design.word(dimension) >> 11)) as f64 + 0.5) * UNIT;
+                let shifted = ((bits ^ (shift(7, dimension) >> 11)) as f64 + 0.5) * UNIT;
                 assert_eq!(design.point(k as u64)[dimension], shifted, "point {k}, dimension {dimension}");
             }
         }
@@ -213,6 +220,25 @@ mod tests {
             let [a, b, ab0, ab1] = [0, 1, 2, 3].map(|member| design.point(4 * base + member));
             assert_eq!(ab0, [b[0], a[1]]);
             assert_eq!(ab1, [a[0], b[1]]);
+        }
+    }
+
+    #[test]
+    fn a_replication_is_a_design_of_its_own() {
+        for kind in [DesignKind::LatinHypercube, DesignKind::Sobol] {
+            let design = design(kind, 2, 16);
+            let of = |replication: u64| -> Vec<Vec<f64>> {
+                (0..16).map(|k| design.point(16 * replication + k)).collect()
+            };
+            for replication in [0, 1, 5] {
+                for dimension in 0..2 {
+                    let part = |point: &Vec<f64>| (point[dimension] * 16.0) as u64;
+                    let mut parts: Vec<u64> = of(replication).iter().map(part).collect();
+                    parts.sort_unstable();
+                    assert!(parts.into_iter().eq(0..16), "{kind:?}, replication {replication}");
+                }
+            }
+            assert!(of(0) != of(1) && of(1) != of(2), "{kind:?}");
         }
     }
 

@@ -28,6 +28,11 @@ pub struct StudyFile {
     /// How the dispersed parameters are spread over their laws.
     #[serde(default)]
     pub design: DesignKind,
+    /// Of a Latin hypercube or of Sobol's sequence: independent replications of a smaller design, which the cases are cut into. Their scatter
+    /// gives the intervals; five are the fewest of a mean. One has no scatter, and intervals as wide as those of independent draws.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[schemars(range(min = 1, max = 10_000))]
+    pub replications: u64,
     /// Parameters that vary by a law.
     #[serde(default)]
     pub vary: Vec<Dispersion>,
@@ -43,6 +48,15 @@ pub struct StudyFile {
     /// What the figures must reach.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub require: Vec<StudyRequirement>,
+}
+
+const fn one() -> u64 {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
+const fn is_one(replications: &u64) -> bool {
+    *replications == 1
 }
 
 /// A parameter that varies.

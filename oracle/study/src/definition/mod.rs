@@ -80,6 +80,9 @@ pub struct Case {
 /// Cases that cannot be run, before any can, that end a study: none could.
 pub(crate) const MOST_FAILED_CASES: u64 = 10;
 
+/// Most replications of a design.
+const MOST_REPLICATIONS: u64 = 10_000;
+
 /// What was drawn for a case.
 pub(crate) struct DrawnCase {
     pub(crate) number: u64,
@@ -186,13 +189,33 @@ impl Study {
         if file.design == DesignKind::Saltelli && !sweep.is_empty() {
             return Err(refuse("design", "is saltelli, expected without a sweep".to_owned()));
         }
+        let replications = file.replications;
+        if !(1..=MOST_REPLICATIONS).contains(&replications) {
+            return Err(refuse(
+                "replications",
+                format!("is {replications}, expected 1 to {MOST_REPLICATIONS}"),
+            ));
+        }
+        if replications > 1 && !matches!(file.design, DesignKind::LatinHypercube | DesignKind::Sobol) {
+            let message = format!(
+                "is {replications}, expected 1, or the design latin_hypercube or sobol: others have no replications"
+            );
+            return Err(refuse("replications", message));
+        }
+        if !(cases / cells).is_multiple_of(replications) {
+            let expected = format!(
+                "is {cases}, expected a multiple of {}: {replications} replications at the {cells} points of the sweep",
+                replications.saturating_mul(cells)
+            );
+            return Err(refuse("stop.cases", expected));
+        }
         if file.stop.until.is_some() && file.design != DesignKind::Random {
             let message =
                 "is given, expected with the random design alone: of another one, all cases belong together";
             return Err(refuse("stop.until", message.to_owned()));
         }
         let dimensions = file.vary.iter().map(|dispersion| dispersion.law.dimensions()).sum();
-        let design = Design::new(file.design, dimensions, cases / cells, file.seed)
+        let design = Design::new(file.design, dimensions, cases / cells / replications, file.seed)
             .map_err(|expected| refuse("stop.cases", format!("is {cases}, expected {expected}")))?;
 
         let name =
@@ -242,6 +265,15 @@ impl Study {
     /// Number of cases, the most there are.
     pub fn cases(&self) -> u64 {
         self.file.stop.cases
+    }
+
+    /// Number of cases that belong together, from the first on: those of a draw at every point of the sweep, or of a replicated design all of a
+    /// replication. Others are independent of them.
+    pub(crate) fn cases_together(&self) -> u64 {
+        match self.file.replications {
+            1 => self.sweep_points(),
+            replications => (self.cases() / replications).max(1),
+        }
     }
 
     /// Number of points of the sweep: the first so many cases are one of each.

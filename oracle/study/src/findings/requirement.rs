@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use statistics::{Bounds, Clustered, cluster_mean_bounds, cluster_quantile_bounds, cluster_rate_bounds};
 
 use super::estimate::{ratio, sorted_quantile, sums};
-use crate::cases::{CaseFigure, CaseTable};
+use crate::cases::CaseFigure;
 
 /// Cases at which it is given up to say how many would decide.
 const MOST_CASES: f64 = 1e9;
@@ -175,26 +175,15 @@ impl RequirementResult {
     }
 }
 
-/// The requirements over the cases of a table, at a point of the sweep.
+/// A requirement over the cases of a point of the sweep: the figure of each case that can be run, and the number of its draw.
 pub(crate) fn decide(
-    requirements: &[StudyRequirement],
-    table: &CaseTable,
-    at: &IndexMap<String, String>,
-) -> Vec<RequirementResult> {
-    requirements.iter().filter_map(|requirement| decide_one(requirement, table, at)).collect()
-}
-
-fn decide_one(
     requirement: &StudyRequirement,
-    table: &CaseTable,
+    figures: &[CaseFigure],
+    draws: &[usize],
     at: &IndexMap<String, String>,
 ) -> Option<RequirementResult> {
     let limit = requirement.limit().ok()?;
-    let (figures, draws): (Vec<CaseFigure>, Vec<usize>) = {
-        let rows = table.figure(&requirement.figure)?.into_iter().zip(table.draws()).zip(&table.rows);
-        rows.filter(|(_, row)| row.error.is_none()).map(|(figure, _)| figure).unzip()
-    };
-    let sample = Sample::new(requirement, limit, &figures, &draws);
+    let sample = Sample::new(requirement, limit, figures, draws);
     let without_value = figures.iter().filter(|figure| figure.value.is_none()).count() as u64;
     let bounds = sample.bounds(requirement.confidence, 1.0);
     let may_be_met = matches!(sample, Sample::Quantile { .. } | Sample::Rate(_)) || without_value == 0;
@@ -296,7 +285,6 @@ impl Sample {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::CaseRow;
 
     fn required(figure: &str, limit: Limit, of: RequiredOf) -> StudyRequirement {
         let (at_least, at_most) = match limit {
@@ -310,10 +298,9 @@ mod tests {
         requirement: StudyRequirement,
         figures: impl Iterator<Item = CaseFigure>,
     ) -> RequirementResult {
-        let rows =
-            figures.enumerate().map(|(case, figure)| CaseRow::of(case as u64, case as u64, vec![figure]));
-        let table = CaseTable::of(&[&requirement.figure.clone()], rows.collect());
-        decide(&[requirement], &table, &IndexMap::new()).remove(0)
+        let figures: Vec<CaseFigure> = figures.collect();
+        let draws: Vec<usize> = (0..figures.len()).collect();
+        decide(&requirement, &figures, &draws, &IndexMap::new()).unwrap()
     }
 
     /// Cases of one frame each.

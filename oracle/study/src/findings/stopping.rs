@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::estimate::overall;
-use crate::cases::CaseTable;
+use crate::cases::{CaseFigure, CaseTable};
 use crate::definition::Study;
 use crate::definition::file::Until;
 
@@ -35,6 +35,9 @@ pub(crate) struct Stopping<'a> {
     most: u64,
     /// Draws at the next look.
     next: u64,
+    /// The figure of all cases that are known, and the number of each case's draw.
+    figures: Vec<CaseFigure>,
+    draws: Vec<usize>,
 }
 
 impl<'a> Stopping<'a> {
@@ -45,17 +48,21 @@ impl<'a> Stopping<'a> {
 
     fn of(until: Option<&'a Until>, points: u64, cases: u64) -> Self {
         let most = cases / points;
-        Self { until, points, most, next: STEP.min(most) }
+        Self { until, points, most, next: STEP.min(most), figures: Vec::new(), draws: Vec::new() }
     }
 
-    /// The number of cases that are enough, if they are known already; `known` are all cases from the first on, as far as they are known,
-    /// and more of them from call to call.
-    pub(crate) fn enough(&mut self, known: &CaseTable) -> Option<u64> {
+    /// Adds the next cases; the number of cases that are enough, if they are known already.
+    pub(crate) fn add(&mut self, cases: &CaseTable) -> Option<u64> {
         let until = self.until?;
-        while self.next * self.points <= known.rows.len() as u64 {
+        self.figures.extend(cases.figure(&until.figure)?);
+        let known = self.draws.len() as u64..self.figures.len() as u64;
+        self.draws.extend(known.map(|case| (case / self.points) as usize));
+        while self.next * self.points <= self.figures.len() as u64 {
             let draws = self.next;
             let cases = draws * self.points;
-            if waited(until, known, cases) == Waited::NarrowEnough {
+            let (figures, of_cases) =
+                (self.figures.get(..cases as usize)?, self.draws.get(..cases as usize)?);
+            if waited(until, figures, of_cases) == Waited::NarrowEnough {
                 return Some(cases);
             }
             if draws >= self.most {
@@ -67,19 +74,16 @@ impl<'a> Stopping<'a> {
     }
 }
 
-/// What the first `cases` say of the figure of a stopping rule.
-pub(crate) fn waited(until: &Until, known: &CaseTable, cases: u64) -> Waited {
-    let Some(mut figures) = known.figure(&until.figure) else { return Waited::TooWide };
-    figures.truncate(cases as usize);
-    let draws = known.draws();
-    let estimate = overall(&until.figure, &figures, &draws);
+/// What cases of the draws of these numbers say of the figure of a stopping rule.
+pub(crate) fn waited(until: &Until, figures: &[CaseFigure], draws: &[usize]) -> Waited {
+    let estimate = overall(&until.figure, figures, draws);
     let width = estimate.and_then(|estimate| Some(estimate.high? - estimate.low?));
     if !width.is_some_and(|width| width <= 2.0 * until.half_width) {
         return Waited::TooWide;
     }
     let others = figures.len() - most_frequent(figures.iter().filter_map(|figure| figure.value));
     // Cases of a draw that are alike are one.
-    let points = figures.len() / draws.iter().take(figures.len()).max().map_or(1, |last| last + 1);
+    let points = figures.len() / draws.iter().max().map_or(1, |last| last + 1);
     if others / points.max(1) < LEAST_OTHERS { Waited::NearlyConstant } else { Waited::NarrowEnough }
 }
 
@@ -93,7 +97,7 @@ fn most_frequent(values: impl Iterator<Item = f64>) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cases::{CaseFigure, CaseRow};
+    use crate::cases::CaseRow;
     use sim::randomness::{Effect, Seed, Stream, normal, uniform};
 
     fn stopped(
@@ -107,11 +111,13 @@ mod tests {
         let mut table = CaseTable::of(&[figure], Vec::new());
         for draw in 0..4000 {
             let random = &mut Seed { seed: 5, case: study }.stream(draw, Effect::StudyParameter, 0);
+            let mut of_draw = table.with_rows(Vec::new());
             case(random, &mut |figure| {
-                let case = table.rows.len() as u64;
-                table.rows.push(CaseRow::of(case, draw, vec![figure]));
+                let case = (table.rows.len() + of_draw.rows.len()) as u64;
+                of_draw.rows.push(CaseRow::of(case, draw, vec![figure]));
             });
-            if let Some(cases) = stopping.enough(&table) {
+            table.rows.extend(of_draw.rows.iter().cloned());
+            if let Some(cases) = stopping.add(&of_draw) {
                 assert_eq!(cases, table.rows.len() as u64);
                 break;
             }
@@ -163,13 +169,17 @@ mod tests {
             CaseRow::of(case, case, figures)
         };
         let table = |others| CaseTable::of(&["hit_rate"], (0..100).map(|case| row(case, others)).collect());
-        let after = |others, half_width| waited(&Until { half_width, ..until.clone() }, &table(others), 100);
+        let draws: Vec<usize> = (0..100).collect();
+        let after = |others, half_width| {
+            let figures = table(others).figure("hit_rate").unwrap();
+            waited(&Until { half_width, ..until.clone() }, &figures, &draws)
+        };
         assert_eq!(after(3, 0.03), Waited::NearlyConstant);
         assert_eq!(after(7, 0.03), Waited::NearlyConstant);
         assert_eq!(after(8, 0.03), Waited::NarrowEnough);
         assert_eq!(after(8, 0.0001), Waited::TooWide);
-        assert_eq!(Stopping::of(Some(&until), 1, 100).enough(&table(3)), None);
+        assert_eq!(Stopping::of(Some(&until), 1, 100).add(&table(3)), None);
         // The first look that knows eight of either.
-        assert_eq!(Stopping::of(Some(&until), 1, 100).enough(&table(60)), Some(80));
+        assert_eq!(Stopping::of(Some(&until), 1, 100).add(&table(60)), Some(80));
     }
 }

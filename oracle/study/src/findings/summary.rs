@@ -1,6 +1,7 @@
 //! What a study found: figures with intervals, sensitivities, the worst cases.
 use std::path::Path;
 
+use files::{Failure, FileError};
 use indexmap::IndexMap;
 use run::figure_called;
 use score::Better;
@@ -14,7 +15,8 @@ use super::estimate::{Estimate, RESAMPLES, overall, pick, quantiles, share, sort
 use super::requirement::{RequirementResult, RequirementVerdict, decide};
 use super::sensitivity::{RankCorrelation, SobolIndex, sobol_index};
 use super::stopping::{Waited, waited};
-use crate::cases::{CaseFigure, CaseRow, CaseTable, Drawn};
+use crate::case_file::CaseFile;
+use crate::cases::CaseFigure;
 use crate::definition::Study;
 use crate::definition::design::DesignKind;
 use crate::evaluate::tried::StudyPipeline;
@@ -114,7 +116,7 @@ pub struct Summary {
     pub hash: String,
     /// Version of Boresight.
     pub version: String,
-    /// The attitude that the lines of sight of the far range rest on ([`CaseTable::attitude`]).
+    /// The attitude that the lines of sight of the far range rest on ([`crate::CaseTable::attitude`]).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude: Option<String>,
     /// The first frames of every case, which count in no figure.
@@ -132,7 +134,8 @@ pub struct Summary {
     /// The first of them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<CaseError>,
-    /// Independent draws among them: with a sweep, every draw is a case at each of its points.
+    /// Independent draws among them: with a sweep, every draw is a case at each of its points; of a replicated design, every replication is
+    /// one.
     #[serde(default)]
     pub draws: u64,
     /// Whether the figure of the stopping rule is known well enough.
@@ -180,54 +183,122 @@ impl Summary {
         }
     }
 
-    /// The summary of some cases of a study by a pipeline; `path` is the study's file, for the commands.
-    pub fn new(study: &Study, pipeline: &dyn StudyPipeline, path: &Path, table: &CaseTable) -> Self {
-        let seed = study.file.seed;
+    /// The summary of the cases of a study by a pipeline; `path` is the study's file, for the commands. Figures are read one after the other.
+    ///
+    /// # Errors
+    /// A [`Failure`] for a file of cases that cannot be read.
+    pub(crate) fn new(
+        study: &Study,
+        pipeline: &dyn StudyPipeline,
+        path: &Path,
+        cases: &CaseFile,
+    ) -> Result<Self, Failure> {
+        let (seed, required) = (study.file.seed, &study.file.require);
+        let points = Points::new(study, cases)?;
+        let mut sweep: Vec<SweepPoint> =
+            points.at.iter().enumerate().map(|(point, at)| points.summary(point, at, cases)).collect();
+        let pairs = points.pairs();
+        let mut differences: Vec<Vec<SweepDifference>> = vec![Vec::new(); pairs.len()];
+        // By point, or without a sweep of all cases, then by requirement.
+        let mut decided: Vec<Vec<Option<RequirementResult>>> =
+            vec![vec![None; required.len()]; sweep.len().max(1)];
+        let (mut figures, mut waited_for) = (IndexMap::new(), None);
+        let (mut correlations, mut indices) = (Vec::new(), Vec::new());
+        let mut parameters = Vec::new();
+        for name in cases.drawn() {
+            parameters.extend(cases.numbers(name)?.map(|numbers| (name, numbers)));
+        }
+        for (place, name) in cases.figures().iter().enumerate() {
+            let values = cases.figure(name)?.unwrap_or_default();
+            figures.insert(name.clone(), figure(name, &values, &cases.draws));
+            for (point, summary) in sweep.iter_mut().enumerate() {
+                let (values, draws) = (points.pick(point, &values), points.pick(point, &cases.draws));
+                summary.figures.insert(name.clone(), figure(name, &values, &draws));
+            }
+            for (pair, found) in pairs.iter().zip(&mut differences) {
+                let [first, second] =
+                    pair.map(|point| (points.pick(point, &values), points.pick(point, &cases.draws)));
+                let [from, to] = pair.map(|point| points.at.get(point).cloned().unwrap_or_default());
+                let difference = difference(name, [&first, &second]);
+                found.extend(difference.map(|(difference, draws)| SweepDifference {
+                    figure: name.clone(),
+                    from,
+                    to,
+                    difference,
+                    draws,
+                }));
+            }
+            for (number, requirement) in
+                required.iter().enumerate().filter(|(_, required)| required.figure == *name)
+            {
+                for (point, decided) in decided.iter_mut().enumerate() {
+                    let (at, rows) = match points.at.get(point) {
+                        Some(at) => (at.clone(), points.pick(point, &points.rows)),
+                        None => (IndexMap::new(), (0..values.len()).collect()),
+                    };
+                    let (values, draws): (Vec<CaseFigure>, Vec<usize>) = rows
+                        .into_iter()
+                        .filter(|&row| !cases.has_error[row])
+                        .map(|row| (values[row], cases.draws[row]))
+                        .unzip();
+                    decided[number] = decide(requirement, &values, &draws, &at);
+                }
+            }
+            if let Some(until) = study.file.stop.until.as_ref().filter(|until| until.figure == *name) {
+                waited_for = Some(waited(until, &values, &cases.draws));
+            }
+            correlations.extend(correlations_of(name, &values, &parameters, &cases.draws));
+            if study.file.design == DesignKind::Saltelli {
+                indices.extend(indices_of(name, place, &values, cases, seed));
+            }
+        }
+        let mut causes = IndexMap::new();
+        for name in cases.causes() {
+            let counts = cases.cause(name)?;
+            causes.extend(cause(&counts, &cases.draws).map(|cause| (name.clone(), cause)));
+            for (point, summary) in sweep.iter_mut().enumerate() {
+                let (counts, draws) = (points.pick(point, &counts), points.pick(point, &cases.draws));
+                summary.causes.extend(cause(&counts, &draws).map(|cause| (name.clone(), cause)));
+            }
+        }
+        let sort = |causes: &mut IndexMap<String, CauseSummary>| {
+            causes.sort_by(|_, a, _, b| b.frames.cmp(&a.frames))
+        };
+        sort(&mut causes);
+        sweep.iter_mut().for_each(|point| sort(&mut point.causes));
         let worst_by = study.worst_by();
-        let until = study.file.stop.until.as_ref();
-        let waited = until.map(|until| waited(until, table, table.rows.len() as u64));
-        let points = sweep(study, table);
-        let (worst, worst_of) = worst(table, &worst_by, seed, |case| pipeline.replay(study, path, case));
-        Self {
+        let (worst, worst_of) = worst(cases, &worst_by, seed, |case| pipeline.replay(study, path, case))?;
+        Ok(Self {
             study: study.name.clone(),
             title: study.file.title.clone(),
             hash: study.hash_with(pipeline),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            attitude: table.attitude(study.granted_attitude()),
+            attitude: cases.attitude(study.granted_attitude())?,
             warm_up_frames: study.warm_up_frames(),
-            cases: table.rows.len() as u64,
+            cases: cases.count(),
             of: study.cases(),
-            failed_cases: table.rows.iter().filter(|row| row.has_failed).count() as u64,
-            draws: table.draws().into_iter().max().map_or(0, |last| last as u64 + 1),
-            is_narrow_enough: waited == Some(Waited::NarrowEnough),
-            waited,
-            error_cases: table.rows.iter().filter(|row| row.error.is_some()).count() as u64,
-            errors: errors(table),
-            requirements: requirements(study, table, &points),
-            figures: figures(table),
-            causes: causes(table),
-            differences: differences(&points),
-            sweep: points.into_iter().map(|point| point.summary).collect(),
-            correlations: correlations(table),
-            indices: if study.file.design == DesignKind::Saltelli {
-                indices(table, seed)
-            } else {
-                Vec::new()
-            },
+            failed_cases: cases.failed_cases,
+            draws: cases.draws.last().map_or(0, |last| *last as u64 + 1),
+            is_narrow_enough: waited_for == Some(Waited::NarrowEnough),
+            waited: waited_for,
+            error_cases: cases.has_error.iter().filter(|has_error| **has_error).count() as u64,
+            errors: cases
+                .errors
+                .iter()
+                .map(|(case, error)| CaseError { case: *case, error: error.clone() })
+                .collect(),
+            requirements: decided.into_iter().flatten().flatten().collect(),
+            figures,
+            causes,
+            differences: differences.into_iter().flatten().collect(),
+            sweep,
+            correlations,
+            indices,
             worst,
             worst_of,
             worst_by,
-        }
+        })
     }
-}
-
-fn figures(table: &CaseTable) -> IndexMap<String, FigureSummary> {
-    let draws = table.draws();
-    let summary = |name: &String| {
-        let cases = table.figure(name).unwrap_or_default();
-        (name.clone(), figure(name, &cases, &draws))
-    };
-    table.figures.iter().map(summary).collect()
 }
 
 fn figure(name: &str, cases: &[CaseFigure], draws: &[usize]) -> FigureSummary {
@@ -236,105 +307,73 @@ fn figure(name: &str, cases: &[CaseFigure], draws: &[usize]) -> FigureSummary {
     FigureSummary { cases: count, all: overall(name, cases, draws), p05, median, p95 }
 }
 
-fn causes(table: &CaseTable) -> IndexMap<String, CauseSummary> {
-    let draws = table.draws();
-    let summary = |(place, name): (usize, &String)| {
-        let count =
-            |row: &CaseRow| CaseFigure { value: None, count: u64::from(row.causes[place]), of: row.frames };
-        let cases: Vec<CaseFigure> = table.rows.iter().map(count).collect();
-        let frames = cases.iter().map(|case| case.count).sum();
-        let share = share(&cases, &draws);
-        let cases = cases.iter().filter(|case| case.count > 0).count() as u64;
-        (frames > 0).then(|| (name.clone(), CauseSummary { frames, cases, share }))
-    };
-    let mut causes: IndexMap<_, _> = table.causes.iter().enumerate().filter_map(summary).collect();
-    causes.sort_by(|_, a, _, b| b.frames.cmp(&a.frames));
-    causes
+/// What the cases say of a cause, if it occurred.
+fn cause(cases: &[CaseFigure], draws: &[usize]) -> Option<CauseSummary> {
+    let frames = cases.iter().map(|case| case.count).sum();
+    let share = share(cases, draws);
+    let cases = cases.iter().filter(|case| case.count > 0).count() as u64;
+    (frames > 0).then_some(CauseSummary { frames, cases, share })
 }
 
-fn requirements(study: &Study, table: &CaseTable, points: &[Point]) -> Vec<RequirementResult> {
-    let required = &study.file.require;
-    if points.is_empty() {
-        return decide(required, table, &IndexMap::new());
-    }
-    points.iter().flat_map(|point| decide(required, &point.table, &point.summary.at)).collect()
+/// The points of a sweep; none without one.
+struct Points {
+    /// The swept values at each, by path.
+    at: Vec<IndexMap<String, String>>,
+    /// Of the cases of a draw: which are at each point. Equal values of a sweep are one point.
+    of_draw: Vec<Vec<usize>>,
+    /// Cases of a draw.
+    together: usize,
+    /// The number of each case.
+    rows: Vec<usize>,
 }
 
-/// The first cases that cannot be run.
-fn errors(table: &CaseTable) -> Vec<CaseError> {
-    let error = |row: &CaseRow| Some(CaseError { case: row.case, error: row.error.clone()? });
-    table.rows.iter().filter_map(error).take(WORST).collect()
-}
-
-/// A point of the sweep with its cases.
-struct Point {
-    summary: SweepPoint,
-    table: CaseTable,
-}
-
-fn sweep(study: &Study, table: &CaseTable) -> Vec<Point> {
-    let swept = study.file.sweep.len();
-    if swept == 0 {
-        return Vec::new();
-    }
-    let mut points: IndexMap<Vec<String>, Vec<CaseRow>> = IndexMap::new();
-    for row in &table.rows {
-        points.entry(row.drawn[..swept].iter().map(Drawn::shown).collect()).or_default().push(row.clone());
-    }
-    let point = |(at, rows): (Vec<String>, Vec<CaseRow>)| {
-        let table = table.with_rows(rows);
-        let summary = SweepPoint {
-            at: table.drawn.keys().cloned().zip(at).collect(),
-            cases: table.rows.len() as u64,
-            figures: figures(&table),
-            causes: causes(&table),
-        };
-        Point { summary, table }
-    };
-    points.into_iter().map(point).collect()
-}
-
-/// The differences of every figure between points of which one value differs.
-fn differences(points: &[Point]) -> Vec<SweepDifference> {
-    let differ = |a: &Point, b: &Point| {
-        let values = a.summary.at.values().zip(b.summary.at.values());
-        values.filter(|(a, b)| a != b).count() == 1
-    };
-    let mut all = Vec::new();
-    for (place, first) in points.iter().enumerate() {
-        for second in points.iter().skip(place + 1).filter(|second| differ(first, second)) {
-            for figure in &first.table.figures {
-                let Some((difference, draws)) = difference(figure, &first.table, &second.table) else {
-                    continue;
-                };
-                all.push(SweepDifference {
-                    figure: figure.clone(),
-                    from: first.summary.at.clone(),
-                    to: second.summary.at.clone(),
-                    difference,
-                    draws,
-                });
+impl Points {
+    fn new(study: &Study, cases: &CaseFile) -> Result<Self, FileError> {
+        let rows: Vec<usize> = (0..cases.count() as usize).collect();
+        let (swept, together) = (study.file.sweep.len(), study.sweep_points() as usize);
+        let mut points: IndexMap<Vec<String>, Vec<usize>> = IndexMap::new();
+        if swept > 0 {
+            let first: Vec<usize> = rows.iter().copied().take(together).collect();
+            for (place, drawn) in cases.shown(&first)?.into_iter().enumerate() {
+                points.entry(drawn.into_iter().take(swept).collect()).or_default().push(place);
             }
         }
+        let (at, of_draw): (Vec<Vec<String>>, _) = points.into_iter().unzip();
+        let at = at.into_iter().map(|at| cases.drawn().cloned().zip(at).collect()).collect();
+        Ok(Self { at, of_draw, together, rows })
     }
-    all
+
+    /// The values of a column at a point, in the order of the draws.
+    fn pick<T: Copy>(&self, point: usize, column: &[T]) -> Vec<T> {
+        let places = &self.of_draw[point];
+        column
+            .chunks(self.together)
+            .flat_map(|draw| places.iter().filter_map(|place| draw.get(*place).copied()))
+            .collect()
+    }
+
+    /// Pairs of points that differ in one value.
+    fn pairs(&self) -> Vec<[usize; 2]> {
+        let differ = |[a, b]: &[usize; 2]| {
+            let values = self.at[*a].values().zip(self.at[*b].values());
+            values.filter(|(a, b)| a != b).count() == 1
+        };
+        let all = (0..self.at.len()).flat_map(|a| (a + 1..self.at.len()).map(move |b| [a, b]));
+        all.filter(differ).collect()
+    }
+
+    fn summary(&self, point: usize, at: &IndexMap<String, String>, cases: &CaseFile) -> SweepPoint {
+        let count = self.pick(point, &cases.draws).len() as u64;
+        SweepPoint { at: at.clone(), cases: count, figures: IndexMap::new(), causes: IndexMap::new() }
+    }
 }
 
-/// A figure of the second table less that of the first, over the draws that have it in both, and how many these are.
-fn difference(figure: &str, first: &CaseTable, second: &CaseTable) -> Option<(Estimate, u64)> {
-    let is_rate = figure_called(figure).is_rate();
-    // A point of the sweep has one case of each draw.
-    let sums = |table: &CaseTable| -> IndexMap<u64, ClusterSum> {
-        let cases = table.figure(figure).unwrap_or_default();
-        let draws: Vec<usize> = (0..cases.len()).collect();
-        table.rows.iter().map(|row| row.seed).zip(sums(is_rate, &cases, &draws)).collect()
-    };
-    let of_second = sums(second);
-    let pairs: Vec<(ClusterSum, ClusterSum)> = sums(first)
-        .into_iter()
-        .filter_map(|(seed, first)| Some((first, *of_second.get(&seed)?)))
-        .filter(|(first, second)| first.of > 0.0 && second.of > 0.0)
-        .collect();
+/// A figure at the second of two points less that at the first, over the draws that have it in both, and how many these are.
+fn difference(name: &str, points: [&(Vec<CaseFigure>, Vec<usize>); 2]) -> Option<(Estimate, u64)> {
+    let is_rate = figure_called(name).is_rate();
+    let [first, second] = points.map(|(cases, draws)| sums(is_rate, cases, draws));
+    let pairs: Vec<(ClusterSum, ClusterSum)> =
+        first.into_iter().zip(second).filter(|(first, second)| first.of > 0.0 && second.of > 0.0).collect();
     let ratio = |pick: fn(&(ClusterSum, ClusterSum)) -> ClusterSum| {
         let (sum, of) =
             pairs.iter().map(pick).fold((0.0, 0.0), |(sum, of), draw| (sum + draw.sum, of + draw.of));
@@ -345,47 +384,47 @@ fn difference(figure: &str, first: &CaseTable, second: &CaseTable) -> Option<(Es
     Some((Estimate::new(value, interval), pairs.len() as u64))
 }
 
-fn correlations(table: &CaseTable) -> Vec<RankCorrelation> {
-    let draws = table.draws();
+/// How a figure goes with each drawn number, the strongest first.
+fn correlations_of(
+    figure: &str,
+    values: &[CaseFigure],
+    parameters: &[(&String, Vec<f64>)],
+    draws: &[usize],
+) -> Vec<RankCorrelation> {
     let mut all = Vec::new();
-    for figure in &table.figures {
-        let values = table.figure(figure).unwrap_or_default();
-        let mut of_figure: Vec<RankCorrelation> = Vec::new();
-        for parameter in table.drawn.keys() {
-            let Some(numbers) = table.numbers(parameter) else { continue };
-            let cases = draws.iter().zip(numbers.iter().zip(&values));
-            let triples: Vec<(usize, f64, f64)> =
-                cases.filter_map(|(draw, (x, y))| Some((*draw, *x, y.value?))).collect();
-            let Some((correlation, interval)) = cluster_rank_correlation(&triples) else { continue };
-            of_figure.push(RankCorrelation {
-                parameter: parameter.clone(),
-                figure: figure.clone(),
-                correlation,
-                low: interval.map(|interval| interval.low),
-                high: interval.map(|interval| interval.high),
-                cases: triples.len() as u64,
-            });
-        }
-        of_figure.sort_by(|a, b| b.correlation.abs().total_cmp(&a.correlation.abs()));
-        all.extend(of_figure);
+    for (parameter, numbers) in parameters {
+        let cases = draws.iter().zip(numbers.iter().zip(values));
+        let triples: Vec<(usize, f64, f64)> =
+            cases.filter_map(|(draw, (x, y))| Some((*draw, *x, y.value?))).collect();
+        let Some((correlation, interval)) = cluster_rank_correlation(&triples) else { continue };
+        all.push(RankCorrelation {
+            parameter: (*parameter).clone(),
+            figure: figure.to_owned(),
+            correlation,
+            low: interval.map(|interval| interval.low),
+            high: interval.map(|interval| interval.high),
+            cases: triples.len() as u64,
+        });
     }
+    all.sort_by(|a, b| b.correlation.abs().total_cmp(&a.correlation.abs()));
     all
 }
 
-/// Sobol indices of a design of Saltelli's, whole blocks of d + 2 cases that all have the figure.
-fn indices(table: &CaseTable, seed: u64) -> Vec<SobolIndex> {
-    let parameters: Vec<&String> = table.drawn.keys().collect();
-    let block = parameters.len() + 2;
+/// Sobol indices of a figure over a design of Saltelli's, by whole blocks of d + 2 cases that all have it.
+fn indices_of(
+    figure: &str,
+    place: usize,
+    values: &[CaseFigure],
+    cases: &CaseFile,
+    seed: u64,
+) -> Vec<SobolIndex> {
+    let parameters: Vec<&String> = cases.drawn().collect();
+    let blocks: Vec<Vec<f64>> = values
+        .chunks_exact(parameters.len() + 2)
+        .filter_map(|cases| cases.iter().map(|case| case.value).collect())
+        .collect();
     let mut all = Vec::new();
-    for (place, figure) in table.figures.iter().enumerate() {
-        let values = table.figure(figure).unwrap_or_default();
-        let blocks: Vec<Vec<f64>> = values
-            .chunks_exact(block)
-            .filter_map(|cases| cases.iter().map(|case| case.value).collect())
-            .collect();
-        if blocks.len() < LEAST_CLUSTERS {
-            continue;
-        }
+    if blocks.len() >= LEAST_CLUSTERS {
         for (i, parameter) in parameters.iter().enumerate() {
             let index = |picked: &dyn Fn(usize) -> usize| {
                 let column = |member: usize| -> Vec<f64> {
@@ -413,7 +452,7 @@ fn indices(table: &CaseTable, seed: u64) -> Vec<SobolIndex> {
             let [of_first, of_total] = &mut again;
             all.push(SobolIndex {
                 parameter: (*parameter).clone(),
-                figure: figure.clone(),
+                figure: figure.to_owned(),
                 first,
                 first_interval: interval(of_first, first),
                 total,
@@ -426,26 +465,32 @@ fn indices(table: &CaseTable, seed: u64) -> Vec<SobolIndex> {
 
 /// The worst cases, and how many are as bad as the last of them. Which of equally bad ones is drawn, so that they are not all of the
 /// first draws.
-fn worst(table: &CaseTable, by: &str, seed: u64, replay: impl Fn(u64) -> String) -> (Vec<WorstCase>, u64) {
+fn worst(
+    cases: &CaseFile,
+    by: &str,
+    seed: u64,
+    replay: impl Fn(u64) -> String,
+) -> Result<(Vec<WorstCase>, u64), FileError> {
     let badness = |value: f64| match figure_called(by).sense.better {
         Better::More => -value,
         Better::Less => value,
         Better::Near(best) => (value - best).abs(),
     };
-    let values = table.figure(by).unwrap_or_default();
-    let mut cases: Vec<(&CaseRow, f64)> =
-        table.rows.iter().zip(values).filter_map(|(row, figure)| Some((row, figure.value?))).collect();
-    let lot = |row: &CaseRow| Seed { seed, case: row.case }.streams(0, Effect::WorstCases).word(0);
-    cases.sort_by_cached_key(|(row, _)| (lot(row), row.case));
-    cases.sort_by(|a, b| badness(b.1).total_cmp(&badness(a.1)));
-    let last = cases.get(WORST.min(cases.len()).wrapping_sub(1)).map(|(_, value)| badness(*value));
-    let count = last.map_or(0, |last| cases.iter().filter(|(_, value)| badness(*value) >= last).count());
-    cases.truncate(WORST);
-    let named = |(row, value): (&CaseRow, f64)| WorstCase {
-        case: row.case,
+    let values = cases.figure(by)?.unwrap_or_default();
+    let values = values.iter().enumerate().filter_map(|(case, figure)| Some((case, figure.value?)));
+    let mut bad: Vec<(usize, f64)> = values.collect();
+    let lot = |case: usize| Seed { seed, case: case as u64 }.streams(0, Effect::WorstCases).word(0);
+    bad.sort_by_cached_key(|(case, _)| (lot(*case), *case));
+    bad.sort_by(|a, b| badness(b.1).total_cmp(&badness(a.1)));
+    let last = bad.get(WORST.min(bad.len()).wrapping_sub(1)).map(|(_, value)| badness(*value));
+    let count = last.map_or(0, |last| bad.iter().filter(|(_, value)| badness(*value) >= last).count());
+    bad.truncate(WORST);
+    let numbers: Vec<usize> = bad.iter().map(|(case, _)| *case).collect();
+    let named = |((case, value), shown): ((usize, f64), Vec<String>)| WorstCase {
+        case: case as u64,
         value,
-        drawn: table.drawn.keys().cloned().zip(row.drawn.iter().map(Drawn::shown)).collect(),
-        replay: replay(row.case),
+        drawn: cases.drawn().cloned().zip(shown).collect(),
+        replay: replay(case as u64),
     };
-    (cases.into_iter().map(named).collect(), count as u64)
+    Ok((bad.into_iter().zip(cases.shown(&numbers)?).map(named).collect(), count as u64))
 }

@@ -16,6 +16,7 @@ use files::{Checksums, Earlier, Failure, FileError, WholeFile};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
+use crate::case_file::CaseWriter;
 use crate::cases::{CaseRow, CaseTable};
 use crate::definition::Study;
 use crate::shard::journal::Journal;
@@ -308,15 +309,23 @@ impl ShardStore {
         Ok(manifest)
     }
 
-    /// All rows of the study, `cases.parquet`, written at once in the place of those of an earlier merge.
+    /// The rows of the study with the columns of `empty`, `cases.parquet`: `fill` adds them, and the file takes the place of that of an earlier
+    /// merge when it is complete.
     ///
     /// # Errors
-    /// [`FileError`] when it cannot be written.
-    pub fn write_cases(&self, table: &CaseTable) -> Result<PathBuf, FileError> {
+    /// [`FileError`] when it cannot be written; that of `fill`.
+    pub(crate) fn write_cases(
+        &self,
+        empty: &CaseTable,
+        fill: impl FnOnce(&mut CaseWriter<'_>) -> Result<(), Failure>,
+    ) -> Result<PathBuf, Failure> {
         let path = self.folder.join("cases.parquet");
         let file = WholeFile::create(&path)?;
-        let of = [("study_hash", self.plan.hash.clone()), ("version", self.plan.version.clone())];
-        table.write(file.file(), &path, &of)?;
+        let of = [("study_hash", &self.plan.hash), ("version", &self.plan.version)];
+        let notes = of.map(|(key, value)| (key.to_owned(), value.clone())).to_vec();
+        let mut writer = CaseWriter::new(file.file(), &path, empty, notes)?;
+        fill(&mut writer)?;
+        writer.finish()?;
         file.replace(OF_THE_PLAN)?;
         Ok(path)
     }

@@ -1,0 +1,197 @@
+//! `cases.parquet` of a study: written a shard at a time and read a column at a time, so that no more than a few columns are in memory.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use files::{Cells, Column, ColumnType, FileError, ParquetFile, ParquetWriter, TableOptions};
+use score::{attitude_word, names};
+
+use crate::cases::{BATCH_ROWS, CAUSE, CaseFigure, CaseTable, SET, cells, texts};
+
+/// Rows whose encoded bytes are held before they are written.
+const ROW_GROUP_ROWS: usize = 1 << 17;
+/// Cases with an error that are named.
+const MOST_ERRORS: usize = 10;
+
+/// Writes the rows of a study.
+pub(crate) struct CaseWriter<'a>(ParquetWriter<&'a File>);
+
+impl<'a> CaseWriter<'a> {
+    /// Begins a file with the columns of `empty`.
+    pub(crate) fn new(
+        file: &'a File,
+        path: &Path,
+        empty: &CaseTable,
+        notes: Vec<(String, String)>,
+    ) -> Result<Self, FileError> {
+        let options = TableOptions { row_group_rows: ROW_GROUP_ROWS, notes, ..TableOptions::default() };
+        ParquetWriter::new(file, path, &empty.columns(), options).map(Self)
+    }
+
+    pub(crate) fn add(&mut self, table: &CaseTable) -> Result<(), FileError> {
+        self.0.write(&table.columns())
+    }
+
+    pub(crate) fn finish(self) -> Result<(), FileError> {
+        self.0.finish()
+    }
+}
+
+/// All cases of a study, from number 0 on, in their file.
+#[derive(Debug)]
+pub struct CaseFile {
+    path: PathBuf,
+    /// The columns, without rows.
+    empty: CaseTable,
+    /// The number of each case's independent draw.
+    pub(crate) draws: Vec<usize>,
+    /// Frames that count of each case.
+    pub(crate) frames: Vec<u64>,
+    /// Whether each case cannot be run.
+    pub(crate) has_error: Vec<bool>,
+    /// The first of the cases that cannot be run, each with the reason.
+    pub(crate) errors: Vec<(u64, String)>,
+    /// Cases in which the pipeline itself failed.
+    pub(crate) failed_cases: u64,
+}
+
+impl CaseFile {
+    /// Opens a file with the columns of `empty`, of whose cases `together` at a time belong together.
+    pub(crate) fn open(path: &Path, empty: CaseTable, together: u64) -> Result<Self, FileError> {
+        let (draws, frames, has_error, errors) = Default::default();
+        let mut cases =
+            Self { path: path.to_owned(), empty, draws, frames, has_error, errors, failed_cases: 0 };
+        let mut number = 0;
+        for_each_batch(path, &["has_failed", "error", "frames"], |batch| {
+            let failed = cells::<bool>(path, batch, "has_failed", ColumnType::Boolean)?.values();
+            cases.failed_cases += failed.iter().filter(|failed| **failed).count() as u64;
+            cases.frames.extend(whole(path, batch, "frames")?);
+            for error in texts(path, batch, "error")?.iter() {
+                cases.draws.push((number / together) as usize);
+                cases.has_error.push(error.is_some());
+                if let Some(error) = error.filter(|_| cases.errors.len() < MOST_ERRORS) {
+                    cases.errors.push((number, error.to_owned()));
+                }
+                number += 1;
+            }
+            Ok(())
+        })?;
+        Ok(cases)
+    }
+
+    /// Number of cases.
+    pub fn count(&self) -> u64 {
+        self.frames.len() as u64
+    }
+
+    /// Names of the figures.
+    pub(crate) fn figures(&self) -> &[String] {
+        &self.empty.figures
+    }
+
+    /// Names of the causes.
+    pub(crate) fn causes(&self) -> &[String] {
+        &self.empty.causes
+    }
+
+    /// Names of what was drawn.
+    pub(crate) fn drawn(&self) -> impl Iterator<Item = &String> {
+        self.empty.drawn.keys()
+    }
+
+    /// The numbers of a figure, case by case; `None` of a figure that is not recorded.
+    pub(crate) fn figure(&self, name: &str) -> Result<Option<Vec<CaseFigure>>, FileError> {
+        if !self.empty.figures.iter().any(|figure| figure == name) {
+            return Ok(None);
+        }
+        let path = &self.path;
+        let [count, of] = ["count", "of"].map(|part| format!("{name}.{part}"));
+        let mut figures = Vec::with_capacity(self.frames.len());
+        for_each_batch(path, &[name, &count, &of], |batch| {
+            let values = cells::<f64>(path, batch, name, ColumnType::Float64)?;
+            let counts = whole(path, batch, &count)?.zip(whole(path, batch, &of)?);
+            figures.extend(values.iter().zip(counts).map(|(value, (count, of))| CaseFigure {
+                value,
+                count,
+                of,
+            }));
+            Ok(())
+        })?;
+        Ok(Some(figures))
+    }
+
+    /// Frames by a cause, case by case.
+    pub(crate) fn cause(&self, name: &str) -> Result<Vec<CaseFigure>, FileError> {
+        let (path, name) = (&self.path, format!("{CAUSE}{name}"));
+        let mut counts = Vec::with_capacity(self.frames.len());
+        for_each_batch(path, &[&name], |batch| {
+            counts.extend_from_slice(cells::<u32>(path, batch, &name, ColumnType::UInt32)?.values());
+            Ok(())
+        })?;
+        let figure = |(count, of): (u32, &u64)| CaseFigure { value: None, count: u64::from(count), of: *of };
+        Ok(counts.into_iter().zip(&self.frames).map(figure).collect())
+    }
+
+    /// The numbers of a drawn value, case by case; `None` for what is no number.
+    pub(crate) fn numbers(&self, name: &str) -> Result<Option<Vec<f64>>, FileError> {
+        if self.empty.drawn.get(name) != Some(&true) {
+            return Ok(None);
+        }
+        let (path, name) = (&self.path, format!("{SET}{name}"));
+        let mut numbers = Vec::with_capacity(self.frames.len());
+        for_each_batch(path, &[&name], |batch| {
+            numbers.extend_from_slice(cells::<f64>(path, batch, &name, ColumnType::Float64)?.values());
+            Ok(())
+        })?;
+        Ok(Some(numbers))
+    }
+
+    /// What was drawn for some cases, as a person reads it.
+    #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
+    pub(crate) fn shown(&self, cases: &[usize]) -> Result<Vec<Vec<String>>, FileError> {
+        let mut table =
+            CaseTable { figures: Vec::new(), causes: Vec::new(), ..self.empty.with_rows(Vec::new()) };
+        let names: Vec<String> = table.columns().iter().map(|column| column.name().to_owned()).collect();
+        let mut shown = vec![Vec::new(); cases.len()];
+        let mut first = 0;
+        for_each_batch(&self.path, &names, |batch| {
+            table.rows.clear();
+            table.add(&self.path, batch)?;
+            for (case, shown) in cases.iter().zip(&mut shown) {
+                if (first..first + table.rows.len()).contains(case) {
+                    *shown = table.rows[case - first].drawn.iter().map(|drawn| drawn.shown()).collect();
+                }
+            }
+            first += table.rows.len();
+            Ok(())
+        })?;
+        Ok(shown)
+    }
+
+    /// The attitude that the lines of sight of the cases rest on, as [`CaseTable::attitude`].
+    pub(crate) fn attitude(&self, granted: Option<&str>) -> Result<Option<String>, FileError> {
+        let Some(told) = self.figure(names::LINE_OF_SIGHT_RATE)? else { return Ok(None) };
+        let (own, of) = told.iter().fold((0, 0), |(own, of), figure| (own + figure.count, of + figure.of));
+        Ok(attitude_word(own > 0, of > own, granted))
+    }
+}
+
+fn for_each_batch<N: AsRef<str>>(
+    path: &Path,
+    names: &[N],
+    mut add: impl FnMut(&[Column]) -> Result<(), FileError>,
+) -> Result<(), FileError> {
+    for batch in ParquetFile::open(path)?.batches(names, BATCH_ROWS)? {
+        add(&batch?)?;
+    }
+    Ok(())
+}
+
+fn whole<'a>(
+    path: &Path,
+    batch: &'a [Column],
+    name: &str,
+) -> Result<impl Iterator<Item = u64> + 'a, FileError> {
+    let cells: &Cells<u64> = cells(path, batch, name, ColumnType::UInt64)?;
+    Ok(cells.values().iter().copied())
+}
