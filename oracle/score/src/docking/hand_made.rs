@@ -84,6 +84,14 @@ pub(crate) fn measured(pose: Pose) -> DockingOutcome {
     }
 }
 
+/// The same measurement, doubtful.
+pub(crate) fn doubtful(pose: Pose, doubt: Doubt) -> DockingOutcome {
+    let DockingSolution::Measured(measurement) = measured(pose).solution else {
+        unreachable!("it is measured")
+    };
+    DockingOutcome { solution: DockingSolution::Doubtful { measurement, doubt }, ..measured(pose) }
+}
+
 /// A range alone.
 pub(crate) fn range_only(range_m: f64, sigma_m: f64) -> DockingOutcome {
     DockingOutcome { solution: DockingSolution::RangeOnly { range_m, sigma_m }, ..measured(ahead(1.0)) }
