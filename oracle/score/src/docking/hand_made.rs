@@ -2,8 +2,8 @@
 
 use contract::Camera;
 use contract::docking::{
-    DockingOutcome, DockingSetup, DockingSolution, Features, FieldMeasurement, Outline, Pose, PoseEstimate,
-    StandOffCross, TargetModel,
+    DockingOutcome, DockingSetup, DockingSolution, Doubt, Features, FieldMeasurement, Outline, Pose,
+    PoseEstimate, StandOffCross, TargetModel,
 };
 use nalgebra::{Matrix6, Vector3};
 
