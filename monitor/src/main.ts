@@ -62,7 +62,7 @@ async function start(): Promise<void> {
     const status = element("#status");
     status.textContent = report.status.replaceAll("_", " ");
     const isGood = report.status === "measured" || report.status === "detected";
-    status.className = `pill ${isGood ? "good" : report.status === "range_only" ? "fair" : "bad"}`;
+    status.className = `pill ${isGood ? "good" : report.status === "range_only" || report.status.startsWith("doubtful") ? "fair" : "bad"}`;
     const name = report.model.world === "docking" ? (session.cameras[report.model.camera]?.name ?? "") : "";
     element("#camera-name").textContent = name;
     document.body.dataset["frame"] = String(report.frame);

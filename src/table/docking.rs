@@ -1,6 +1,7 @@
 //! The table of a docking score that a person reads: a row a bin of range and lens, the paper's formulas beside the
 //! pipeline's own best estimator.
 use comfy_table::{Attribute, Cell};
+use contract::docking::Doubt;
 use indexmap::IndexMap;
 use score::docking::{DockingGroup, DockingScore, Gross, MissCause, names};
 use score::{Figure, warm_up_note};
@@ -17,7 +18,7 @@ pub fn docking(score: &DockingScore, styled: bool) -> String {
         "Pose: all six parameters given and none grossly wrong, percent (95 % interval) of the fields in which the target is resolved or\n\
          a pose is given, and of the clear ones (resolved and wholly in the picture). Range only: from the station's outline, percent of the fields (its error).\n\
          Errors: root mean squares over the poses, by the best estimator / by the paper's formulas; across: of d1 and d2 together.\n\
-         In 3σ: errors within three of their standard deviations; NEES is 1 in the mean when σ says the truth.\n",
+         In 3σ: errors within three of their standard deviations; NEES is 1 in the mean when σ says the truth. Doubtful: a pose that failed the pipeline's own tests.\n",
     );
     if score.portions > 0 {
         text.push('\n');
@@ -31,6 +32,14 @@ pub fn docking(score: &DockingScore, styled: bool) -> String {
     let misses = |row: &Row<'_>| row.misses.clone();
     text.push('\n');
     text.push_str(&causes("Misses by cause", &rows, &MissCause::CODES, misses, styled));
+    text.push('\n');
+    text.push_str(&causes(
+        "Doubtful poses by failed test",
+        &rows,
+        &Doubt::ALL.map(Doubt::code),
+        |row| row.doubtful.clone(),
+        styled,
+    ));
     text.push('\n');
     text.push_str(&causes(
         "Wrong answers by error",
@@ -50,6 +59,7 @@ struct Row<'a> {
     figures: &'a IndexMap<String, Figure>,
     misses: &'a IndexMap<String, u64>,
     wrong: &'a IndexMap<String, u64>,
+    doubtful: &'a IndexMap<String, u64>,
 }
 
 impl Row<'_> {
@@ -92,8 +102,8 @@ impl Row<'_> {
 /// The groups and all; all alone where one group is everything.
 fn rows(score: &DockingScore) -> Vec<Row<'_>> {
     let groups = score.groups.iter().map(|(name, group)| {
-        let DockingGroup { frames, portions, figures, misses, wrong } = group;
-        Row { name, frames: *frames, portions: *portions, figures, misses, wrong }
+        let DockingGroup { frames, portions, figures, misses, wrong, doubtful } = group;
+        Row { name, frames: *frames, portions: *portions, figures, misses, wrong, doubtful }
     });
     let all = Row {
         name: "all",
@@ -102,6 +112,7 @@ fn rows(score: &DockingScore) -> Vec<Row<'_>> {
         figures: &score.figures,
         misses: &score.misses,
         wrong: &score.wrong,
+        doubtful: &score.doubtful,
     };
     groups.filter(|_| score.groups.len() > 1 || score.warm_up_frames > 0).chain([all]).collect()
 }
@@ -110,16 +121,17 @@ fn fields(rows: &[Row<'_>], styled: bool) -> String {
     let header = [
         "range, lens",
         "fields",
-        "pose\n%",
-        "of clear\n%",
-        "range only\n%",
-        "wrong\n%",
-        "nothing\n%",
         "error of range\nbest / paper",
         "across\nbest / paper",
         "attitude\nbest / paper",
         "in 3σ\n%",
         "NEES",
+        "doubtful\n%",
+        "wrong\n%",
+        "pose\n%",
+        "of clear\n%",
+        "range only\n%",
+        "nothing\n%",
     ];
     sheet(
         &header,
@@ -127,16 +139,17 @@ fn fields(rows: &[Row<'_>], styled: bool) -> String {
             vec![
                 row.name.to_owned(),
                 row.frames.to_string(),
-                row.rate_with_interval(names::SUCCESS_RATE),
-                row.figure(names::CLEAR_SUCCESS_RATE, percent),
-                row.range_only(),
-                row.figure(names::WRONG_RATE, percent),
-                row.figure(names::MISS_RATE, percent),
                 row.beside(names::RANGE_RMS_M, length),
                 row.beside(names::LATERAL_RMS_M, length),
                 row.beside(names::ATTITUDE_RMS_DEG, degrees),
                 row.figure(names::WITHIN_3_SIGMA, percent),
                 row.figure(names::NEES_MEAN, plain),
+                row.figure(names::DOUBTFUL_RATE, percent),
+                row.figure(names::WRONG_RATE, percent),
+                row.rate_with_interval(names::SUCCESS_RATE),
+                row.figure(names::CLEAR_SUCCESS_RATE, percent),
+                row.range_only(),
+                row.figure(names::MISS_RATE, percent),
             ]
         }),
         styled,
@@ -278,6 +291,7 @@ mod tests {
             figures: figures(success, frames),
             misses: [("too_far".to_owned(), frames - success)].into_iter().filter(|(_, n)| *n > 0).collect(),
             wrong: IndexMap::new(),
+            doubtful: IndexMap::new(),
         };
         let frames = groups.iter().map(|(_, _, frames)| frames).sum();
         let success = groups.iter().map(|(_, success, _)| success).sum();
@@ -295,6 +309,7 @@ mod tests {
             groups: groups.iter().map(|(name, s, n)| ((*name).to_owned(), group(*s, *n))).collect(),
             misses: all.misses,
             wrong: all.wrong,
+            doubtful: all.doubtful,
         }
     }
 

@@ -72,6 +72,8 @@ fn answers(wide: bool, first: u64, block_step: usize, block: u64) -> Vec<Answer>
                         Kind::Range { sigmas: error_m / sigma_m }
                     }
                 }
+                // Such as it is, it is no answer to rely on.
+                DockingSolution::Doubtful { .. } => Kind::Missed(NoPose::Inconsistent),
                 DockingSolution::NoSolution(NoPose::Failed(text)) => panic!("{text}"),
                 DockingSolution::NoSolution(reason) => Kind::Missed(reason.clone()),
             };

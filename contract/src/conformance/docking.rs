@@ -67,7 +67,7 @@ impl Conformance for Docking {
     fn unsound(outcome: &DockingOutcome, _: &DockingSetup) -> Option<String> {
         let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
         match &outcome.solution {
-            DockingSolution::Measured(measurement) => {
+            DockingSolution::Measured(measurement) | DockingSolution::Doubtful { measurement, .. } => {
                 let best = &measurement.best;
                 let poses = [Some(best.pose), measurement.paper];
                 if !poses

@@ -76,11 +76,63 @@ impl fmt::Display for NoPose {
     }
 }
 
+/// The test that a measured pose has failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Doubt {
+    /// What the measurement leaves of the image is not noise.
+    Residuals,
+    /// Cross, ring of marks, docking unit and station's outline do not belong to one scene.
+    Features,
+    /// The pose is not on the motion of the fields before.
+    Motion,
+    /// The field is an earlier one, bit for bit: the pose is of another moment.
+    Repeated,
+}
+
+impl Doubt {
+    /// Every one, in the order in which they are tested.
+    pub const ALL: [Self; 4] = [Self::Repeated, Self::Residuals, Self::Features, Self::Motion];
+
+    /// The word used in files, after `doubtful: `.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Residuals => "residuals",
+            Self::Features => "features",
+            Self::Motion => "motion",
+            Self::Repeated => "repeated",
+        }
+    }
+}
+
+impl fmt::Display for Doubt {
+    /// The status of a row in files: `doubtful: ` and [`Doubt::code`].
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "doubtful: {}", self.code())
+    }
+}
+
+impl std::str::FromStr for Doubt {
+    type Err = ();
+
+    /// Reads what [`fmt::Display`] writes.
+    fn from_str(text: &str) -> Result<Self, ()> {
+        let code = text.strip_prefix("doubtful: ").ok_or(())?;
+        Self::ALL.into_iter().find(|doubt| doubt.code() == code).ok_or(())
+    }
+}
+
 /// The pose, less than that, or why not.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DockingSolution {
     /// All six parameters were measured.
     Measured(Box<FieldMeasurement>),
+    /// All six parameters were measured, and the measurement failed a test: a pose to look at, not to rely on.
+    Doubtful {
+        /// What was measured.
+        measurement: Box<FieldMeasurement>,
+        /// The test that it failed.
+        doubt: Doubt,
+    },
     /// The target is not resolved yet: the range alone, from the outline of the station.
     RangeOnly {
         /// d3, m.
@@ -116,10 +168,20 @@ impl DockingOutcome {
         }
     }
 
-    /// The measurement, if there is one.
+    /// The measurement, if there is one that is not doubtful.
     pub fn measurement(&self) -> Option<&FieldMeasurement> {
         match &self.solution {
             DockingSolution::Measured(measurement) => Some(measurement),
+            _ => None,
+        }
+    }
+
+    /// The measurement, doubtful or not.
+    pub fn any_measurement(&self) -> Option<&FieldMeasurement> {
+        match &self.solution {
+            DockingSolution::Measured(measurement) | DockingSolution::Doubtful { measurement, .. } => {
+                Some(measurement)
+            }
             _ => None,
         }
     }

@@ -4,7 +4,7 @@ use contract::{OutOfRange, bounds};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::portions::{ExactPortionConfig, PaperPortionConfig};
+use super::portions::{MotionConfig, PaperPortionConfig};
 use super::preprocessing::edges::EdgeConfig;
 use super::preprocessing::histogram::AutoContrastConfig;
 use super::preprocessing::region::RegionConfig;
@@ -28,8 +28,8 @@ pub struct DockingConfig {
     /// Fields of a portion, measured or not, 3 to 1000; ten in the paper.
     #[schemars(range(min = 3, max = 1000))]
     pub portion_fields: u32,
-    /// Motion by portions of the best estimator.
-    pub portions: ExactPortionConfig,
+    /// Motion from the poses of the best estimator.
+    pub motion: MotionConfig,
     /// Motion by portions of the paper's formulas.
     pub paper_portions: PaperPortionConfig,
 }
@@ -43,7 +43,7 @@ impl Default for DockingConfig {
             min_contrast: 10.0,
             max_candidates: 24,
             portion_fields: 10,
-            portions: ExactPortionConfig::default(),
+            motion: MotionConfig::default(),
             paper_portions: PaperPortionConfig::default(),
         }
     }

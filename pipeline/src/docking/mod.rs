@@ -13,6 +13,7 @@ mod pipeline;
 pub mod portions;
 mod pose;
 mod preprocessing;
+mod repeats;
 #[cfg(test)]
 mod synthetic;
 

@@ -2,10 +2,11 @@
 
 use contract::bounds::require;
 use contract::docking::{
-    DockingSetup, DockingSolution, Features, Field, FieldMeasurement, FieldTelemetry, NoPose, Pose,
+    DockingSetup, DockingSolution, Doubt, Features, Field, FieldMeasurement, FieldTelemetry, NoPose, Pose,
     TargetModel,
 };
 use contract::{Camera, ContractError};
+use nalgebra::Matrix6;
 
 use super::config::DockingConfig;
 use super::cross_and_circle::marks::{self, MarkShape};
@@ -46,6 +47,10 @@ pub(crate) struct Observed {
     /// What the paper's formulas are made of, where cross and circle were measured.
     pub(crate) paper: Option<PaperMeasurement>,
     pub(crate) features: Features,
+    /// The part of the pose's covariance that is the same error in the fields of seconds.
+    pub(crate) common: Matrix6<f64>,
+    /// Whether only one of the two ways to a pose has one, cross and circle or the best estimator: it needs the motion's confirmation.
+    pub(crate) is_backup: bool,
     /// Where brightness and contrast are to be judged.
     pub(crate) region: Rectangle,
 }
@@ -56,6 +61,8 @@ impl Observed {
             solution: DockingSolution::NoSolution(reason),
             paper: None,
             features: Features::default(),
+            common: Matrix6::zeros(),
+            is_backup: false,
             region: Rectangle::ALL,
         }
     }
@@ -116,7 +123,7 @@ impl Observer {
         let told_m = match &observed.solution {
             DockingSolution::Measured(measurement) => Some(measurement.best.pose.position_m.z),
             DockingSolution::RangeOnly { range_m, .. } => Some(*range_m),
-            DockingSolution::NoSolution(_) => None,
+            DockingSolution::Doubtful { .. } | DockingSolution::NoSolution(_) => None,
         };
         if told_m.is_some_and(|range_m| !self.ranges.admit(sheet.time_s, range_m)) {
             self.track.reset();
@@ -151,7 +158,7 @@ impl Observer {
         match contour::find(sheet.view, &overview, lens) {
             Some(outline) => {
                 self.outlines.found((sheet.time_s, sheet.camera), &outline);
-                self.range_alone(lens, &outline, reason)
+                self.range_alone(sheet.view, lens, &outline, reason)
             }
             None => Observed::nothing(outline::nothing(sheet.view, reason)),
         }
@@ -175,10 +182,21 @@ impl Observer {
             }
         }
         self.track.reset();
-        Some(self.range_alone(lens, &outline, reason))
+        Some(self.range_alone(sheet.view, lens, &outline, reason))
     }
 
-    fn range_alone(&self, lens: &Lens, outline: &StationOutline, reason: NoPose) -> Observed {
+    fn range_alone(
+        &mut self,
+        view: &View<'_>,
+        lens: &Lens,
+        outline: &StationOutline,
+        reason: NoPose,
+    ) -> Observed {
+        if !contour::stands_before_sky(view, lens, &outline.circle) {
+            self.outlines = OutlineTrack::default();
+            let reason = if reason == NoPose::NoTarget { NoPose::Inconsistent } else { reason };
+            return Observed::nothing(reason);
+        }
         let mut observed = Observed::nothing(reason.clone());
         let Observed { features, region, .. } = &mut observed;
         observed.solution = outline::range(lens, &self.target, outline, features, region, reason)
@@ -200,7 +218,7 @@ impl Observer {
         let near_edge = self_check::leaves_field(sheet.view, lens, &self.target, prediction);
         let fitted = self.fit.fit(sheet.field, lens.model(), &self.target, &prediction.pose);
         match fitted {
-            Ok(fitted) => Ok(self.remaining(sheet, lens, &fitted)),
+            Ok(fitted) => Ok(self.remaining(sheet, lens, &fitted, near_edge)),
             Err(_) if near_edge => Err(NoPose::OutOfField),
             Err(_) => Err(lost),
         }
@@ -232,26 +250,40 @@ impl Observer {
             // At large angles the paper's pose is farther off than a fit finds back from.
             fitted = self.fit.fit(sheet.field, lens.model(), &self.target, &measurement.aimed_pose(&target)?);
         }
-        let best = match fitted {
+        let by_features = paper_sigma::estimate(&measurement, &target, cross.seed.half_length_px)?;
+        let (best, common, mut doubt, is_backup) = match fitted {
             Ok(fitted) => {
                 evidence::refine(&mut features, &fitted);
-                fitted.estimate
+                let doubt = self_check::fit(&self.target, lens.focal_px(), &fitted, &by_features);
+                (fitted.estimate, fitted.common, doubt, false)
             }
             // Cross and marks are there and of one target: the paper's pose is worse than the best one, and better than none.
-            Err(_) => paper_sigma::estimate(&measurement, &target, cross.seed.half_length_px)?,
+            Err(_) => (by_features, Matrix6::zeros(), None, true),
         };
-        self_check::range(sheet.view, lens, &self.target, cross, plane, &best)?;
-        self.remember(sheet, lens, best.pose);
+        match self_check::range(sheet.view, lens, &self.target, cross, plane, &best) {
+            Ok(()) => {}
+            Err(NoPose::Inconsistent) => doubt = doubt.or(Some(Doubt::Features)),
+            Err(reason) => return Err(reason),
+        }
+        if doubt.is_none() {
+            self.remember(sheet, lens, best.pose);
+        }
+        let field = Box::new(FieldMeasurement { best, paper: Some(paper) });
         Ok(Observed {
-            solution: DockingSolution::Measured(Box::new(FieldMeasurement { best, paper: Some(paper) })),
+            solution: match doubt {
+                Some(doubt) => DockingSolution::Doubtful { measurement: field, doubt },
+                None => DockingSolution::Measured(field),
+            },
             paper: Some(measurement),
             features,
+            common,
+            is_backup,
             region: evidence::plate(lens, plane, &self.target),
         })
     }
 
     /// The answer from what the best estimator found about the predicted pose.
-    fn remaining(&mut self, sheet: &Sheet, lens: &Lens, fitted: &Fitted) -> Observed {
+    fn remaining(&mut self, sheet: &Sheet, lens: &Lens, fitted: &Fitted, near_edge: bool) -> Observed {
         let best = fitted.estimate;
         self.remember(sheet, lens, best.pose);
         if self.orientation.is_turned(sheet.time_s, Uprightness::Unknown) {
@@ -262,6 +294,9 @@ impl Observer {
             solution: DockingSolution::Measured(Box::new(FieldMeasurement { best, paper: None })),
             paper: None,
             features: Features { marks: fitted.marks.clone(), ..Features::default() },
+            common: fitted.common,
+            // Where cross and marks should be seen and are not, the prediction may have led the fit to something else.
+            is_backup: !near_edge,
             region: plane.map_or(Rectangle::ALL, |plane| evidence::plate(lens, &plane, &self.target)),
         }
     }

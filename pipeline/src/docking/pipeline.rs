@@ -1,16 +1,17 @@
 //! The steps tied together: a field in, pose and motion out.
 
 use contract::docking::{
-    Docking, DockingOutcome, DockingSetup, DockingSolution, Field, FieldTelemetry, MotionReport, PoseEstimate,
+    Docking, DockingOutcome, DockingSetup, DockingSolution, Doubt, Field, FieldTelemetry, MotionReport,
 };
 use contract::{ContractError, Pipeline, PipelineFactory};
 
 use super::config::DockingConfig;
 use super::observer::{Observed, Observer};
-use super::portions::{ExactPortions, PaperPortions};
+use super::portions::{Continuity, MotionTracker, PaperPortions};
 use super::pose::paper_pose::{PaperMeasurement, PaperTarget};
 use super::preprocessing::histogram::Histogram;
 use super::preprocessing::view::View;
+use super::repeats::Repeats;
 use crate::PipelineError;
 
 /// Builds pipelines by the docking method.
@@ -50,7 +51,8 @@ pub struct DockingPipeline {
     target: PaperTarget,
     observer: Observer,
     portion: Portion,
-    exact: ExactPortions,
+    motion: MotionTracker,
+    repeats: Repeats,
     paper: PaperPortions,
 }
 
@@ -58,7 +60,6 @@ pub struct DockingPipeline {
 #[derive(Debug, Clone, Default)]
 struct Portion {
     fields: u32,
-    best: Vec<(f64, PoseEstimate)>,
     paper: Vec<(f64, PaperMeasurement)>,
     last_time_s: Option<f64>,
 }
@@ -73,7 +74,8 @@ impl DockingPipeline {
         let target = PaperTarget::of(&setup.target);
         Ok(Self {
             observer: Observer::new(&config, setup)?,
-            exact: ExactPortions::new(config.portions)?,
+            motion: MotionTracker::new(config.motion)?,
+            repeats: Repeats::default(),
             paper: PaperPortions::new(config.paper_portions, target)?,
             target,
             config,
@@ -82,27 +84,18 @@ impl DockingPipeline {
     }
 
     /// Adds a field to its portion; the motion, when the portion is complete.
-    fn add(
-        &mut self,
-        time_s: f64,
-        solution: &DockingSolution,
-        paper: Option<PaperMeasurement>,
-    ) -> Option<MotionReport> {
+    fn add(&mut self, time_s: f64, paper: Option<PaperMeasurement>) -> Option<MotionReport> {
         // A sequence that begins anew has no motion from before.
         if self.portion.last_time_s.is_some_and(|last| time_s <= last || time_s - last > MAX_PORTION_GAP_S)
             || !time_s.is_finite()
         {
             self.portion = Portion::default();
             if time_s.is_finite() {
-                self.exact = ExactPortions::new(self.config.portions).ok()?;
                 self.paper = PaperPortions::new(self.config.paper_portions, self.target).ok()?;
             }
         }
         self.portion.last_time_s = Some(time_s).filter(|t| t.is_finite());
-        if let DockingSolution::Measured(measurement) = solution {
-            self.portion.best.push((time_s, measurement.best));
-            self.portion.paper.extend(paper.map(|paper| (time_s, paper)));
-        }
+        self.portion.paper.extend(paper.map(|paper| (time_s, paper)));
         self.portion.fields += 1;
         if self.portion.fields < self.config.portion_fields {
             return None;
@@ -110,16 +103,40 @@ impl DockingPipeline {
         let ended = std::mem::take(&mut self.portion);
         self.portion.last_time_s = ended.last_time_s;
         let paper = self.paper.end(&ended.paper);
-        let best = self.exact.end(&ended.best);
-        MotionReport::of(best, paper)
+        MotionReport::of(self.motion.report(), paper)
+    }
+
+    /// Tests a pose against the fields before, and brings its covariance to their scatter.
+    fn test(&mut self, field: &Field, time_s: f64, observed: Observed) -> Observed {
+        let is_repeated = self.repeats.is_repeated(field);
+        let Observed { solution: DockingSolution::Measured(mut measurement), common, is_backup, .. } =
+            observed
+        else {
+            return observed;
+        };
+        let doubt = if is_repeated {
+            Some(Doubt::Repeated)
+        } else if is_backup && !self.motion.confirms(time_s, &measurement.best) {
+            Some(Doubt::Residuals)
+        } else {
+            let (continuity, factor) = self.motion.add(time_s, &measurement.best, &common);
+            measurement.best.covariance *= factor;
+            (continuity == Continuity::Breaks).then_some(Doubt::Motion)
+        };
+        let solution = match doubt {
+            Some(doubt) => DockingSolution::Doubtful { measurement, doubt },
+            None => DockingSolution::Measured(measurement),
+        };
+        Observed { solution, ..observed }
     }
 }
 
 impl Pipeline<Docking> for DockingPipeline {
     fn process(&mut self, field: &Field, telemetry: &FieldTelemetry) -> DockingOutcome {
         let view = View::new(field);
-        let Observed { solution, paper, features, region } = self.observer.observe(field, &view, telemetry);
-        let motion = self.add(telemetry.time_s, &solution, paper);
+        let observed = self.observer.observe(field, &view, telemetry);
+        let Observed { solution, paper, features, region, .. } = self.test(field, telemetry.time_s, observed);
+        let motion = self.add(telemetry.time_s, paper);
         let histogram = Histogram::of(&view, &region);
         let digitiser = self.config.auto_contrast.wish(&histogram, &telemetry.digitiser);
         DockingOutcome { solution, features, motion, digitiser }
@@ -176,7 +193,8 @@ mod tests {
         let scene = Scene::default();
         let first = pipeline.process(&scene.field(Lines::Even), &synthetic::telemetry(0.0));
         let again = pipeline.process(&scene.field(Lines::Even), &synthetic::telemetry(0.02));
-        let pose = |outcome: &DockingOutcome| outcome.measurement().unwrap().paper.unwrap().position_m;
+        assert!(matches!(again.solution, DockingSolution::Doubtful { doubt: Doubt::Repeated, .. }));
+        let pose = |outcome: &DockingOutcome| outcome.any_measurement().unwrap().paper.unwrap().position_m;
         // The same pixels from another start: within the pairs that change sides.
         assert!((pose(&first) - pose(&again)).norm() < 0.02, "{} {}", pose(&first), pose(&again));
     }

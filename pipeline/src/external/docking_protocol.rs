@@ -28,8 +28,8 @@ use std::path::Path;
 
 use contract::Camera;
 use contract::docking::{
-    Digitiser, Docking, DockingOutcome, DockingSetup, DockingSolution, Features, Field, FieldMeasurement,
-    FieldTelemetry, NoPose, Pose, PoseEstimate, TargetModel,
+    Digitiser, Docking, DockingOutcome, DockingSetup, DockingSolution, Doubt, Features, Field,
+    FieldMeasurement, FieldTelemetry, NoPose, Pose, PoseEstimate, TargetModel,
 };
 use nalgebra::{Matrix6, Vector3, Vector6};
 use serde::{Deserialize, Serialize};
@@ -119,6 +119,9 @@ pub fn outcome(answer: &[u8], number: u64) -> Result<DockingOutcome, String> {
     let solution = match answer.status.as_str() {
         "measured" => DockingSolution::Measured(Box::new(measurement(&answer)?)),
         "range_only" => range_only(&answer)?,
+        text if let Ok(doubt) = text.parse::<Doubt>() => {
+            DockingSolution::Doubtful { measurement: Box::new(measurement(&answer)?), doubt }
+        }
         status => match NoPose::parse(status) {
             None => return Err(format!("its status `{}` is not known", shortened(status))),
             Some(NoPose::Failed(reason)) => DockingSolution::NoSolution(NoPose::Failed(shortened(&reason))),
@@ -204,6 +207,11 @@ mod tests {
         let range =
             read(r#"{"field": 7, "status": "range_only", "range_m": 310, "sigma_range_m": 4}"#).unwrap();
         assert_eq!(range.solution, DockingSolution::RangeOnly { range_m: 310.0, sigma_m: 4.0 });
+        let doubtful =
+            read(r#"{"field": 7, "status": "doubtful: features", "d_m": [0, 0, 9], "phi_deg": [0, 0, 0]}"#)
+                .unwrap();
+        assert!(matches!(doubtful.solution, DockingSolution::Doubtful { doubt: Doubt::Features, .. }));
+        assert_eq!((doubtful.measurement(), doubtful.any_measurement().is_some()), (None, true));
         for (status, expected) in [
             ("no_target", NoPose::NoTarget),
             ("out_of_field", NoPose::OutOfField),
@@ -229,6 +237,8 @@ mod tests {
         );
         refused(&measured(r#""d_m": [0, 0, 9], "phi_Deg": [0, 0, 0]"#), "unknown field `phi_Deg`");
         refused(r#"{"field": 7, "status": "range_only"}"#, "no range_m");
+        refused(r#"{"field": 7, "status": "doubtful: motion"}"#, "gave no d_m and phi_deg");
+        refused(r#"{"field": 7, "status": "doubtful"}"#, "its status `doubtful` is not known");
         refused(r#"{"field": 8, "status": "no_target"}"#, "it answered field 8 instead of field 7");
         refused(r#"{"field": 7, "status": "fine"}"#, "its status `fine` is not known");
     }

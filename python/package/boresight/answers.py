@@ -63,7 +63,9 @@ class Pose:
     brightness: float | None = None
     """The brightness that it shall have, -10 to 10, in units of full scale."""
 
-    status = "measured"
+    status: str = "measured"
+    """`measured`; or the test that the pose has failed, and then it counts as doubtful: `doubtful: residuals`, `doubtful: features`,
+    `doubtful: motion`, `doubtful: repeated`."""
 
 
 @dataclass(frozen=True)

@@ -252,7 +252,7 @@ impl Known<'_> {
 
     fn estimate(&self) -> Option<&PoseEstimate> {
         let answer = self.answer.as_ref()?.as_ref()?;
-        answer.measurement().map(|measurement| &measurement.best)
+        answer.any_measurement().map(|measurement| &measurement.best)
     }
 
     fn marks(&self) -> Vec<Mark> {
@@ -288,7 +288,7 @@ impl Known<'_> {
         let unit = self.verdict.as_ref()?;
         let tone = match unit.verdict.as_str() {
             "success" => Tone::Good,
-            "range_only" => Tone::Partial,
+            "range_only" | "doubtful" => Tone::Partial,
             _ => Tone::Bad,
         };
         let cause = unit.cause.as_ref().map_or_else(String::new, |cause| format!(": {}", spoken(cause)));

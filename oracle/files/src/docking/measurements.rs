@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use contract::docking::{
-    DockingOutcome, DockingSolution, Features, FieldMeasurement, NoPose, Pose, PoseEstimate,
+    DockingOutcome, DockingSolution, Doubt, Features, FieldMeasurement, NoPose, Pose, PoseEstimate,
 };
 use nalgebra::{Matrix6, Vector3, Vector6};
 
@@ -48,10 +48,11 @@ table! {
     pub struct FieldMeasurementLine: csv {
         /// number of the field; ascending, each once
         field: u64,
-        /// `measured`; `range_only`; or why not: `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`,
+        /// `measured`; `range_only`; `doubtful: residuals`, `doubtful: features`, `doubtful: motion`, `doubtful: repeated`: measured, and not to be
+        /// relied on; or why not: `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`,
         /// `too_few_features`, `inconsistent`, `failed`, `failed: ` and a reason
         status: String,
-        /// the pose; empty unless `measured`
+        /// the pose; empty unless `measured` or doubtful
         pose: Option<Pose> = POSE,
         /// standard deviations; all six or none
         sigma: Option<[f64; 6]> = optional(SIGMA),
@@ -72,7 +73,7 @@ const MEASURED: &str = "measured";
 /// The status of a row that has a range alone.
 const RANGE_ONLY: &str = "range_only";
 /// What is expected in place of any other word.
-const STATUS: &str = "`measured`, `range_only`, `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`, \
+const STATUS: &str = "`measured`, `range_only`, `doubtful: residuals`, `doubtful: features`, `doubtful: motion`, `doubtful: repeated`, `empty_field`, `saturated_field`, `no_target`, `ambiguous_target`, `out_of_field`, \
                       `too_few_features`, `inconsistent`, `failed`, or `failed: ` and a reason";
 
 /// From metres and radians to metres and degrees.
@@ -92,12 +93,13 @@ impl FieldMeasurementWriter {
     pub fn write(&mut self, field: u64, outcome: &DockingOutcome) -> Result<(), FileError> {
         let (status, range) = match &outcome.solution {
             DockingSolution::Measured(_) => (MEASURED.to_owned(), None),
+            DockingSolution::Doubtful { doubt, .. } => (doubt.to_string(), None),
             DockingSolution::RangeOnly { range_m, sigma_m } => {
                 (RANGE_ONLY.to_owned(), Some((*range_m, *sigma_m)))
             }
             DockingSolution::NoSolution(reason) => (reason.to_string(), None),
         };
-        let measurement = outcome.measurement();
+        let measurement = outcome.any_measurement();
         let best = measurement.map(|measurement| &measurement.best);
         let sigma = |covariance: &Matrix6<f64>| {
             covariance.diagonal().map(|variance| variance.max(0.0).sqrt()).component_mul(&scale()).into()
@@ -118,14 +120,20 @@ impl FieldMeasurementWriter {
 /// The answer as it comes back from the file, without features and motion: angles have changed their unit twice, which may
 /// move their last bit. A score of the run is made of these, so that one of the files is the same to the bit.
 pub fn outcome_as_filed(outcome: &DockingOutcome) -> DockingOutcome {
-    let solution = match &outcome.solution {
-        DockingSolution::Measured(measurement) => DockingSolution::Measured(Box::new(FieldMeasurement {
+    let as_filed = |measurement: &FieldMeasurement| {
+        Box::new(FieldMeasurement {
             best: PoseEstimate {
                 pose: pose::as_filed(&measurement.best.pose),
                 covariance: covariance::as_filed(&measurement.best.covariance, &scale()),
             },
             paper: measurement.paper.as_ref().map(pose::as_filed),
-        })),
+        })
+    };
+    let solution = match &outcome.solution {
+        DockingSolution::Measured(measurement) => DockingSolution::Measured(as_filed(measurement)),
+        DockingSolution::Doubtful { measurement, doubt } => {
+            DockingSolution::Doubtful { measurement: as_filed(measurement), doubt: *doubt }
+        }
         other => other.clone(),
     };
     DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None }
@@ -148,16 +156,7 @@ pub fn read_field_measurements(path: &Path) -> Result<Vec<(u64, DockingOutcome)>
 fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
     let status = row.text("status");
     match status.trim() {
-        MEASURED => {
-            row.check_empty(RANGE)?;
-            let line = FieldMeasurementLine::read(row)?;
-            let pose = line.pose.ok_or_else(|| row.error(POSE[0], f64::EXPECTED))?;
-            if pose.position_m == Vector3::zeros() {
-                return Err(row.error(POSE[2], "a camera that is not inside the target"));
-            }
-            let best = PoseEstimate { pose, covariance: covariance(row, &line)? };
-            Ok(DockingSolution::Measured(Box::new(FieldMeasurement { best, paper: line.paper })))
-        }
+        MEASURED => Ok(DockingSolution::Measured(measurement(row)?)),
         RANGE_ONLY => {
             row.check_empty(POSE)?;
             let range_m = row.cell(RANGE[0])?;
@@ -171,6 +170,9 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
             }
             Ok(DockingSolution::RangeOnly { range_m, sigma_m })
         }
+        text if let Ok(doubt) = text.parse::<Doubt>() => {
+            Ok(DockingSolution::Doubtful { measurement: measurement(row)?, doubt })
+        }
         _ => {
             // What stands behind `failed: ` is kept to the letter.
             let reason = NoPose::parse(status.trim_start()).ok_or_else(|| row.error("status", STATUS))?;
@@ -179,6 +181,18 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
             Ok(DockingSolution::NoSolution(reason))
         }
     }
+}
+
+/// The pose of a row that has one.
+fn measurement(row: &CsvRow<'_>) -> Result<Box<FieldMeasurement>, FileError> {
+    row.check_empty(RANGE)?;
+    let line = FieldMeasurementLine::read(row)?;
+    let pose = line.pose.ok_or_else(|| row.error(POSE[0], f64::EXPECTED))?;
+    if pose.position_m == Vector3::zeros() {
+        return Err(row.error(POSE[2], "a camera that is not inside the target"));
+    }
+    let best = PoseEstimate { pose, covariance: covariance(row, &line)? };
+    Ok(Box::new(FieldMeasurement { best, paper: line.paper }))
 }
 
 /// The covariance; without its cells that of the standard deviations, uncorrelated; without these zero, which says
@@ -222,6 +236,13 @@ mod tests {
         outcome(DockingSolution::Measured(Box::new(FieldMeasurement { best, paper })))
     }
 
+    fn doubtful(doubt: Doubt) -> DockingOutcome {
+        let DockingSolution::Measured(measurement) = measured().solution else {
+            unreachable!("it is measured")
+        };
+        outcome(DockingSolution::Doubtful { measurement, doubt })
+    }
+
     fn write(path: &Path, answers: &[(u64, DockingOutcome)]) {
         let mut writer = FieldMeasurementWriter::create(path).unwrap();
         answers.iter().for_each(|(field, outcome)| writer.write(*field, outcome).unwrap());
@@ -234,6 +255,8 @@ mod tests {
             measured(),
             outcome(DockingSolution::RangeOnly { range_m: 312.5, sigma_m: 2.0 }),
             DockingOutcome::none(NoPose::TooFewFeatures),
+            doubtful(Doubt::Residuals),
+            doubtful(Doubt::Repeated),
             DockingOutcome::none(NoPose::Failed("out of film, twice".to_owned())),
         ]
         .into_iter()
@@ -244,7 +267,7 @@ mod tests {
         let path = directory.path().join("a.csv");
         write(&path, &answers);
         let read = read_field_measurements(&path).unwrap();
-        assert_eq!(read[1..], answers[1..]);
+        assert_eq!(read[1..3], answers[1..3]);
         for ((_, read), (_, written)) in read.iter().zip(&answers) {
             assert_eq!(*read, outcome_as_filed(written));
         }
@@ -291,6 +314,10 @@ mod tests {
             ("0,range_only,,,5,,,,9,1,,,,,,", "d3_m"),
             ("0,Measured,0,0,5,0,0,0,,,,,,,,", "status"),
             ("0,ok,,,,,,,,,,,,,,", "status"),
+            ("0,doubtful,0,0,5,0,0,0,,,,,,,,", "status"),
+            ("0,doubtful: mood,0,0,5,0,0,0,,,,,,,,", "status"),
+            ("0,doubtful: motion,,0,5,0,0,0,,,,,,,,", "d1_m"),
+            ("0,doubtful: motion,0,0,5,0,0,0,5,,,,,,,", "range_m"),
             ("0,no_target,,,5,,,,,,,,,,,", "d3_m"),
             ("0,range_only,,,,,,,0,1,,,,,,", "range_m"),
             ("0,,0,0,5,0,0,0,,,,,,,,", "status"),

@@ -51,7 +51,7 @@ impl<'a> DockingReporter<'a> {
                 truth: true_at(truth, motion),
             });
         }
-        let measured = outcome.and_then(DockingOutcome::measurement).map(|measured| &measured.best);
+        let measured = outcome.and_then(DockingOutcome::any_measurement).map(|measured| &measured.best);
         let mut parameters = pose_parameters(
             &BEST,
             measured.map(|best| &best.pose),
@@ -255,6 +255,7 @@ fn pose_parameters(
 fn status(outcome: Option<&DockingOutcome>) -> String {
     match outcome.map(|outcome| &outcome.solution) {
         Some(DockingSolution::Measured(_)) => "measured".to_owned(),
+        Some(DockingSolution::Doubtful { doubt, .. }) => doubt.to_string(),
         Some(DockingSolution::RangeOnly { .. }) => "range_only".to_owned(),
         Some(DockingSolution::NoSolution(reason)) => reason.to_string(),
         None => "not_reported".to_owned(),

@@ -164,6 +164,9 @@ fn answer_words(outcome: Option<&DockingOutcome>) -> String {
         Some(DockingSolution::Measured(measured)) => {
             format!("ρ measured {:.3} m", measured.best.pose.position_m.norm())
         }
+        Some(DockingSolution::Doubtful { measurement, doubt }) => {
+            format!("{doubt}, ρ measured {:.3} m", measurement.best.pose.position_m.norm())
+        }
         Some(DockingSolution::RangeOnly { range_m, .. }) => format!("range alone {range_m:.2} m"),
         Some(DockingSolution::NoSolution(reason)) => match reason.to_string() {
             // Words of the pipeline's own.

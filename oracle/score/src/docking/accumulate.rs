@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use contract::docking::{DockingOutcome, DockingSetup, Motion, MotionReport};
+use contract::docking::{DockingOutcome, DockingSetup, Doubt, Motion, MotionReport};
 
 use super::bins::{bin, group_name, lens_names};
 use super::cause::MissCause;
@@ -108,7 +108,8 @@ impl DockingScorer {
             let (d, phi) = (best.position_m - truth.position_m, phi_error(best, truth));
             (nalgebra::Vector6::new(d.x, d.y, d.z, phi.x, phi.y, phi.z), &measurement.best.covariance)
         });
-        let paper = measurement
+        let paper = outcome
+            .and_then(DockingOutcome::any_measurement)
             .and_then(|measurement| measurement.paper)
             .map(|pose| PoseErrors::new(&pose, &truth.pose));
         let range_m = truth.pose.position_m.norm();
@@ -174,6 +175,7 @@ impl DockingScorer {
             let (verdict, cause) = match &field.verdict {
                 Verdict::Success { .. } => ("success", None),
                 Verdict::RangeOnly { .. } => ("range_only", None),
+                Verdict::Doubtful { doubt, .. } => ("doubtful", Some(doubt.code())),
                 Verdict::Wrong { gross } => ("wrong", Some(gross.code())),
                 Verdict::Missed { cause } => ("missed", Some(cause.code())),
             };
@@ -223,6 +225,7 @@ impl DockingScorer {
                 .collect(),
             misses: all.misses,
             wrong: all.wrong,
+            doubtful: all.doubtful,
         }
     }
 }
@@ -257,6 +260,10 @@ fn group_score(sequences: &[&[&FieldVerdict]]) -> DockingGroup {
         Verdict::Wrong { gross } => Some(gross.code()),
         _ => None,
     });
+    let doubtful = fields().filter_map(|field| match field.verdict {
+        Verdict::Doubtful { doubt, .. } => Some(doubt.code()),
+        _ => None,
+    });
     DockingGroup {
         frames: fields().count() as u64,
         portions: fields().filter(|field| field.portion.is_some()).count() as u64,
@@ -266,6 +273,7 @@ fn group_score(sequences: &[&[&FieldVerdict]]) -> DockingGroup {
             .collect(),
         misses: counts(&MissCause::CODES, misses),
         wrong: counts(&Gross::ALL.map(Gross::code), wrong),
+        doubtful: counts(&Doubt::ALL.map(Doubt::code), doubtful),
     }
 }
 

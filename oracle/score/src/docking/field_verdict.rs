@@ -17,7 +17,7 @@ pub(super) struct FieldVerdict {
     pub(super) is_clear: bool,
     /// Of a clear field, from a second after the first measured one: whether the last report is at most a second old.
     pub(super) is_renewed: Option<bool>,
-    /// Whether all six parameters were given.
+    /// Whether all six parameters were given, and not doubted.
     pub(super) is_measured: bool,
     /// Whether all six can be asked for: the target is resolved, or they were given all the same.
     pub(super) is_asked: bool,

@@ -166,6 +166,15 @@ fn rates(figures: &mut Figures<'_>) {
     figures.rate(names::WRONG_RATE, "wrong rate", Better::Less, |field| {
         Some(matches!(field.verdict, Verdict::Wrong { .. }))
     });
+    figures.rate(names::DOUBTFUL_RATE, "doubtful rate", Better::Less, |field| {
+        Some(matches!(field.verdict, Verdict::Doubtful { .. }))
+    });
+    figures.rate(names::DOUBTFUL_WRONG_RATE, "doubtful wrong rate", Better::More, |field| {
+        match field.verdict {
+            Verdict::Doubtful { gross, .. } => Some(gross.is_some()),
+            _ => None,
+        }
+    });
     figures.rate(names::MISS_RATE, "miss rate", Better::Less, |field| {
         Some(matches!(field.verdict, Verdict::Missed { .. }))
     });

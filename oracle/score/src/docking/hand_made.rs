@@ -2,8 +2,8 @@
 
 use contract::Camera;
 use contract::docking::{
-    DockingOutcome, DockingSetup, DockingSolution, Features, FieldMeasurement, Outline, Pose, PoseEstimate,
-    StandOffCross, TargetModel,
+    DockingOutcome, DockingSetup, DockingSolution, Doubt, Features, FieldMeasurement, Outline, Pose,
+    PoseEstimate, StandOffCross, TargetModel,
 };
 use nalgebra::{Matrix6, Vector3};
 
@@ -82,6 +82,14 @@ pub(crate) fn measured(pose: Pose) -> DockingOutcome {
         motion: None,
         digitiser: None,
     }
+}
+
+/// The same measurement, doubtful.
+pub(crate) fn doubtful(pose: Pose, doubt: Doubt) -> DockingOutcome {
+    let DockingSolution::Measured(measurement) = measured(pose).solution else {
+        unreachable!("it is measured")
+    };
+    DockingOutcome { solution: DockingSolution::Doubtful { measurement, doubt }, ..measured(pose) }
 }
 
 /// A range alone.

@@ -12,12 +12,16 @@ pub mod names {
     pub const SUCCESS_RATE: &str = "success_rate";
     /// The same, of those in which the target is resolved and wholly in the image.
     pub const CLEAR_SUCCESS_RATE: &str = "clear_success_rate";
-    /// Six parameters given, rightly or wrongly, of all fields: what the paper calls processed successfully.
+    /// Six parameters given and not doubted, rightly or wrongly, of all fields: what the paper calls processed successfully.
     pub const MEASURED_RATE: &str = "measured_rate";
     /// The range alone, of all fields.
     pub const RANGE_ONLY_RATE: &str = "range_only_rate";
     /// Grossly wrong, of all fields.
     pub const WRONG_RATE: &str = "wrong_rate";
+    /// Given and doubted by the pipeline, of all fields.
+    pub const DOUBTFUL_RATE: &str = "doubtful_rate";
+    /// Grossly wrong, of the doubtful ones: how often a doubt was needed.
+    pub const DOUBTFUL_WRONG_RATE: &str = "doubtful_wrong_rate";
     /// No answer, of all fields.
     pub const MISS_RATE: &str = "miss_rate";
     /// Root mean square of the error of ρ, m.
@@ -65,7 +69,7 @@ pub struct DockingScore {
     /// when 0.
     #[serde(default, skip_serializing_if = "crate::report::is_zero")]
     pub warm_up_frames: u64,
-    /// Number of fields, each counted once: succeeded, range alone, wrong, missed.
+    /// Number of fields, each counted once: succeeded, range alone, doubtful, wrong, missed.
     pub frames: u64,
     /// Number of reports at the end of a portion.
     pub portions: u64,
@@ -77,6 +81,9 @@ pub struct DockingScore {
     pub misses: IndexMap<String, u64>,
     /// Wrong answers by [`super::Gross::code`].
     pub wrong: IndexMap<String, u64>,
+    /// Doubtful poses by [`contract::docking::Doubt::code`].
+    #[serde(default)]
+    pub doubtful: IndexMap<String, u64>,
 }
 
 /// The score of one bin of range and lens.
@@ -92,4 +99,7 @@ pub struct DockingGroup {
     pub misses: IndexMap<String, u64>,
     /// Wrong answers by what is wrong.
     pub wrong: IndexMap<String, u64>,
+    /// Doubtful poses by the test that they failed.
+    #[serde(default)]
+    pub doubtful: IndexMap<String, u64>,
 }

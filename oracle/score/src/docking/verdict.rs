@@ -1,6 +1,6 @@
 //! What became of a field: one verdict each.
 
-use contract::docking::{DockingOutcome, DockingSolution, NoPose, Pose};
+use contract::docking::{DockingOutcome, DockingSolution, Doubt, NoPose, Pose};
 
 use super::cause::MissCause;
 use super::errors::PoseErrors;
@@ -107,6 +107,13 @@ pub enum Verdict {
         /// The standard deviation told, m.
         sigma_m: f64,
     },
+    /// A pose that the pipeline itself doubts, right or wrong.
+    Doubtful {
+        /// The test that it failed.
+        doubt: Doubt,
+        /// In what it is grossly wrong, if it is.
+        gross: Option<Gross>,
+    },
     /// An answer that is grossly wrong.
     Wrong {
         /// In what.
@@ -129,6 +136,10 @@ impl Verdict {
                     Some(gross) => Self::Wrong { gross },
                     None => Self::Success { errors },
                 }
+            }
+            Some(DockingSolution::Doubtful { measurement, doubt }) => {
+                let errors = PoseErrors::new(&measurement.best.pose, &truth.pose);
+                Self::Doubtful { doubt: *doubt, gross: gross(sights, truth, &errors) }
             }
             Some(DockingSolution::RangeOnly { range_m, sigma_m }) => {
                 let error_m = range_m - truth.pose.position_m.z;
@@ -161,7 +172,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::docking::hand_made::{ahead, field, measured, range_only, setup};
+    use crate::docking::hand_made::{ahead, doubtful, field, measured, range_only, setup};
 
     fn verdict(range_m: f64, outcome: &DockingOutcome) -> Verdict {
         Verdict::of(&Sights::new(&setup()), &field(0, range_m), Some(outcome))
@@ -210,6 +221,14 @@ mod tests {
         };
         assert_eq!((tilted(10.0, 4.9), tilted(10.0, 5.1)), (None, Some(Gross::Tilt)));
         assert_eq!((tilted(100.0, 6.5), tilted(100.0, 6.6)), (None, Some(Gross::Tilt)));
+    }
+
+    /// A doubtful pose is neither success nor wrong, and its error is looked at all the same.
+    #[test]
+    fn a_doubtful_pose_is_doubtful_whatever_its_error() {
+        let at = |d3_m| verdict(10.0, &doubtful(ahead(d3_m), Doubt::Motion));
+        assert_eq!(at(10.0), Verdict::Doubtful { doubt: Doubt::Motion, gross: None });
+        assert_eq!(at(11.0), Verdict::Doubtful { doubt: Doubt::Motion, gross: Some(Gross::Range) });
     }
 
     #[test]

@@ -7,6 +7,8 @@ use nalgebra::Vector2;
 use super::votes::{self, Proposal};
 use crate::docking::cross_and_circle::circle::{self, CircleFit};
 use crate::docking::pose::paper_pose::range_from_outline;
+use crate::docking::preprocessing::histogram::Histogram;
+use crate::docking::preprocessing::region::Rectangle;
 use crate::docking::preprocessing::view::{Lens, Overview, View};
 
 /// The station's outline in a field, ideal image.
@@ -123,6 +125,39 @@ fn noise(view: &View<'_>) -> f64 {
             2 * below >= total
         })
         .unwrap_or(0) as f64
+}
+
+/// Distances from a circle's centre at which sky is looked for, radii: beyond what stands behind the end face.
+const SKY_AT: [f64; 2] = [1.35, 1.6];
+
+/// Least share of the directions in which there is sky. Modules and panels leave 0.39 and more at 1.35 radii; about the docking unit is
+/// the end face, and the ring of the unit would be taken for a station three times as far away.
+const MIN_SKY: f64 = 0.33;
+
+/// Sky is not brighter than the darkest hundredths of the field by more than this part of the disk's brightness over them.
+const SKY_LEVEL: f64 = 0.25;
+
+/// Whether a circle is the outline of a body before the sky, and not a ring on its face. A circle about which too little is in the image is
+/// not.
+pub(crate) fn stands_before_sky(view: &View<'_>, lens: &Lens, circle: &CircleFit) -> bool {
+    let around = |radii: f64| -> Vec<f64> {
+        (0..RAYS)
+            .filter_map(|ray| {
+                let (sin, cos) = libm::sincos(std::f64::consts::TAU * ray as f64 / RAYS as f64);
+                view.sample(lens.to_camera(circle.centre + radii * circle.radius * Vector2::new(cos, sin))?)
+            })
+            .collect()
+    };
+    let mut inside: Vec<f64> = [0.8, 0.86, 0.92].into_iter().flat_map(around).collect();
+    inside.sort_by(f64::total_cmp);
+    let Some(&face) = inside.get(inside.len() / 2) else { return false };
+    let darkest = Histogram::of(view, &Rectangle::ALL).quantile(0.02);
+    let sky = darkest + SKY_LEVEL * (face - darkest);
+    SKY_AT.into_iter().all(|radii| {
+        let outside = around(radii);
+        let dark = outside.iter().filter(|value| **value <= sky).count();
+        outside.len() as f64 >= MIN_INSIDE * RAYS as f64 && dark as f64 >= MIN_SKY * outside.len() as f64
+    })
 }
 
 /// Whether the outline is seen where `centre` and `radius` predict it; `None` when too much of it is outside the image to
@@ -289,6 +324,27 @@ mod tests {
             assert!(error.abs() < 3.0 * found.sigma_px, "{radius}: {found:?}");
             assert!(error.abs() < 1.0 + 0.02 * radius, "{radius}: {error}");
         }
+    }
+
+    #[test]
+    fn a_ring_on_a_bright_face_does_not_stand_before_the_sky() {
+        let centre = (384.0, 288.0);
+        let circle = |field: &contract::docking::Field| {
+            let view = View::new(field);
+            let lens = synthetic::lens();
+            let middle = lens.to_ideal(contract::PixelPoint::new(centre.0, centre.1)).unwrap();
+            let place = (middle, 80.0);
+            stands_before_sky(&view, &lens, &measure_at(&view, &lens, place, 8.0).unwrap().circle)
+        };
+        let body = |x, y| if disk(x, y, centre, 80.0) { 140 } else { 8 };
+        assert!(circle(&synthetic::drawn(Lines::Even, body)));
+        // The same ring on the face of a station three times as large, a corner of which is sky.
+        let on_face = |x, y| match () {
+            () if disk(x, y, centre, 80.0) => 140,
+            () if disk(x, y, centre, 250.0) => 90,
+            () => 8,
+        };
+        assert!(!circle(&synthetic::drawn(Lines::Even, on_face)));
     }
 
     #[test]

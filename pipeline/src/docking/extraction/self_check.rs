@@ -1,11 +1,14 @@
 //! Whether what was found has the structure that the scene must have.
 
-use contract::docking::{MarkUse, NoPose, PoseEstimate, TargetModel};
+use contract::docking::{Doubt, MarkUse, NoPose, PoseEstimate, TargetModel};
+
+use nalgebra::Vector3;
 
 use super::contour;
 use super::docking_unit::{self, DiskEdge, Side};
 use crate::docking::cross_and_circle::cross::CrossFit;
 use crate::docking::cross_and_circle::marks::{MarksFit, Plane};
+use crate::docking::pose::model_fit::Fitted;
 use crate::docking::preprocessing::region::Prediction;
 use crate::docking::preprocessing::view::{Lens, View};
 
@@ -125,6 +128,32 @@ pub(crate) fn range(
     let sigma_m = libm::hypot(sigma_m, best.covariance[(2, 2)].max(0.0).sqrt());
     let agrees = (best.pose.position_m.z - range_m).abs() <= 3.0 * sigma_m;
     if agrees { Ok(()) } else { Err(NoPose::Inconsistent) }
+}
+
+/// What is of two scenes: a difference of range as a part of it, and a parallax of the cross over the disk, px.
+const OTHER_RANGE: f64 = 0.08;
+const OTHER_PARALLAX_PX: f64 = 2.5;
+
+/// A blur, px, at the end of what the best estimator knows.
+const MAX_BLUR_PX: f64 = 4.9;
+
+/// Whether the best estimator's pose is to be doubted: it needs a blur that it does not know, or is of another scene than cross and circle
+/// by themselves.
+pub(crate) fn fit(
+    model: &TargetModel,
+    focal_px: f64,
+    fitted: &Fitted,
+    by_features: &PoseEstimate,
+) -> Option<Doubt> {
+    if fitted.blur_px.iter().any(|blur| *blur >= MAX_BLUR_PX) {
+        return Some(Doubt::Residuals);
+    }
+    let (best, other) = (&fitted.estimate.pose.position_m, &by_features.pose.position_m);
+    let parallax =
+        |d: &Vector3<f64>| focal_px * model.cross.height_m / (d.z * (d.z - model.cross.height_m)) * d.xy();
+    let range = (other.z / best.z - 1.0).abs() <= OTHER_RANGE;
+    let cross = (parallax(best) - parallax(other)).norm() <= OTHER_PARALLAX_PX;
+    (!(range && cross)).then_some(Doubt::Features)
 }
 
 /// Radius of the circle of the marks, px, up to which a target must have its station around it.

@@ -1,17 +1,17 @@
-//! Motion by portions of fields (docking paper, 3.2): linear in time, each portion with the one before as a prior that is
-//! forgotten by a factor.
+//! Motion, reported at the end of each portion of fields.
 //!
-//! - [`PaperPortions`]: the paper's two stages, on cross and circle, with its standard deviations as printed;
-//! - [`ExactPortions`]: the same idea on poses with their full covariance, position and attitude together, with the
-//!   covariance that the forgetting really leaves.
+//! - [`PaperPortions`]: the docking paper's (3.2) two stages, on cross and circle, linear in time, each portion with the one before as
+//!   a prior that is forgotten by a factor, with its standard deviations as printed;
+//! - [`MotionTracker`]: from poses with their full covariance, field by field, with acceleration.
 
-mod exact;
 mod inverse;
 mod paper;
+mod scatter;
+mod tracked;
 
-pub use exact::{ExactPortionConfig, ExactPortions};
 pub(in crate::docking) use inverse::inverse;
 pub use paper::{PaperPortionConfig, PaperPortions};
+pub use tracked::{Continuity, MotionConfig, MotionTracker};
 
 #[cfg(test)]
 pub(in crate::docking) mod tests {

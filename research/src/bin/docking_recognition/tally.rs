@@ -67,6 +67,7 @@ impl Entry {
                 let is_wrong = error.abs() > 0.2 * range_m;
                 (format!("range only {error:+.2} m, sigma {sigma_m:.2} m"), is_wrong, error.abs() / sigma_m)
             }
+            DockingSolution::Doubtful { doubt, .. } => (doubt.to_string(), false, 0.0),
             DockingSolution::NoSolution(reason) => (reason.to_string(), false, 0.0),
         };
         let shadowed_used = outcome

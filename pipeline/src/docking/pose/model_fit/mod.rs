@@ -16,7 +16,7 @@ mod coverage;
 mod edge;
 mod equations;
 mod gaussian;
-mod lines;
+mod groups;
 mod near;
 mod sampled;
 mod sampled_marks;
@@ -34,13 +34,13 @@ use contract::docking::{Field, Mark, MarkUse, NoPose, Pose, PoseEstimate, Target
 use nalgebra::{Matrix6, Vector3};
 
 use self::blur::Blur;
-use self::lines::Lines;
+use self::groups::Groups;
 use self::sampled::Tables;
 use self::sampled_marks::SampledMarks;
 use self::samples::{Feature, Samples};
 use self::scene::Scene;
 use self::shadow::ShadowFinder;
-use self::solve::{Evaluation, Search, covariance, normals, residual, solve};
+use self::solve::{Evaluation, Search, normals, residual, solve, uncertainty};
 use self::unknowns::{BLUR, GLOBALS, GRID, Globals, LOCALS, POSE};
 use crate::CameraModel;
 use crate::docking::pose::geometry::{View, project, to_pose, to_vector};
@@ -108,6 +108,8 @@ pub struct Fitted {
     /// The pose and its covariance: the inverse information of the pixels that were used, levels, blur and side faces left
     /// free, times the variance of their residuals.
     pub estimate: PoseEstimate,
+    /// The part of the covariance that is the same error in the fields of seconds, m², m rad, rad².
+    pub common: Matrix6<f64>,
     /// What became of every mark, with its centre as the pose predicts it.
     pub marks: Vec<Mark>,
     /// Image of the cross's centre (the front face's), as the pose predicts it.
@@ -129,7 +131,9 @@ pub struct ModelFit {
     samples: Samples,
     shadows: ShadowFinder,
     marks: SampledMarks,
-    lines: Lines,
+    lines: Groups,
+    patches: Groups,
+    swelling: Groups,
     variances: Vec<f64>,
     blur: Blur,
 }
@@ -148,7 +152,9 @@ impl ModelFit {
             samples: Samples::default(),
             shadows: ShadowFinder::default(),
             marks: SampledMarks::default(),
-            lines: Lines::default(),
+            lines: Groups::default(),
+            patches: Groups::default(),
+            swelling: Groups::default(),
             variances: Vec::new(),
             blur: Blur::new(FIRST_BLUR_PX2, FIRST_BLUR_PX2),
         }
@@ -262,7 +268,13 @@ impl ModelFit {
             evaluation = solve(&scene, samples, &mut globals, &search, evaluation.variance())
                 .ok_or(NoPose::TooFewFeatures)?;
         }
-        let fitted = judge(samples, &mut self.lines, &scene, &globals, &evaluation)?;
+        let fitted = judge(
+            samples,
+            [&mut self.lines, &mut self.patches, &mut self.swelling],
+            &scene,
+            &globals,
+            &evaluation,
+        )?;
         self.blur = Blur::new(globals[BLUR], globals[BLUR + 1]);
         Ok(fitted)
     }
@@ -351,7 +363,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
 /// The answer, if what was used determines a pose and enough of what is seen looks like the target.
 fn judge(
     samples: &Samples,
-    lines: &mut Lines,
+    groups: [&mut Groups; 3],
     scene: &Scene,
     globals: &Globals,
     evaluation: &Evaluation,
@@ -367,10 +379,10 @@ fn judge(
     if median(&mut levels).is_none_or(|level| level < FAINTEST_LEVEL * variance.sqrt()) {
         return Err(too_few(samples));
     }
-    let covariance =
-        covariance(scene, samples, lines, globals, evaluation).ok_or_else(|| too_few(samples))?;
-    let covariance: Matrix6<f64> = covariance.fixed_view::<POSE, POSE>(0, 0).into();
-    let pose = to_pose(globals);
+    let known = uncertainty(scene, samples, groups, globals, evaluation).ok_or_else(|| too_few(samples))?;
+    let covariance: Matrix6<f64> = known.covariance.fixed_view::<POSE, POSE>(0, 0).into();
+    let common: Matrix6<f64> = known.common.fixed_view::<POSE, POSE>(0, 0).into();
+    let pose = to_pose(&(globals + known.change));
     let range = pose.position_m.norm();
     let sigma = covariance.diagonal().map(f64::sqrt);
     let is_determined = sigma[2] <= LARGEST_SIGMA.0 * range
@@ -382,6 +394,7 @@ fn judge(
     let see = |point: Vector3<f64>| project(scene.camera, &pose, &point).ok_or(NoPose::Inconsistent);
     Ok(Fitted {
         estimate: PoseEstimate { pose, covariance },
+        common,
         marks: marks(samples, scene, &pose),
         cross_centre: see(Vector3::new(0.0, 0.0, scene.target.cross.height_m))?,
         circle_centre: see(Vector3::zeros())?,

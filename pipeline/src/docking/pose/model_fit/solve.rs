@@ -2,14 +2,15 @@
 
 use std::ops::Range;
 
-use nalgebra::{SMatrix, SVector, Vector3};
+use contract::docking::TargetModel;
+use nalgebra::{SMatrix, SVector, Vector2, Vector3};
 use pulp::Arch;
 
 use super::blur::Blur;
 use super::chunk::{CHUNK, FIRST_GLOBAL, Gram};
 use super::coverage::{CrossImage, MarkImage};
 use super::equations::{Cover, Image, Look, NormalEquations, Work, regressors};
-use super::lines::{LinePixel, Lines, along_lines};
+use super::groups::{GroupedPixel, Groups, turns};
 use super::samples::{Feature, Patch, Sample, Samples};
 use super::scene::Scene;
 use super::unknowns::{BLUR, ByGlobals, GLOBALS, GRID, GlobalMatrix, Globals, LOCALS, POSE, SIDES};
@@ -168,46 +169,113 @@ pub(super) fn solve(
     Some(now)
 }
 
-/// Covariance of the globals at a solution: that of noise, independent from pixel to pixel, and of what lines have in common.
+/// What is known of the globals at a solution beyond their values.
+pub(super) struct Uncertainty {
+    /// What the swelling of the features changes in the globals.
+    pub(super) change: Globals,
+    pub(super) covariance: GlobalMatrix,
+    /// The part of the covariance that is the scene's and the video's, and so the same in the fields of seconds.
+    pub(super) common: GlobalMatrix,
+}
+
+/// How far edges may lie farther out than the target's dimensions have them, px, one standard deviation: a video that is not linear in
+/// light moves them towards the darker side.
+const SWELLING_PX: f64 = 0.05;
+
+/// How far a cross of a few pixels, which is one patch, may lie off its place, px, one standard deviation: lines of a field are 2 px apart, and
+/// no other patch shows by its scatter what the video does to it.
+const SMALL_CROSS_PX: f64 = 0.04;
+
+/// The step by which the effect of a swelling is formed, px.
+const SWELLING_STEP_PX: f64 = 0.05;
+
+/// Uncertainty of the globals at a solution: that of noise, independent from pixel to pixel, and of what lines and patches have in
+/// common.
 ///
 /// The estimate is off by H⁻¹ Jᵀ n, H being the information: with noise of σ² that has the covariance σ² H⁻¹, and with lines that
-/// are off by s_l e_l as well, of variance τ², H⁻¹ (σ² H + τ² Σ_l (Jᵀ e_l)(Jᵀ e_l)ᵀ) H⁻¹. `None` when nothing is determined.
-pub(super) fn covariance(
+/// are off by s_l e_l as well, of variance τ², H⁻¹ (σ² H + τ² Σ_l (Jᵀ e_l)(Jᵀ e_l)ᵀ) H⁻¹. A swelling of all features is one more unknown,
+/// with a prior. `None` when nothing is determined.
+pub(super) fn uncertainty(
     scene: &Scene,
     samples: &Samples,
-    lines: &mut Lines,
+    [lines, of_patches, swelling]: [&mut Groups; 3],
     globals: &Globals,
     evaluation: &Evaluation,
-) -> Option<GlobalMatrix> {
+) -> Option<Uncertainty> {
     let inverse = inverse(&evaluation.information)?;
+    let variance = evaluation.variance();
     let images = Images::new(scene, globals, 0.0)?;
-    let centre = View::new(scene.camera, &to_pose(globals)).see(&Vector3::zeros())?;
-    let Some(turn) = along_lines(&centre.by_pose) else { return Some(inverse * evaluation.variance()) };
-    lines.clear();
+    let pose = to_pose(globals);
+    let swollen = swollen(scene.target, scene.camera.focal_px().0 / pose.position_m.z);
+    let swollen = Images::new(&Scene { target: &swollen, ..*scene }, globals, 0.0)?;
+    let centre = View::new(scene.camera, &pose).see(&Vector3::zeros())?;
+    let [along, across] = turns(&centre.by_pose)?;
+    let groups = [lines, of_patches, swelling];
+    let [lines, of_patches, swelling] = groups.map(|groups| {
+        groups.clear();
+        groups
+    });
     let mut work = Work::NEW;
-    for patch in samples.patches.iter().filter(|patch| patch.is_used) {
+    for (index, patch) in samples.patches.iter().filter(|patch| patch.is_used).enumerate() {
         let level = patch.levels[LOCALS - 1];
         let look = Look { image: images.of(patch.feature)?, tables: scene.tables, share: globals[GRID] };
+        let wide = Look { image: swollen.of(patch.feature)?, ..look };
         for pixels in samples.pixels[patch.first..patch.end].chunks(CHUNK) {
+            let wider = Arch::new().dispatch(Cover { look: wide, pixels, work: &mut work }).value;
             let coverage = Arch::new().dispatch(Cover { look, pixels, work: &mut work });
             for (l, pixel) in pixels.iter().enumerate().filter(|(_, pixel)| pixel.is_used) {
                 let levels = SVector::from(regressors(patch, pixel, coverage.value[l]));
                 let slopes = Globals::from_fn(|i, _| coverage.by[i][l]);
-                let shift = level * slopes.fixed_rows::<POSE>(0).dot(&turn);
-                lines.add(&LinePixel {
-                    row: pixel.row,
+                let shift = [along, across].map(|turn| level * slopes.fixed_rows::<POSE>(0).dot(&turn));
+                let of_line = GroupedPixel {
+                    group: pixel.row,
                     residual: residual(patch, pixel),
-                    effects: [shift, 1.0],
+                    effects: [shift[0], 1.0],
                     slopes: (slopes - patch.levels_by_globals.transpose() * levels) * level,
                     levels,
-                });
+                };
+                lines.add(&of_line);
+                of_patches.add(&GroupedPixel { group: index, effects: shift, ..of_line });
+                let swell = level * (wider[l] - coverage.value[l]) / SWELLING_STEP_PX;
+                swelling.add(&GroupedPixel { group: 0, effects: [swell, 0.0], ..of_line });
             }
         }
         lines.close(&patch.levels_inverse);
+        of_patches.close(&patch.levels_inverse);
+        swelling.close(&patch.levels_inverse);
     }
-    let (of_lines, explained) = lines.scatter(evaluation.variance());
-    let noise = (evaluation.variance() - explained).max(0.0);
-    Some(inverse * noise + inverse * of_lines * inverse)
+    let (by_lines, explained_by_lines) = lines.scatter(variance);
+    let (mut by_patches, explained_by_patches) = of_patches.scatter(variance);
+    let mut crosses = samples.patches.iter().filter(|patch| patch.is_used).enumerate();
+    let mut crosses = crosses.by_ref().filter(|(_, patch)| patch.feature == Feature::Cross);
+    if let (Some((index, _)), None) = (crosses.next(), crosses.next()) {
+        by_patches += of_patches.shifted(index) * (SMALL_CROSS_PX * SMALL_CROSS_PX);
+    }
+    let noise = (variance - explained_by_lines - explained_by_patches).max(0.0);
+    let (change, by_swelling) = swelling.as_unknown(&inverse, variance, SWELLING_PX)?;
+    let common = inverse * by_patches * inverse;
+    Some(Uncertainty {
+        change,
+        covariance: inverse * noise + inverse * by_lines * inverse + common + by_swelling,
+        common,
+    })
+}
+
+/// The target with all edges of its features so far outside that they lie [`SWELLING_STEP_PX`] farther out in the image; `scale`: px/m on the
+/// plate.
+fn swollen(target: &TargetModel, scale: f64) -> TargetModel {
+    let by_m = SWELLING_STEP_PX / scale;
+    let mut swollen = target.clone();
+    swollen.cross.width_m += 2.0 * by_m;
+    swollen.cross.half_length_m += by_m;
+    for (corners, new) in target.marks.iter().zip(&mut swollen.marks) {
+        for k in 0..4 {
+            let at = Vector2::from(corners[k]);
+            let outwards = |other: usize| (at - Vector2::from(corners[other % 4])).normalize();
+            new[k] = (at + (outwards(k + 1) + outwards(k + 3)) * by_m).into();
+        }
+    }
+    swollen
 }
 
 /// Whether a global is at the end of its range and would leave it.

@@ -1,22 +1,23 @@
-//! What the pixels of a line have in common: a shift and a level of the line's own.
+//! Errors that pixels have in common: a shift and a level of each line, a shift along and across lines of each patch.
 //!
 //! The fit takes pixels as independent. A line that comes a little early or late moves all its edges at once, and one that is a
-//! little brighter is so in all its pixels. How much lines scatter beyond what noise explains is measured from the residuals, and
-//! goes into the covariance.
+//! little brighter is so in all its pixels. Noise that a filter has spread over neighbours, the blocks of a codec, or a blur of
+//! another shape than the model's shift each mark and each piece of the cross by itself. How much lines and patches scatter beyond what
+//! noise explains is measured from the residuals, and goes into the covariance.
 
 use nalgebra::SVector;
 
 use super::unknowns::{GlobalMatrix, Globals, LOCALS, POSE};
 
-/// Shift, and level.
+/// Of a line shift and level, of a patch the two shifts.
 pub(super) const EFFECTS: usize = 2;
 
-/// A scatter of lines is believed when chance makes it so large once in 40 fields: standard deviations of the sum of squares.
+/// A scatter of groups is believed when chance makes it so large once in 40 fields: standard deviations of the sum of squares.
 const SEEN: f64 = 2.0;
 
-/// Sums over the pixels of a line.
+/// Sums over the pixels of a group: a line, or a patch.
 #[derive(Debug, Clone, Copy)]
-struct Line {
+struct Group {
     /// Σ e r by effect: e is what a unit of the effect adds to a pixel, r the residual.
     seen: [f64; EFFECTS],
     /// Σ e², less what the patches' levels take of it.
@@ -25,24 +26,25 @@ struct Line {
     scores: [Globals; EFFECTS],
 }
 
-/// Sums over a line's pixels in one patch, for what the patch's levels take.
+/// Sums over a group's pixels in one patch, for what the patch's levels take.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     squares: [f64; EFFECTS],
     by_levels: [SVector<f64, LOCALS>; EFFECTS],
 }
 
-/// Sums line by line; owns its buffers.
+/// Sums group by group; owns its buffers.
 #[derive(Debug, Default)]
-pub(super) struct Lines {
-    lines: Vec<Line>,
+pub(super) struct Groups {
+    groups: Vec<Group>,
     pieces: Vec<Piece>,
     pixels: f64,
 }
 
 /// A pixel as the sums need it.
-pub(super) struct LinePixel {
-    pub(super) row: usize,
+pub(super) struct GroupedPixel {
+    /// Its line, or its patch.
+    pub(super) group: usize,
     pub(super) residual: f64,
     /// What a unit of each effect adds to it, DN.
     pub(super) effects: [f64; EFFECTS],
@@ -52,27 +54,28 @@ pub(super) struct LinePixel {
     pub(super) levels: SVector<f64, LOCALS>,
 }
 
-impl Lines {
+impl Groups {
     pub(super) fn clear(&mut self) {
-        self.lines.clear();
+        self.groups.clear();
         self.pixels = 0.0;
     }
 
     /// Adds a pixel of the patch that is open.
-    pub(super) fn add(&mut self, pixel: &LinePixel) {
-        let LinePixel { row, residual, effects, slopes, levels } = pixel;
-        if self.lines.len() <= *row {
+    pub(super) fn add(&mut self, pixel: &GroupedPixel) {
+        let GroupedPixel { group, residual, effects, slopes, levels } = pixel;
+        if self.groups.len() <= *group {
             let zero = [Globals::zeros(); EFFECTS];
-            self.lines.resize(row + 1, Line { seen: [0.0; EFFECTS], squares: [0.0; EFFECTS], scores: zero });
+            self.groups
+                .resize(group + 1, Group { seen: [0.0; EFFECTS], squares: [0.0; EFFECTS], scores: zero });
         }
-        if self.pieces.len() <= *row {
+        if self.pieces.len() <= *group {
             let zero = [SVector::zeros(); EFFECTS];
-            self.pieces.resize(row + 1, Piece { squares: [0.0; EFFECTS], by_levels: zero });
+            self.pieces.resize(group + 1, Piece { squares: [0.0; EFFECTS], by_levels: zero });
         }
-        let (line, piece) = (&mut self.lines[*row], &mut self.pieces[*row]);
+        let (sums, piece) = (&mut self.groups[*group], &mut self.pieces[*group]);
         for (k, effect) in effects.iter().enumerate() {
-            line.seen[k] += effect * residual;
-            line.scores[k] += slopes * *effect;
+            sums.seen[k] += effect * residual;
+            sums.scores[k] += slopes * *effect;
             piece.squares[k] += effect * effect;
             piece.by_levels[k] += levels * *effect;
         }
@@ -81,50 +84,75 @@ impl Lines {
 
     /// Closes a patch, whose levels have this inverse of their normal equations.
     pub(super) fn close(&mut self, inverse: &nalgebra::SMatrix<f64, LOCALS, LOCALS>) {
-        for (line, piece) in self.lines.iter_mut().zip(&self.pieces) {
+        for (sums, piece) in self.groups.iter_mut().zip(&self.pieces) {
             for k in 0..EFFECTS {
                 let taken = piece.by_levels[k].dot(&(inverse * piece.by_levels[k]));
-                line.squares[k] += (piece.squares[k] - taken).max(0.0);
+                sums.squares[k] += (piece.squares[k] - taken).max(0.0);
             }
         }
         self.pieces.clear();
     }
 
-    /// Covariance of the gradient from what the lines have in common, DN², and what it takes off the variance of a pixel.
+    /// Covariance of the gradient from effects of variance 1 in one group.
+    pub(super) fn shifted(&self, group: usize) -> GlobalMatrix {
+        let scores = self.groups.get(group).into_iter().flat_map(|sums| &sums.scores);
+        scores.map(|scores| scores * scores.transpose()).sum()
+    }
+
+    /// The least squares of one effect of the first group, when it is taken for an unknown of the fit with this prior standard deviation: what
+    /// changes in the globals, and their covariance from it. `inverse` is that of the information, `variance` a pixel's.
+    pub(super) fn as_unknown(
+        &self,
+        inverse: &GlobalMatrix,
+        variance: f64,
+        prior: f64,
+    ) -> Option<(Globals, GlobalMatrix)> {
+        let all = self.groups.first()?;
+        let by_globals = inverse * all.scores[0];
+        let alone = (all.squares[0] - all.scores[0].dot(&by_globals)).max(0.0);
+        let weight = alone / variance + 1.0 / (prior * prior);
+        let size = all.seen[0] / variance / weight;
+        let change = by_globals * -size;
+        let covariance = by_globals * by_globals.transpose() / weight;
+        (change.iter().chain(&covariance).all(|v| v.is_finite())).then_some((change, covariance))
+    }
+
+    /// Covariance of the gradient from what the pixels of a group have in common, DN², and what it takes off the variance of a pixel.
     ///
-    /// With q = Σ e² of a line, its sum Σ e r has the variance σ² q + τ² q², and all pixels together have N σ² + τ² Σ q. Of both,
+    /// With q = Σ e² of a group, its sum Σ e r has the variance σ² q + τ² q², and all pixels together have N σ² + τ² Σ q. Of both,
     /// τ² is found, the variance of the effect.
     pub(super) fn scatter(&self, variance: f64) -> (GlobalMatrix, f64) {
         let (mut covariance, mut explained) = (GlobalMatrix::zeros(), 0.0);
         for k in 0..EFFECTS {
-            let sum = |of: &dyn Fn(&Line) -> f64| self.lines.iter().map(of).sum::<f64>();
+            let sum = |of: &dyn Fn(&Group) -> f64| self.groups.iter().map(of).sum::<f64>();
             let (once, twice) = (sum(&|l| l.squares[k]), sum(&|l| l.squares[k] * l.squares[k]));
             let above = sum(&|l| l.seen[k] * l.seen[k]) - variance * once;
             let weight = twice - once * once / self.pixels.max(1.0);
             if weight <= 0.0 || above <= SEEN * variance * (2.0 * twice).sqrt() {
                 continue;
             }
-            // The pose has taken its part of what the lines do: so many lines of the same weight are there, less its freedom.
-            let lines = once * once / twice;
-            let of_effect = above / weight * lines / (lines - POSE as f64).max(1.0);
+            // The pose has taken its part of what the groups do: so many groups of the same weight are there, less its freedom.
+            let groups = once * once / twice;
+            let of_effect = above / weight * groups / (groups - POSE as f64).max(1.0);
             explained += of_effect * once / self.pixels;
-            for line in &self.lines {
-                covariance += line.scores[k] * line.scores[k].transpose() * of_effect;
+            for group in &self.groups {
+                covariance += group.scores[k] * group.scores[k].transpose() * of_effect;
             }
         }
         (covariance, explained)
     }
 }
 
-/// How a change of the pose by these shifts the image by a pixel along the lines, from how it moves an image point; `None` when no
-/// turn of the camera does.
-pub(super) fn along_lines(by_pose: &nalgebra::SMatrix<f64, 2, POSE>) -> Option<SVector<f64, POSE>> {
+/// The turns of the camera that shift the image by a pixel along the lines, and across them, from how the pose moves an image point;
+/// `None` when no turn does.
+pub(super) fn turns(by_pose: &nalgebra::SMatrix<f64, 2, POSE>) -> Option<[SVector<f64, POSE>; 2]> {
     let (a, b, c, d) = (by_pose[(0, 3)], by_pose[(0, 4)], by_pose[(1, 3)], by_pose[(1, 4)]);
     let determinant = a * d - b * c;
     (determinant.abs() > 1e-9).then(|| {
-        let mut turn = SVector::zeros();
-        (turn[3], turn[4]) = (d / determinant, -c / determinant);
-        turn
+        let (mut along, mut across) = (SVector::zeros(), SVector::zeros());
+        (along[3], along[4]) = (d / determinant, -c / determinant);
+        (across[3], across[4]) = (-b / determinant, a / determinant);
+        [along, across]
     })
 }
 
@@ -142,18 +170,18 @@ mod tests {
     }
 
     /// 200 lines of 20 pixels with noise of 1 DN, shifted by so much, px, and brighter by so much, DN.
-    fn lines(shift_px: f64, level_dn: f64) -> Lines {
-        let (mut lines, mut state) = (Lines::default(), 12_345);
+    fn lines(shift_px: f64, level_dn: f64) -> Groups {
+        let (mut lines, mut state) = (Groups::default(), 12_345);
         lines.clear();
-        for row in 0..200 {
+        for group in 0..200 {
             let (shift, level) = (shift_px * normal(&mut state), level_dn * normal(&mut state));
             for x in 0..20 {
                 // Edges of both signs.
                 let slope = if x % 2 == 0 { 50.0 } else { -40.0 };
                 let mut slopes = Globals::zeros();
                 (slopes[0], slopes[1]) = (slope, 1.0);
-                lines.add(&LinePixel {
-                    row,
+                lines.add(&GroupedPixel {
+                    group,
                     residual: slope * shift + level + normal(&mut state),
                     effects: [slope, 1.0],
                     slopes,

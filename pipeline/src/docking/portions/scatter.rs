@@ -1,0 +1,120 @@
+//! How much the poses of neighbouring fields scatter, over what their covariances say.
+
+use std::collections::VecDeque;
+
+use contract::docking::PoseEstimate;
+use nalgebra::{Matrix6, Vector6};
+
+use super::inverse;
+use crate::docking::pose::geometry::to_vector;
+
+/// Weights of four fields in a row: what is left of a motion with constant acceleration is nothing.
+const THIRD_DIFFERENCE: [f64; 4] = [1.0, -3.0, 3.0, -1.0];
+
+/// Fields over which the scatter is averaged, and fields' worth of trust in the covariances as they are.
+const MEMORY: f64 = 25.0;
+const TRUST: f64 = 5.0;
+
+/// What chance does to the average, 1 standard deviation: below this much over 1 the covariances are left as they are.
+const CHANCE: f64 = 0.35;
+
+/// Largest normalised square that counts: a wrong field is not scatter.
+const LARGEST: f64 = 1e4;
+
+/// The scatter of the last fields.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Scatter {
+    last: VecDeque<(f64, Vector6<f64>, Matrix6<f64>)>,
+    sum: f64,
+    weight: f64,
+}
+
+impl Scatter {
+    /// Takes a field; the factor by which the covariances of this field and its neighbours are too small, 1 or more.
+    pub(crate) fn add(&mut self, time_s: f64, estimate: &PoseEstimate) -> f64 {
+        self.last.push_back((time_s, to_vector(&estimate.pose), estimate.covariance));
+        if self.last.len() > THIRD_DIFFERENCE.len() {
+            self.last.pop_front();
+        }
+        if let Some(square) = self.square() {
+            let kept = 1.0 - 1.0 / MEMORY;
+            self.sum = self.sum * kept + square.min(LARGEST);
+            self.weight = self.weight * kept + 1.0;
+        }
+        self.factor()
+    }
+
+    /// By how much the covariances are too small.
+    pub(crate) fn factor(&self) -> f64 {
+        let mean = (self.sum + TRUST) / (self.weight + TRUST);
+        if mean > 1.0 + CHANCE { mean } else { 1.0 }
+    }
+
+    /// Normalised square of the third difference over its dimension; `None` unless the last four fields follow each other evenly.
+    fn square(&self) -> Option<f64> {
+        if self.last.len() < THIRD_DIFFERENCE.len() {
+            return None;
+        }
+        let mut times = self.last.iter().zip(self.last.iter().skip(1)).map(|(a, b)| b.0 - a.0);
+        let first = times.next()?;
+        if !(first > 0.0 && first < 0.1 && times.all(|step| (step / first - 1.0).abs() < 0.1)) {
+            return None;
+        }
+        let (mut difference, mut covariance) = (Vector6::zeros(), Matrix6::zeros());
+        for (weight, (_, pose, of_pose)) in THIRD_DIFFERENCE.iter().zip(&self.last) {
+            difference += pose * *weight;
+            covariance += of_pose * (weight * weight);
+        }
+        Some(difference.dot(&(inverse(&covariance)? * difference)) / 6.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{approach, normal};
+    use super::*;
+    use crate::docking::pose::geometry::to_pose;
+
+    /// The factor after 200 fields whose errors are `times` as large as their covariances say.
+    fn factor(times: f64, seed: u64) -> f64 {
+        let mut scatter = Scatter::default();
+        let sigma = Vector6::new(1e-3, 1e-3, 2e-3, 1e-4, 1e-4, 1e-4);
+        for k in 0..200 {
+            let t = f64::from(k) * 0.02;
+            let draw = Vector6::from_fn(|i, _| normal(seed * 7_919 + k as u64 * 8 + i as u64));
+            let pose = to_pose(&(to_vector(&approach(t)) + sigma.component_mul(&draw) * times));
+            let covariance = Matrix6::from_diagonal(&sigma.component_mul(&sigma));
+            scatter.add(t, &PoseEstimate { pose, covariance });
+        }
+        scatter.factor()
+    }
+
+    #[test]
+    fn honest_covariances_are_left_as_they_are() {
+        let changed = (0..50).filter(|seed| factor(1.0, *seed) != 1.0).count();
+        assert!(changed <= 5, "{changed} of 50");
+    }
+
+    #[test]
+    fn covariances_that_are_too_small_are_found_so() {
+        for seed in 0..10 {
+            // Errors of three standard deviations: nine, less what is trusted, known to a third.
+            let factor = factor(3.0, seed);
+            assert!((4.5..13.0).contains(&factor), "{factor}");
+        }
+    }
+
+    #[test]
+    fn one_wrong_field_is_forgotten() {
+        let mut scatter = Scatter::default();
+        let covariance = Matrix6::identity() * 1e-6;
+        for k in 0..400 {
+            let mut pose = approach(f64::from(k) * 0.02);
+            if k == 100 {
+                pose.position_m.z += 5.0;
+            }
+            scatter.add(f64::from(k) * 0.02, &PoseEstimate { pose, covariance });
+        }
+        assert_eq!(scatter.factor(), 1.0);
+    }
+}
