@@ -23,7 +23,7 @@ table! {
         block: u32,
         /// group of the unit: its day, range or lens
         group: String,
-        /// verdict: far range `correct`, `wrong`, `missed`; docking `success`, `range_only`, `wrong`, `missed`; of a case `37 of 40`, the frames that are right
+        /// verdict: far range `correct`, `wrong`, `missed`; docking `success`, `range_only`, `doubtful`, `wrong`, `missed`; of a case `37 of 40`, the frames that are right
         verdict: String,
         /// cause of the verdict; null where there is none
         cause: Option<String>,
