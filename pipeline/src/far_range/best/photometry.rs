@@ -239,16 +239,17 @@ impl SourceFitter {
             })
             .collect();
         let mut fitted =
-            self.from_all_starts(light, window, start, psf, &neighbours, light.model.may_spill)?;
+            self.fit_from_all_starts(light, window, start, psf, &neighbours, light.model.may_spill)?;
         if light.model.may_spill && !self.saturated.is_empty() && !self.spills(&fitted, light.model, &image) {
             // No well overflows: the pixels beside saturated ones hold their own charge alone.
-            fitted = self.from_all_starts(light, window, start, psf, &neighbours, false).unwrap_or(fitted);
+            fitted =
+                self.fit_from_all_starts(light, window, start, psf, &neighbours, false).unwrap_or(fitted);
         }
         Some(window.in_frame(fitted))
     }
 
     /// The fit with the smallest χ² from the start, and, of an image that was cut in its bright part, from positions beyond the cut.
-    fn from_all_starts(
+    fn fit_from_all_starts(
         &mut self,
         light: FrameLight<'_>,
         window: FitWindow,
