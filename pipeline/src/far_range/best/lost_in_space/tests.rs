@@ -4,7 +4,7 @@ use contract::{Angle, Camera};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::*;
-use crate::camera_model::tests::{argon, argon_camera};
+use crate::camera_model::tests::argon;
 
 /// Random numbers of one seed: SplitMix64 (Steele, Lea & Flood 2014).
 struct Random(u64);
