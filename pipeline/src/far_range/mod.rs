@@ -25,7 +25,7 @@ mod usable;
 
 pub use aberration::aberration_correction;
 pub use attitude::AttitudeConfig;
-pub use best::BestConfig;
+pub use best::{AttitudePrior, BestConfig};
 pub use config::{AberrationConfig, FarRangeConfig, Mode};
 pub use detect::Weights;
 pub use hotspots::HotspotConfig;

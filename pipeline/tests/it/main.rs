@@ -8,3 +8,4 @@ mod aberration;
 #[cfg(unix)]
 mod external;
 mod far_range;
+mod lost_in_space;

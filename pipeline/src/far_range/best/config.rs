@@ -10,6 +10,8 @@ pub struct BestConfig {
     /// Whether the frames are a sequence, in their order: mounting, point-spread function, hot pixels and the motion of the target are then
     /// estimated over frames. `false` for single, unrelated frames.
     pub sequence: bool,
+    /// Where the attitude of a frame starts: `telemetry`, or `none`: from the stars of the frame alone, whatever the telemetry says of the attitude.
+    pub prior: AttitudePrior,
     /// Error of the position of a star beyond its centroid's (list, distortion, trail), px, 0 to 10.
     #[schemars(range(min = 0, max = 10))]
     pub star_floor_px: f64,
@@ -30,10 +32,22 @@ pub struct BestConfig {
     pub min_log_odds: f64,
 }
 
+/// Start of the attitude of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AttitudePrior {
+    /// The attitude in the telemetry and the mounting, with the errors of the calibration.
+    #[default]
+    Telemetry,
+    /// No attitude: the patterns of the stars give it, in each frame anew (lost in space). A frame without four stars that fit has no attitude.
+    None,
+}
+
 impl Default for BestConfig {
     fn default() -> Self {
         Self {
             sequence: true,
+            prior: AttitudePrior::default(),
             star_floor_px: 0.015,
             target_floor_px: 0.0,
             psf_width_error: 0.05,

@@ -4,13 +4,15 @@
 mod config;
 mod hot_pixels;
 mod image_fit;
+mod lost_in_space;
 mod mounting;
 mod normal_equations;
 mod photometry;
 mod pipeline;
 mod point_image;
 mod stars;
+mod start;
 mod tracks;
 
-pub use config::BestConfig;
+pub use config::{AttitudePrior, BestConfig};
 pub(super) use pipeline::BestPipeline;

@@ -90,13 +90,9 @@ impl MountingFilter {
         }
     }
 
-    /// The camera's attitude for an error `e` in axes of the camera.
-    pub(super) fn attitude(
-        &self,
-        body_from_icrs: Rotation<Body, Icrs>,
-        e: Vector3<f64>,
-    ) -> Rotation<CameraFrame, Icrs> {
-        Rotation::<CameraFrame, CameraFrame>::from_rotation_vector(e) * (self.nominal * body_from_icrs)
+    /// The camera's attitude for an error of zero.
+    pub(super) fn reference(&self, body_from_icrs: Rotation<Body, Icrs>) -> Rotation<CameraFrame, Icrs> {
+        self.nominal * body_from_icrs
     }
 
     /// Takes in what the stars of a frame made of its error: `prior`, as this filter gave it, became `posterior`.

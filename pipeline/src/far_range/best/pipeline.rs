@@ -7,7 +7,9 @@ use contract::{
 use hifitime::Epoch;
 use nalgebra::Matrix2;
 
+use super::config::AttitudePrior;
 use super::hot_pixels::HotPixels;
+use super::lost_in_space::{self, LostInSpace};
 use super::mounting::{AttitudeError, MountingFilter};
 use super::photometry::{
     FittedSource, FrameLight, KnownSource, PhotometryModel, Source, SourceFitter, TargetStart,
@@ -17,6 +19,7 @@ use super::stars::{
     ExpectedStar, StarCandidate, StarMeasurement, image_covariance, matches_at_positions, matches_by_offset,
     solve_attitude,
 };
+use super::start::AttitudeStart;
 use super::tracks::{TargetCandidate, TrackModel, Tracks};
 use crate::far_range::aberration::apparent_direction;
 use crate::far_range::background::{Background, BackgroundEstimator};
@@ -36,6 +39,8 @@ pub(in crate::far_range) struct BestPipeline {
     readout: Option<Readout>,
     light: Calibrated,
     mounting: MountingFilter,
+    /// With no prior attitude.
+    lost_in_space: Option<LostInSpace>,
     psf: PointImageEstimate,
     /// Natural logarithm of measured over expected flux of stars.
     brightness: Brightness,
@@ -77,12 +82,13 @@ enum ScaleKnowledge {
 #[derive(Debug, Clone, Copy)]
 struct LastFrame {
     time: Epoch,
-    camera_from_icrs: Rotation<CameraFrame, Icrs>,
+    camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
 }
 
 /// The attitude of a frame and the stars that gave it.
 struct FrameAttitude {
-    camera_from_icrs: Rotation<CameraFrame, Icrs>,
+    /// `None` when neither telemetry nor stars give one.
+    camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
     error: AttitudeError,
     source: AttitudeSource,
     /// For each cluster the star that it is.
@@ -128,6 +134,27 @@ const FORCED_LOG_ODDS: f64 = 4.0;
 const FORCED_SNR: f64 = 4.0;
 const FORCED_REACH_PX: f64 = 4.0;
 
+impl FrameAttitude {
+    /// Of a frame that neither telemetry nor stars give an attitude.
+    fn unknown(sources: &[Source]) -> Self {
+        let source = match sources.iter().filter(|source| source.spike.is_none()).count() {
+            0 => AttitudeSource::NoStars,
+            count if count < lost_in_space::LEAST_MATCHED => AttitudeSource::TooFewStars,
+            _ => AttitudeSource::NoMatch,
+        };
+        let any = nalgebra::Matrix3::identity() * (std::f64::consts::PI * std::f64::consts::PI);
+        Self {
+            camera_from_icrs: None,
+            error: AttitudeError { mean: nalgebra::Vector3::zeros(), covariance: any },
+            source,
+            star_of: vec![None; sources.len()],
+            n_stars: 0,
+            expected: Vec::new(),
+            fitted: Vec::new(),
+        }
+    }
+}
+
 impl BestPipeline {
     /// A pipeline before its first frame.
     ///
@@ -152,6 +179,8 @@ impl BestPipeline {
                 zero_magnitude_e_per_s: calibration.zero_magnitude_e_per_s,
                 target: calibration.target,
             },
+            lost_in_space: (config.best.prior == AttitudePrior::None)
+                .then(|| LostInSpace::new(&setup.stars, &model, config.identification.max_magnitude)),
             mounting: MountingFilter::new(setup.camera_from_body, calibration.attitude),
             psf: PointImageEstimate::new(calibration, config.best.psf_width_error),
             brightness: Brightness {
@@ -267,8 +296,12 @@ impl BestPipeline {
         elapsed_s: Option<f64>,
         overrides: &Overrides<'_>,
     ) -> Outcome {
-        let trail_px = self.trail_px(telemetry, elapsed_s);
-        let attitude = self.attitude(light, sources, trail_px, telemetry, overrides);
+        let start = self.start(sources, telemetry, overrides);
+        let trail_px = self.trail_px(telemetry, elapsed_s, start.as_ref());
+        let attitude = match &start {
+            Some(start) => self.attitude(light, sources, trail_px, start, telemetry, overrides),
+            None => FrameAttitude::unknown(sources),
+        };
         let known = self.known_sources(&attitude, trail_px);
         let (mut candidates, mut fits, mut cluster_of) = (Vec::new(), Vec::new(), Vec::new());
         let fitted_in_any_case = if self.tracks.is_settled() { 0 } else { MAX_FITTED };
@@ -297,7 +330,7 @@ impl BestPipeline {
         };
         let model = &self.model;
         let position_of = |direction: &Direction<Icrs>| {
-            model.project_vector(&attitude.camera_from_icrs.rotate(direction.vector()))
+            model.project_vector(&attitude.camera_from_icrs?.rotate(direction.vector()))
         };
         self.tracks.update(&candidates, &track_model, &position_of);
         self.last = Some(LastFrame { time: telemetry.time, camera_from_icrs: attitude.camera_from_icrs });
@@ -346,7 +379,7 @@ impl BestPipeline {
         });
         Outcome {
             solution,
-            camera_from_icrs: Some(attitude.camera_from_icrs),
+            camera_from_icrs: attitude.camera_from_icrs,
             attitude_source: Some(attitude.source),
             n_stars: Some(attitude.n_stars),
             clusters: clusters.collect(),
@@ -354,15 +387,43 @@ impl BestPipeline {
     }
 
     /// Length of the trail of a star during the exposure along columns and rows, px, by the turn of the camera since the last frame.
-    fn trail_px(&self, telemetry: &Telemetry, elapsed_s: Option<f64>) -> [f64; 2] {
-        let (Some(elapsed_s), Some(last)) = (elapsed_s, self.last) else { return [0.0; 2] };
-        let e = self.mounting.prior().mean;
-        let now = self.mounting.attitude(telemetry.body_from_icrs, e);
-        let turn = (now * last.camera_from_icrs.inverse()).quaternion().scaled_axis();
+    fn trail_px(
+        &self,
+        telemetry: &Telemetry,
+        elapsed_s: Option<f64>,
+        start: Option<&AttitudeStart>,
+    ) -> [f64; 2] {
+        let last = self.last.and_then(|last| last.camera_from_icrs);
+        let (Some(elapsed_s), Some(last), Some(start)) = (elapsed_s, last, start) else { return [0.0; 2] };
+        let turn = (start.attitude(start.prior.mean) * last.inverse()).quaternion().scaled_axis();
         let (fx, fy) = self.model.focal_px();
         let part = telemetry.exposure_s / elapsed_s;
         // Of the boresight; the noise of the attitude is far below a star's image here.
         [(fx * turn.y * part).abs().min(20.0), (fy * turn.x * part).abs().min(20.0)]
+    }
+
+    /// The attitude that the frame starts from; `None` without a prior when its stars give none.
+    fn start(
+        &self,
+        sources: &[Source],
+        telemetry: &Telemetry,
+        overrides: &Overrides<'_>,
+    ) -> Option<AttitudeStart> {
+        let prior = self.mounting.prior();
+        match (&self.lost_in_space, overrides.camera_from_icrs) {
+            (None, _) => {
+                Some(AttitudeStart { reference: self.mounting.reference(telemetry.body_from_icrs), prior })
+            }
+            (Some(_), Some(reference)) => Some(AttitudeStart { reference, prior }),
+            (Some(solver), None) => {
+                let stars: Vec<(PixelPoint, f64)> = sources
+                    .iter()
+                    .filter(|source| source.spike.is_none())
+                    .map(|source| (source.centre, source.flux_e))
+                    .collect();
+                solver.solve(&stars).map(|found| AttitudeStart::from_found(&found))
+            }
+        }
     }
 
     /// The attitude of the frame, and which clusters are stars.
@@ -371,19 +432,19 @@ impl BestPipeline {
         light: FrameLight<'_>,
         sources: &[Source],
         trail_px: [f64; 2],
+        start: &AttitudeStart,
         telemetry: &Telemetry,
         overrides: &Overrides<'_>,
     ) -> FrameAttitude {
-        let prior = self.mounting.prior();
+        let prior = start.prior;
         let of = |error: nalgebra::Vector3<f64>| match overrides.camera_from_icrs {
             Some(given) => given,
-            None => self.mounting.attitude(telemetry.body_from_icrs, error),
+            None => start.attitude(error),
         };
         let mut camera_from_icrs = of(prior.mean);
         let mut expected = self.expected_stars(&camera_from_icrs, telemetry, overrides);
         if let Some(identity) = overrides.identity {
-            return self
-                .given_attitude(light, sources, trail_px, telemetry, overrides, identity, prior, expected);
+            return self.given_attitude(light, sources, trail_px, start, overrides, identity, expected);
         }
         let mut order: Vec<usize> = (0..sources.len()).filter(|&i| sources[i].spike.is_none()).collect();
         order.sort_by(|&a, &b| sources[b].flux_e.total_cmp(&sources[a].flux_e).then(a.cmp(&b)));
@@ -470,7 +531,7 @@ impl BestPipeline {
             error = solve_attitude(&measured, &prior, of, &self.model).map_or(prior, |solved| solved.error);
             camera_from_icrs = of(error.mean);
         }
-        if overrides.camera_from_icrs.is_none() {
+        if overrides.camera_from_icrs.is_none() && self.lost_in_space.is_none() {
             self.mounting.update(&prior, &error);
         }
         self.learn(&matched, &candidates, &expected, &fits, telemetry.exposure_s);
@@ -481,6 +542,7 @@ impl BestPipeline {
         };
         let fitted =
             fits.iter().zip(&order).filter_map(|(fit, &i)| Some((i, fit.flatten()?.position))).collect();
+        let camera_from_icrs = Some(camera_from_icrs);
         FrameAttitude { camera_from_icrs, error, source, star_of, n_stars, expected, fitted }
     }
 
@@ -491,10 +553,9 @@ impl BestPipeline {
         light: FrameLight<'_>,
         sources: &[Source],
         trail_px: [f64; 2],
-        telemetry: &Telemetry,
+        start: &AttitudeStart,
         overrides: &Overrides<'_>,
         identity: &dyn Fn(PixelPoint) -> Identity,
-        prior: AttitudeError,
         expected: Vec<ExpectedStar>,
     ) -> FrameAttitude {
         let star_of: Vec<Option<u32>> = sources
@@ -515,11 +576,14 @@ impl BestPipeline {
         }
         let of = |error: nalgebra::Vector3<f64>| match overrides.camera_from_icrs {
             Some(given) => given,
-            None => self.mounting.attitude(telemetry.body_from_icrs, error),
+            None => start.attitude(error),
         };
+        let prior = start.prior;
         let error = solve_attitude(&measured, &prior, of, &self.model).map_or(prior, |solved| solved.error);
-        let camera_from_icrs = of(error.mean);
-        self.mounting.update(&prior, &error);
+        let camera_from_icrs = Some(of(error.mean));
+        if self.lost_in_space.is_none() {
+            self.mounting.update(&prior, &error);
+        }
         let n_stars = measured.len() as u32;
         let source = if n_stars >= 2 { AttitudeSource::Stars } else { AttitudeSource::TooFewStars };
         FrameAttitude { camera_from_icrs, error, source, star_of, n_stars, expected, fitted: Vec::new() }
@@ -748,7 +812,7 @@ impl BestPipeline {
     }
 
     fn direction(&self, position: PixelPoint, attitude: &FrameAttitude) -> Option<Direction<Icrs>> {
-        Some(attitude.camera_from_icrs.inverse() * self.model.back_project(position)?)
+        Some(attitude.camera_from_icrs?.inverse() * self.model.back_project(position)?)
     }
 
     /// The target where the best track predicts it, when no candidate is there: too faint for a cluster, or merged with a star.
@@ -855,6 +919,7 @@ impl BestPipeline {
         offset: f64,
         attitude: &FrameAttitude,
     ) -> Option<Matrix2<f64>> {
+        attitude.camera_from_icrs?;
         let (u, v) = self.model.to_ideal(position)?;
         let (fx, fy) = self.model.focal_px();
         let (x, y) = (u / fx, v / fy);

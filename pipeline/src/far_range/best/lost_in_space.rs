@@ -1,0 +1,169 @@
+//! Attitude of a frame without a prior: lost in space.
+//!
+//! Triangles of bright sources are looked up in a list of star pairs by their separations, in the order of the Pyramid algorithm, and mirrored
+//! triangles are refused (Mortari, Samaan, Bruccoleri & Junkins 2004, The Pyramid Star Identification Technique, Navigation 51, 171). Each
+//! triangle found is an attitude with a covariance. In the place of Pyramid's fourth star all other sources decide: the odds that they are the
+//! stars predicted by that attitude, against sources anywhere in the image (Lang, Hogg, Mierle, Blanton & Roweis 2010, AJ 139, 1782, section 2.3).
+//!
+//! Brightness orders sources and stars and is not compared otherwise: neither zero point nor exposure is needed.
+
+mod hypothesis;
+mod selection;
+mod separations;
+#[cfg(test)]
+mod tests;
+mod triangles;
+
+use contract::{CameraFrame, Direction, Icrs, ListedStar, PixelPoint, Rotation};
+use nalgebra::Matrix3;
+
+use crate::CameraModel;
+use crate::far_range::identify::StarList;
+use hypothesis::{Hypothesis, Match};
+use selection::{brightest_of_each_field, largest_chord};
+use separations::StarPairs;
+use triangles::{TriangleSearch, pyramid_order};
+
+/// A solver for the frames of one camera with one star list. It holds nothing of a frame.
+#[derive(Debug)]
+pub(super) struct LostInSpace {
+    model: CameraModel,
+    /// The brightest stars of each field.
+    stars: Vec<ListedStar>,
+    list: StarList,
+    pairs: StarPairs,
+}
+
+/// An attitude found without a prior.
+#[derive(Debug, Clone)]
+pub(super) struct FoundAttitude {
+    pub(super) camera_from_icrs: Rotation<CameraFrame, Icrs>,
+    /// Covariance of its error, a small turn about the camera's axes, rad²: of sources with 0.4 px along an axis. The turn about the boresight is
+    /// known worst.
+    pub(super) covariance: Matrix3<f64>,
+    /// Sources, by their index in the argument, and the stars that they are: at least four, each source and each star once.
+    #[cfg_attr(not(test), expect(dead_code, reason = "tests hold the matches against the truth"))]
+    pub(super) matched: Vec<(usize, ListedStar)>,
+}
+
+/// Sources compared with predicted stars, the brightest.
+const MAX_SOURCES: usize = 40;
+
+/// Sources that triangles are made of, the brightest.
+const MAX_TRIANGLE_SOURCES: usize = 25;
+
+/// Standard deviation of a source about its predicted star along an axis, px: centroid, star list, distortion, and what aberration bends the
+/// image by (10⁻⁴ of its half size).
+const SOURCE_SIGMA_PX: f64 = 0.4;
+
+/// Star pairs visited in a frame before the search ends without an attitude: bounds its time.
+const MAX_VISITED_PAIRS: usize = 3_000_000;
+
+/// Attitudes tested in a frame before the search ends without an attitude.
+const MAX_TESTED: usize = 1000;
+
+/// Natural logarithm of the least odds of an attitude, without a prior: 10⁹, as Lang et al. take.
+///
+/// Odds are a ratio of likelihoods, so sources scattered at random reach 10⁹ with a probability of at most 10⁻⁹ in a test of an attitude. Of a frame
+/// [`MAX_TESTED`] attitudes are tested, none on its own triangle: a false attitude has a probability of at most 10⁻⁶ in a frame without stars.
+const MIN_LOG_ODDS: f64 = 20.7;
+
+/// Rounds of solving and matching in which the matches of an accepted attitude must settle; four are usual.
+const MAX_REFINEMENTS: usize = 20;
+
+/// Stars that an attitude must have in the end, of them three of the triangle.
+pub(super) const LEAST_MATCHED: usize = 4;
+
+/// A source in the image.
+#[derive(Debug, Clone, Copy)]
+struct ImageSource {
+    /// Index in the argument of [`LostInSpace::solve`].
+    index: usize,
+    position: PixelPoint,
+    direction: Direction<CameraFrame>,
+}
+
+impl LostInSpace {
+    /// A solver with the stars of `stars` up to the V magnitude `max_magnitude`, of them the brightest of each field of the camera.
+    pub(super) fn new(stars: &[ListedStar], model: &CameraModel, max_magnitude: f64) -> Self {
+        let stars = brightest_of_each_field(stars, model, max_magnitude);
+        Self {
+            list: StarList::new(&stars, f64::INFINITY, model),
+            pairs: StarPairs::new(&stars, largest_chord(model)),
+            model: model.clone(),
+            stars,
+        }
+    }
+
+    /// The attitude by the sources of a frame, each a position in px and a flux in any unit; `None` when no attitude reaches odds of 10⁹. A
+    /// source that is not finite, or that the camera cannot see, is passed over.
+    pub(super) fn solve(&self, sources: &[(PixelPoint, f64)]) -> Option<FoundAttitude> {
+        let sources = self.brightest(sources);
+        let mut search = TriangleSearch::new(&self.stars, &self.pairs, &self.model);
+        let mut tested = 0;
+        for corners in pyramid_order(sources.len().min(MAX_TRIANGLE_SOURCES)) {
+            let corners = corners.map(|corner| sources[corner]);
+            for stars in search.of(corners.map(|corner| corner.direction)) {
+                let triangle: Vec<Match> = corners
+                    .into_iter()
+                    .zip(stars)
+                    .map(|(source, star)| Match { source, star: self.stars[star as usize] })
+                    .collect();
+                tested += 1;
+                if let Some(found) = self.test(&sources, &triangle) {
+                    return Some(found);
+                }
+            }
+            if tested >= MAX_TESTED || search.visited() >= MAX_VISITED_PAIRS {
+                break;
+            }
+        }
+        None
+    }
+
+    /// The sources that have a direction, in order of flux.
+    fn brightest(&self, sources: &[(PixelPoint, f64)]) -> Vec<ImageSource> {
+        let mut order: Vec<usize> = (0..sources.len())
+            .filter(|&i| {
+                let (position, flux) = sources[i];
+                position.x.is_finite() && position.y.is_finite() && flux.is_finite()
+            })
+            .collect();
+        order.sort_by(|&a, &b| sources[b].1.total_cmp(&sources[a].1).then(a.cmp(&b)));
+        order
+            .into_iter()
+            .filter_map(|index| {
+                let position = sources[index].0;
+                let direction = self.model.back_project(position)?;
+                Some(ImageSource { index, position, direction })
+            })
+            .take(MAX_SOURCES)
+            .collect()
+    }
+
+    /// The attitude of a triangle, refined with all its stars, if the other sources give it the least odds.
+    fn test(&self, sources: &[ImageSource], triangle: &[Match]) -> Option<FoundAttitude> {
+        let mut hypothesis = Hypothesis::new(triangle, &self.model)?;
+        let support = hypothesis.support(sources, triangle, &self.list, &self.model);
+        if support.log_odds < MIN_LOG_ODDS {
+            return None;
+        }
+        let mut matched = support.matched;
+        let mut is_settled = false;
+        for _ in 0..MAX_REFINEMENTS {
+            hypothesis = Hypothesis::new(&matched, &self.model)?;
+            let next = hypothesis.support(sources, &[], &self.list, &self.model).matched;
+            is_settled = next.len() == matched.len()
+                && next.iter().all(|pair| matched.iter().any(|before| before.is_same_as(pair)));
+            matched = next;
+            if is_settled {
+                break;
+            }
+        }
+        (is_settled && matched.len() >= LEAST_MATCHED).then(|| FoundAttitude {
+            camera_from_icrs: hypothesis.camera_from_icrs,
+            covariance: hypothesis.covariance,
+            matched: matched.into_iter().map(|pair| (pair.source.index, pair.star)).collect(),
+        })
+    }
+}

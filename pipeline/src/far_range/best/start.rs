@@ -1,0 +1,38 @@
+//! The attitude that a frame starts from: by telemetry, or by its stars alone.
+
+use contract::{CameraFrame, Icrs, Rotation};
+use nalgebra::{Matrix3, Vector3};
+
+use super::lost_in_space::FoundAttitude;
+use super::mounting::AttitudeError;
+
+/// A prior attitude of the camera: a reference, and the distribution of its error.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AttitudeStart {
+    pub(super) reference: Rotation<CameraFrame, Icrs>,
+    pub(super) prior: AttitudeError,
+}
+
+/// Standard deviation of an attitude found without a prior beyond that by its sources, about each axis: an arc minute. Aberration bends the
+/// directions of its stars by 20″ to 26″.
+const FOUND_SIGMA_RAD: f64 = 2.908_882_086_657_216e-4;
+
+/// Widening of the covariance of an attitude found without a prior: the same stars measure it again, and must not count twice.
+const WIDENING: f64 = 16.0;
+
+impl AttitudeStart {
+    /// The camera's attitude for an error `e`, a small turn about its axes.
+    pub(super) fn attitude(&self, e: Vector3<f64>) -> Rotation<CameraFrame, Icrs> {
+        Rotation::<CameraFrame, CameraFrame>::from_rotation_vector(e) * self.reference
+    }
+
+    /// The start from an attitude that the stars gave without a prior.
+    pub(super) fn from_found(found: &FoundAttitude) -> Self {
+        let covariance =
+            found.covariance * WIDENING + Matrix3::identity() * (FOUND_SIGMA_RAD * FOUND_SIGMA_RAD);
+        Self {
+            reference: found.camera_from_icrs,
+            prior: AttitudeError { mean: Vector3::zeros(), covariance },
+        }
+    }
+}
