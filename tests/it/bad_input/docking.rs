@@ -190,7 +190,7 @@ fn a_setup_with_a_value_that_cannot_be_is_named_with_its_line() {
         ("principal_x_px", "1e9", "cameras[0].principal_x_px"),
         ("thickness_m", "0.0", "target.cross.thickness_m"),
         ("forgetting_position", "1.5", "docking.paper_portions.forgetting_position"),
-        ("field_gate", "-1.0", "docking.portions.field_gate"),
+        ("field_gate", "-1.0", "docking.motion.field_gate"),
     ] {
         let line = good.lines().position(|line| line.starts_with(&format!("{key} = "))).unwrap();
         let mut lines: Vec<String> = good.lines().map(str::to_owned).collect();

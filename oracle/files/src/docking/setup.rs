@@ -117,7 +117,7 @@ mod tests {
                 "2.0",
                 "docking.paper_portions.forgetting_attitude",
             ),
-            ("field_gate", "[docking.portions]", "0.0", "docking.portions.field_gate"),
+            ("field_gate", "[docking.motion]", "0.0", "docking.motion.field_gate"),
         ] {
             let start = text.find(table).unwrap();
             let start = start + text[start..].find(&format!("{key} = ")).unwrap();

@@ -10,11 +10,12 @@
 mod hypothesis;
 mod selection;
 mod separations;
+mod source;
 #[cfg(test)]
 mod tests;
 mod triangles;
 
-use contract::{CameraFrame, Direction, Icrs, ListedStar, PixelPoint, Rotation};
+use contract::{CameraFrame, Icrs, ListedStar, PixelPoint, Rotation};
 use nalgebra::Matrix3;
 
 use crate::CameraModel;
@@ -22,6 +23,7 @@ use crate::far_range::identify::StarList;
 use hypothesis::{Hypothesis, Match};
 use selection::{brightest_of_each_field, largest_chord};
 use separations::StarPairs;
+use source::ImageSource;
 use triangles::{TriangleSearch, pyramid_order};
 
 /// A solver for the frames of one camera with one star list. It holds nothing of a frame.
@@ -52,10 +54,6 @@ const MAX_SOURCES: usize = 40;
 /// Sources that triangles are made of, the brightest.
 const MAX_TRIANGLE_SOURCES: usize = 25;
 
-/// Standard deviation of a source about its predicted star along an axis, px: centroid, star list, distortion, and what aberration bends the
-/// image by (10⁻⁴ of its half size).
-const SOURCE_SIGMA_PX: f64 = 0.4;
-
 /// Star pairs visited in a frame before the search ends without an attitude: bounds its time.
 const MAX_VISITED_PAIRS: usize = 3_000_000;
 
@@ -73,15 +71,6 @@ const MAX_REFINEMENTS: usize = 20;
 
 /// Stars that an attitude must have in the end, of them three of the triangle.
 pub(super) const LEAST_MATCHED: usize = 4;
-
-/// A source in the image.
-#[derive(Debug, Clone, Copy)]
-struct ImageSource {
-    /// Index in the argument of [`LostInSpace::solve`].
-    index: usize,
-    position: PixelPoint,
-    direction: Direction<CameraFrame>,
-}
 
 impl LostInSpace {
     /// A solver with the stars of `stars` up to the V magnitude `max_magnitude`, of them the brightest of each field of the camera.

@@ -3,7 +3,7 @@
 use contract::{CameraFrame, Icrs, ListedStar, PixelPoint, Rotation};
 use nalgebra::{Matrix2, Matrix3, Vector2};
 
-use super::{ImageSource, SOURCE_SIGMA_PX};
+use super::source::{ImageSource, SOURCE_SIGMA_PX};
 use crate::CameraModel;
 use crate::far_range::attitude::{StarPair, solve_q_method};
 use crate::far_range::best::stars::{image_covariance, turn_derivative};

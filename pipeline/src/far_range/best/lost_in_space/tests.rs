@@ -1,6 +1,6 @@
 //! Fields over the whole sky, with noise, missing stars and false sources.
 
-use contract::{Angle, Camera};
+use contract::{Angle, Camera, Direction};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::*;

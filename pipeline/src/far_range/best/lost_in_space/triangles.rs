@@ -2,8 +2,8 @@
 
 use contract::{CameraFrame, Direction, ListedStar};
 
-use super::SOURCE_SIGMA_PX;
 use super::separations::StarPairs;
+use super::source::SOURCE_SIGMA_PX;
 use crate::CameraModel;
 
 /// Error of the separation of two sources that is allowed, px: three standard deviations.
