@@ -38,10 +38,10 @@ fn errors_are_as_large_as_sigma_says_and_sigma_follows_noise_and_range() {
         let mut ratios: Vec<f64> =
             once.iter().zip(&twice).map(|(a, b)| sigmas(b)[parameter] / sigmas(a)[parameter]).collect();
         ratios.sort_by(f64::total_cmp);
-        // Rounding to DN adds 1/12 DN²: √(16.08/4.08) = 1.985; shifts of single patches, which are no noise, take off up to a tenth. Marks that one run
-        // rejects and the other does not.
+        // Rounding to DN adds 1/12 DN²: √(16.08/4.08) = 1.985; shifts of single patches and the assumed acceleration, which are
+        // no noise, take off up to a sixth (1.68 to 1.95 were measured).
         let ratio = 0.5 * (ratios[3] + ratios[4]);
-        assert!((1.8..2.15).contains(&ratio), "{parameter}: {ratio}");
+        assert!((1.6..2.1).contains(&ratio), "{parameter}: {ratio}");
     }
     for lens in Lens::ALL {
         let mut by_range: Vec<(f64, f64)> = once

@@ -206,7 +206,7 @@ impl FarRangeScenario {
     /// in place of those.
     ///
     /// The point-spread function follows for Gaussian ones alone, the brightness scale for a radiometry that is allowed. The nominal mounting counts as
-    /// known to [`MOUNTING_SIGMA_ARCSEC`] about each axis.
+    /// known to 180″ about each axis.
     pub fn calibration(&self) -> Calibration {
         let psf = match self.psf {
             PsfConfig::Gaussian { sigma_px } => {
@@ -220,8 +220,9 @@ impl FarRangeScenario {
         let knowledge = &self.knowledge;
         let slow_period_s = knowledge.drift.periods_s.iter().copied().fold(f64::INFINITY, f64::min);
         let derived = Calibration {
-            psf,
-            full_well_e: Some(self.sensor.full_well_e),
+            // A calibration has narrower ranges than a scenario: a width beyond them is left out, other numbers end there.
+            psf: psf.filter(|psf| bounds::check(psf, "psf").is_ok()),
+            full_well_e: Some(self.sensor.full_well_e.clamp(1.0, 1e9)),
             spill_fraction: Some(self.sensor.blooming.map_or(0.0, |blooming| blooming.spill_fraction)),
             response_sigma: Some(self.sensor.fixed_pattern.prnu_fraction),
             zero_magnitude_e_per_s: Radiometry::new(&self.radiometry)
@@ -232,16 +233,15 @@ impl FarRangeScenario {
                 white_arcsec: knowledge.noise_arcsec,
                 slow_arcsec: knowledge.drift.rms_arcsec,
                 slow_period_s: if slow_period_s.is_finite() { slow_period_s } else { 1e9 },
-                constant_arcsec: knowledge
-                    .bias_arcsec
-                    .map(|bias| (bias * bias + MOUNTING_SIGMA_ARCSEC * MOUNTING_SIGMA_ARCSEC).sqrt()),
+                constant_arcsec: knowledge.bias_arcsec.map(|bias| {
+                    (bias * bias + MOUNTING_SIGMA_ARCSEC * MOUNTING_SIGMA_ARCSEC).sqrt().min(36_000.0)
+                }),
             }),
         };
         derived.replaced_by(self.calibration)
     }
 
-    /// Size and brightness of the target to a factor of two: a Lambert sphere of its size at a phase of 90° (of plates with the reflectance
-    /// [`GREY_REFLECTANCE`]).
+    /// Size and brightness of the target to a factor of two: a Lambert sphere of its size at a phase of 90° (of plates with a reflectance of 0.25).
     fn target_calibration(&self) -> Option<TargetCalibration> {
         let radiometry = Radiometry::new(&self.radiometry).ok()?;
         let sunlit = |radius_m: f64, reflectance: f64| {
