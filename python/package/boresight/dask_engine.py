@@ -84,7 +84,7 @@ class Store:
     """The results of a study in an object store. An object is there whole or not at all."""
 
     def __init__(self, url: str) -> None:
-        from fsspec.core import url_to_fs
+        from fsspec.core import url_to_fs  # type: ignore[import-untyped, unused-ignore]
 
         # Other workers put objects there meanwhile: listings are not kept.
         self.files, self.root = url_to_fs(url, use_listings_cache=False)
