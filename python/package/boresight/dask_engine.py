@@ -193,20 +193,12 @@ def arguments() -> argparse.Namespace:
 def main() -> int:
     try:
         import dask
-        from distributed import Client, LocalCluster, Worker, WorkerPlugin, as_completed
+        from distributed import Client, LocalCluster, as_completed
+
+        from boresight.dask_plugin import StudyFiles
     except ImportError as error:
         print(error, file=sys.stderr)
         return MISSING
-
-    class StudyFiles(WorkerPlugin):
-        """Writes the files of a study into the folder of every worker, of those that come later too."""
-
-        def __init__(self, files: dict[str, bytes], folder: str) -> None:
-            self.name = folder
-            self.files, self.folder = files, folder
-
-        def setup(self, worker: Worker) -> None:
-            unpack(self.files, os.path.join(worker.local_directory, self.folder))
 
     # What goes wrong is said once, below.
     logging.disable(logging.CRITICAL)
