@@ -177,8 +177,7 @@ def show_table(rates, out=sys.stdout):
 def show_budget(scenario, options):
     """Each stage of the pipeline with the truth in its place, whole images, and the best mode, on the same stretches."""
     best = copy.deepcopy(scenario)
-    best["far_range"]["centroid"] = {"mode": "fit"}
-    best["far_range"].setdefault("attitude", {})["weights"] = "inverse_variance"
+    best["far_range"]["mode"] = "best"
     cases = [("as flown", scenario, [])]
     cases += [(stage, scenario, ["--inject", stage]) for stage in ["centroids", "identities", "attitude", "roi", "aberration"]]
     cases += [("best mode", best, []), ("best mode, whole images", best, ["--inject", "roi"])]
