@@ -24,6 +24,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from contextlib import nullcontext
 
 MISSING = 3
 """Exit status that tells that Dask is not installed, or what reaches the object store."""
@@ -216,10 +217,10 @@ def main() -> int:
     dask.config.set({"distributed.scheduler.allowed-failures": DEATHS, "distributed.comm.timeouts.connect": CONNECT_S})
     done = 0
     try:
-        cluster = given.scheduler or LocalCluster(
-            n_workers=given.workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None
-        )
-        with Client(cluster, timeout=CONNECT_S) as client:
+        local = {"n_workers": given.workers, "threads_per_worker": 1, "host": "127.0.0.1", "dashboard_address": None}
+        # The workers here write to the same standard error; what went wrong is the last line of it.
+        scheduler = nullcontext(given.scheduler) if given.scheduler else LocalCluster(**local, silence_logs=logging.CRITICAL)
+        with scheduler as cluster, Client(cluster, timeout=CONNECT_S) as client:
             client.register_plugin(StudyFiles(files, folder))
             futures = client.map(
                 run_shard,
@@ -240,8 +241,7 @@ def main() -> int:
                 manifest = future.result()
                 if "failed" in manifest:
                     client.cancel(futures)
-                    print(manifest["failed"], file=sys.stderr)
-                    return 1
+                    raise RuntimeError(manifest["failed"])
                 done += 1
                 print(json.dumps({"done": done, "of": len(commands), "shard": manifest["shard"]}), flush=True)
                 future.release()
@@ -256,8 +256,6 @@ def main() -> int:
             file=sys.stderr,
         )
         return 1
-    if given.scheduler is None:
-        cluster.close()
     if not is_url(given.out):
         return 0
     try:
