@@ -14,12 +14,14 @@ pub struct TableStyle<'a> {
     pub width: usize,
     /// Published figures to print below ours; they are left out unless the score has as many groups.
     pub reference: Option<&'a Table2>,
+    /// The score of the best mode on the same frames, to print below ours; its columns are those of the score, or it is left out.
+    pub best_mode: Option<&'a Score>,
 }
 
 impl Default for TableStyle<'_> {
     /// Plain, 120 columns, without published figures.
     fn default() -> Self {
-        Self { styled: false, width: 120, reference: None }
+        Self { styled: false, width: 120, reference: None, best_mode: None }
     }
 }
 
@@ -28,7 +30,8 @@ impl Default for TableStyle<'_> {
 pub fn far_range(score: &Score, style: TableStyle<'_>) -> String {
     let columns = columns(score);
     let reference = style.reference.filter(|table| table.images.len() == columns.len());
-    let rows = rows(&columns, reference);
+    let best_mode = style.best_mode.map(self::columns).filter(|best_mode| best_mode.len() == columns.len());
+    let rows = rows(&columns, reference, best_mode.as_deref());
     let one_line = sheet(&columns, &rows, " ", style.styled);
     let fits = one_line.lines().next().is_some_and(|line| line.chars().count() <= style.width);
     let mut text = if fits { one_line } else { sheet(&columns, &rows, "\n", style.styled) };
@@ -106,7 +109,7 @@ struct Row {
     is_reference: bool,
 }
 
-fn rows(columns: &[Column<'_>], reference: Option<&Table2>) -> Vec<Row> {
+fn rows(columns: &[Column<'_>], reference: Option<&Table2>, best_mode: Option<&[Column<'_>]>) -> Vec<Row> {
     let images = columns.iter().map(|column| (column.frames.to_string(), None)).collect();
     let mut rows = vec![Row { label: "images".to_owned(), cells: images, is_reference: false }];
     let mut add = |label: &str, name, format: Format, published: Option<[f64; 6]>| {
@@ -117,6 +120,11 @@ fn rows(columns: &[Column<'_>], reference: Option<&Table2>) -> Vec<Row> {
         if let Some(published) = published {
             let cells = published.iter().map(|rate| (format!("{rate:.1}"), None)).collect();
             rows.push(Row { label: "  published".to_owned(), cells, is_reference: true });
+        }
+        if let Some(best_mode) = best_mode {
+            let value = |column: &Column<'_>| (figure(column.figures.get(name), format).0, None);
+            let cells = best_mode.iter().map(value).collect();
+            rows.push(Row { label: "  best mode".to_owned(), cells, is_reference: true });
         }
     };
     let of = |pick: fn(&Table2) -> [f64; 6]| reference.map(pick);

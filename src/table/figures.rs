@@ -15,7 +15,8 @@ type Table = fn(&dyn AnyJudgement, bool) -> Option<String>;
 const TABLES: [Table; 2] = [
     |scored, styled| {
         let scored = scored.as_any().downcast_ref::<FarRangeJudgement>()?;
-        let style = TableStyle { styled, reference: scored.published, ..TableStyle::default() };
+        let best_mode = scored.best_mode.as_deref();
+        let style = TableStyle { styled, reference: scored.published, best_mode, ..TableStyle::default() };
         Some(far_range(&scored.score, style))
     },
     |scored, styled| Some(docking(&scored.as_any().downcast_ref::<DockingJudgement>()?.score, styled)),

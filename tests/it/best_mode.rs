@@ -5,7 +5,7 @@ use contract::{
     Calibration, Camera, CameraFrame, Direction, Frame, Icrs, ListedStar, Outcome, Pipeline, PixelPoint,
     PsfCalibration, Readout, Rotation, Setup, TargetCalibration, Telemetry,
 };
-use hifitime::Epoch;
+use hifitime::{Duration, Epoch};
 use nalgebra::{Matrix2x3, Matrix3, Matrix4, Vector3, Vector4};
 use pipeline::far_range::{AberrationConfig, BestConfig, FarRangeConfig, FarRangePipeline};
 use sim::onboard::{RoiConfig, RoiExtractor, ScanOrder, downlink};
@@ -99,15 +99,14 @@ fn calibration(halo_fraction: f64, spill_fraction: f64) -> Calibration {
     }
 }
 
-/// The answer of a fresh pipeline to one frame.
-fn answer(
+/// A fresh pipeline for frames of a size.
+fn pipeline(
     calibration: Calibration,
-    frame: &Frame,
+    (columns, rows): (usize, usize),
     stars: &[ListedStar],
-    truth: Rotation<CameraFrame, Icrs>,
-) -> Outcome {
+) -> FarRangePipeline {
     let setup = Setup {
-        camera: camera(frame.columns(), frame.rows()),
+        camera: camera(columns, rows),
         camera_from_body: Rotation::identity(),
         bit_depth: 12,
         readout: Some(Readout {
@@ -120,13 +119,26 @@ fn answer(
         zero_suppression_dn: None,
         stars: stars.to_vec(),
     };
-    let telemetry = Telemetry {
-        time: Epoch::from_gregorian_utc_at_midnight(2012, 4, 25),
+    FarRangePipeline::new(best(), &setup).unwrap()
+}
+
+fn telemetry(time_s: f64, truth: Rotation<CameraFrame, Icrs>) -> Telemetry {
+    Telemetry {
+        time: Epoch::from_gregorian_utc_at_midnight(2012, 4, 25) + Duration::from_seconds(time_s),
         exposure_s: 0.25,
         body_from_icrs: Rotation::from_unit_quaternion(*truth.quaternion()),
         velocity_km_s: None,
-    };
-    FarRangePipeline::new(best(), &setup).unwrap().process(frame, &telemetry)
+    }
+}
+
+/// The answer of a fresh pipeline to one frame.
+fn answer(
+    calibration: Calibration,
+    frame: &Frame,
+    stars: &[ListedStar],
+    truth: Rotation<CameraFrame, Icrs>,
+) -> Outcome {
+    pipeline(calibration, (frame.columns(), frame.rows()), stars).process(frame, &telemetry(0.0, truth))
 }
 
 /// Half the side of the square of pixels that a bound uses: all that could tell anything.
@@ -373,4 +385,75 @@ fn a_saturated_image_cut_by_a_region_is_fitted_where_it_is() {
             assert!((0.7..1.3).contains(&nees.mean()), "{electrons} e: NEES {}", nees.mean());
         }
     }
+}
+
+/// Errors in px of the answers to a sequence of frames every ten seconds, of a point that moves by half a pixel a frame; infinite where there is no answer.
+fn sequence(electrons: impl Fn(usize) -> f64, frames: usize, number: u64) -> Vec<f64> {
+    const SIDE: usize = 160;
+    let sensor = sensor(SIDE, SIDE, None);
+    let mut pipeline = pipeline(calibration(0.0, 0.0), (SIDE, SIDE), &[]);
+    let of_frame = |frame: usize| {
+        let place = PixelPoint::new(60.2 + 0.5 * frame as f64, 80.7 - 0.25 * frame as f64);
+        let points = [(place, electrons(frame))];
+        let raw = draw(&sensor, &PsfConfig::Gaussian { sigma_px: SIGMA_PX }, &points, number + frame as u64);
+        let image = downlink(&raw, frame as u64, None).unwrap();
+        let outcome = pipeline.process(&image, &telemetry(10.0 * frame as f64, Rotation::identity()));
+        outcome.measurement().map_or(f64::INFINITY, |found| found.position.distance(place))
+    };
+    (0..frames).map(of_frame).collect()
+}
+
+/// Electrons of a point with this signal-to-noise ratio before the background, by a matched filter.
+fn electrons_of(snr: f64) -> f64 {
+    let pixel_e = (BACKGROUND_E + READ_NOISE_E * READ_NOISE_E + GAIN_E_PER_DN * GAIN_E_PER_DN / 12.0).sqrt();
+    // The norm of a Gaussian over pixels: 1/(2 σ √π), with the variance of a pixel added to its own.
+    let sigma_px = (SIGMA_PX * SIGMA_PX + 1.0 / 12.0).sqrt();
+    snr * pixel_e * 2.0 * sigma_px * std::f64::consts::PI.sqrt()
+}
+
+/// No pixel of these targets stands out by six standard deviations, as a cluster must.
+#[test]
+fn frames_are_added_up_until_a_faint_target_is_found() {
+    for (snr, least_correct) in [(5.0, 0.85), (6.0, 0.95)] {
+        let (mut correct, mut wrong, mut n) = (0, 0, 0);
+        for run in 0..10 {
+            let errors = sequence(|_| electrons_of(snr), 50, 10_000 * (snr as u64) + 100 * run);
+            let settled = &errors[12..];
+            n += settled.len();
+            correct += settled.iter().filter(|error| **error < 1.5).count();
+            wrong += settled.iter().filter(|error| error.is_finite() && **error >= 1.5).count();
+        }
+        println!("SNR {snr}: correct {correct}, wrong {wrong} of {n} frames from the twelfth on");
+        assert!(
+            correct as f64 >= least_correct * n as f64 && wrong * 50 <= n,
+            "SNR {snr}: {correct}, {wrong} of {n}"
+        );
+    }
+}
+
+#[test]
+fn a_target_that_fades_is_followed_below_what_a_frame_shows() {
+    let (mut correct, mut wrong, mut n) = (0, 0, 0);
+    for run in 0..10 {
+        // From a signal-to-noise ratio of 15 to 3 in twenty frames.
+        let snr = |frame: usize| (15.0 - 0.6 * frame as f64).max(3.0);
+        let errors = sequence(|frame| electrons_of(snr(frame)), 60, 200_000 + 100 * run);
+        let faint = &errors[20..];
+        n += faint.len();
+        correct += faint.iter().filter(|error| **error < 1.5).count();
+        wrong += faint.iter().filter(|error| error.is_finite() && **error >= 1.5).count();
+    }
+    println!("SNR 3: correct {correct}, wrong {wrong} of {n} frames");
+    assert!(correct * 10 >= 7 * n && wrong * 50 <= n, "{correct}, {wrong} of {n}");
+}
+
+#[test]
+fn noise_alone_is_no_target() {
+    let answered: usize = (0..5)
+        .map(|run| sequence(|_| 0.0, 60, 300_000 + 100 * run))
+        .flatten()
+        .filter(|error| error.is_finite())
+        .count();
+    println!("{answered} answers to 300 frames of noise");
+    assert!(answered <= 6, "{answered}");
 }

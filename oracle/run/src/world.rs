@@ -241,6 +241,14 @@ pub trait World: Sized + Send + Sync + 'static {
     /// Gives the memory of an image to a workspace.
     fn reuse(_: &mut Self::Workspace<'_>, _: ImageOf<Self>) {}
 
+    /// A pipeline that is flown and scored beside that of a run, for comparison; its answers are not written.
+    ///
+    /// # Errors
+    /// A [`Failure`] when it cannot be configured.
+    fn beside(&self) -> Result<Option<Box<dyn PipelineFactory<Self::Interface> + Send>>, Failure> {
+        Ok(None)
+    }
+
     /// The built-in pipeline with the truth in the place of a stage's result, where the run was asked for it.
     ///
     /// # Errors
@@ -312,6 +320,10 @@ pub trait World: Sized + Send + Sync + 'static {
         let mut running = Running::build(self, factory)?;
         let mut answers = Self::Answers::create(&Self::Answers::files(&directory.measurements()))?;
         let mut scorer = self.scorer();
+        let mut beside = match self.beside()? {
+            Some(factory) => Some((factory.build(self.setup())?, self.scorer())),
+            None => None,
+        };
         let mut first_failure = None;
         let flown = fly(self, directory, flight, |exposure| {
             let FrameAnswer { image, telemetry, truth, outcome } = running.process(exposure)?;
@@ -320,6 +332,9 @@ pub trait World: Sized + Send + Sync + 'static {
                 first_failure.take().or_else(|| FirstFailure::of::<Self::Interface>(number, &outcome));
             answers.add(number, &outcome)?;
             scorer.add(&truth, &telemetry, &outcome)?;
+            if let Some((pipeline, scorer)) = &mut beside {
+                scorer.add(&truth, &telemetry, &pipeline.process(&image, &telemetry))?;
+            }
             dataset.add(&image, telemetry, truth)?;
             go_on()?;
             running.check_starts().map(|()| image)
@@ -331,7 +346,10 @@ pub trait World: Sized + Send + Sync + 'static {
         }
         dataset.finish()?;
         answers.finish()?;
-        let scored = scorer.finish();
+        let mut scored = scorer.finish();
+        if let Some((_, scorer)) = beside {
+            scored.show_beside(scorer.finish());
+        }
         let json =
             serde_json::to_string_pretty(&ScoreFile { score: scored.score(), not_flown: not_flown.as_ref() })
                 .map_err(|error| Failure::Usage(format!("the score cannot be written as JSON: {error}")))?;
@@ -516,6 +534,13 @@ pub trait Judgement {
 
     /// The run frame by frame, for a comparison with another.
     fn units(&self) -> UnitTable;
+
+    /// Takes the judgement of another pipeline on the same frames, to be shown beside this one.
+    fn show_beside(&mut self, _: Self)
+    where
+        Self: Sized,
+    {
+    }
 }
 
 /// A pipeline at work on a sequence.

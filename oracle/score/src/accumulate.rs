@@ -57,6 +57,8 @@ pub struct FarRangeJudgement {
     pub limits: WithinLimits,
     /// The published figures of the same scenario, where there are any.
     pub published: Option<&'static Table2>,
+    /// The score of the pipeline's best mode on the same frames, where it was flown beside the paper's.
+    pub best_mode: Option<Box<Score>>,
 }
 
 /// A truth that cannot be scored.
@@ -228,7 +230,7 @@ impl<'a> Scorer<'a> {
             wrong_taken: all.wrong_taken,
             consistency: consistency::rows(&sequences),
         };
-        FarRangeJudgement { score, verdicts: self.verdicts, limits, published: None }
+        FarRangeJudgement { score, verdicts: self.verdicts, limits, published: None, best_mode: None }
     }
 }
 

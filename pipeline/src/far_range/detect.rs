@@ -200,6 +200,11 @@ impl Detector {
         &self.members[first..first + self.blobs[i].pixels as usize]
     }
 
+    /// The pixels of all clusters of the last frame, those dropped included, as indices into its image.
+    pub(super) fn pixels_in_clusters(&self) -> impl Iterator<Item = usize> {
+        self.members.iter().map(|&index| index as usize)
+    }
+
     /// Whether a pixel of the last frame belongs to any cluster, those dropped included.
     pub(super) fn is_in_cluster(&self, index: usize) -> bool {
         self.is_marked(index)

@@ -20,7 +20,7 @@ use files::{
     write_frame,
 };
 use indexmap::IndexMap;
-use pipeline::far_range::{FarRangeConfig, FarRangeFactory};
+use pipeline::far_range::{FarRangeConfig, FarRangeFactory, Mode};
 use scenario::run_file::RunFile;
 use scenario::{AttitudeChoice, FarRangeScenario, STARTING_POINT, is_argon};
 use score::{
@@ -258,6 +258,16 @@ impl World for FarRangeMission {
         camera.reuse(frame);
     }
 
+    /// The best mode beside the paper's mode on ARGON, where the paper's own figures stand beside it as well.
+    fn beside(&self) -> Result<Option<Box<dyn PipelineFactory<FarRange> + Send>>, Failure> {
+        let scenario = self.scenario();
+        let is_papers = scenario.far_range.mode == Mode::Paper && self.run_file.inject.is_none();
+        let best = FarRangeConfig { mode: Mode::Best, ..scenario.far_range.clone() };
+        let is_possible =
+            best.check_suppression(scenario.zero_suppression_dn, scenario.sensor.bit_depth).is_ok();
+        (is_papers && is_argon(scenario) && is_possible).then(|| Self::built_in(&best)).transpose()
+    }
+
     fn informed(&self) -> Result<Option<Box<dyn InformedPipeline<Self>>>, Failure> {
         let Some(stage) = self.run_file.inject else { return Ok(None) };
         let pipeline = InjectedPipeline::new(stage, &self.scenario().far_range, &self.setup)?;
@@ -417,6 +427,10 @@ impl world::Judgement for FarRangeJudgement {
 
     fn units(&self) -> UnitTable {
         UnitTable::of_frames(&self.verdicts, &self.limits)
+    }
+
+    fn show_beside(&mut self, other: Self) {
+        self.best_mode = Some(Box::new(other.score));
     }
 }
 

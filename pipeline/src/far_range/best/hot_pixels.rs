@@ -21,4 +21,9 @@ impl HotPixels {
     pub(super) fn contains(&self, index: usize) -> bool {
         self.frames.get(&index).is_some_and(|&frames| frames >= FRAMES)
     }
+
+    /// Indices of the hot pixels, in no order.
+    pub(super) fn indices(&self) -> impl Iterator<Item = usize> {
+        self.frames.iter().filter(|(_, frames)| **frames >= FRAMES).map(|(index, _)| *index)
+    }
 }

@@ -2,9 +2,12 @@
 //! all that is known of the camera (docs/best-mode.md).
 
 mod config;
+mod faint_points;
+mod frame_attitude;
 mod hot_pixels;
 mod image_fit;
 mod lost_in_space;
+mod measurement;
 mod mounting;
 mod normal_equations;
 mod photometry;
@@ -12,6 +15,7 @@ mod pipeline;
 mod point_image;
 mod stars;
 mod start;
+mod target;
 mod tracks;
 
 pub use config::{AttitudePrior, BestConfig};

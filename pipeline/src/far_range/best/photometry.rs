@@ -64,6 +64,12 @@ impl PhotometryModel {
         (f64::from(dn) - self.readout.bias_dn) * self.readout.gain_e_per_dn
     }
 
+    /// Electrons per digital number, and the digital number of the background.
+    pub(super) fn scale(&self) -> (f32, f32) {
+        let gain = self.readout.gain_e_per_dn;
+        (gain as f32, (self.readout.bias_dn + self.background_e / gain) as f32)
+    }
+
     fn is_saturated(&self, frame: &Frame, dn: u16) -> bool {
         dn >= self.readout.saturation_dn.min(frame.full_scale_dn())
     }
@@ -158,6 +164,33 @@ pub(super) struct FrameLight<'a> {
     pub(super) detector: &'a Detector,
     pub(super) model: &'a PhotometryModel,
     pub(super) hot_pixels: &'a HotPixels,
+}
+
+impl FrameLight<'_> {
+    /// Whether all pixels within a distance of a position, along columns and rows, were transmitted.
+    pub(super) fn is_well_inside(&self, position: PixelPoint, distance_px: f64) -> bool {
+        let [x, y] = [position.x, position.y];
+        let corners = [-distance_px, distance_px].map(|d| ((x + d).round(), (y + d).round()));
+        let (columns, rows) = (self.frame.columns() as f64, self.frame.rows() as f64);
+        corners.iter().all(|(x, y)| (0.0..columns).contains(x) && (0.0..rows).contains(y))
+            && match self.frame.windows() {
+                None => true,
+                Some(windows) => windows
+                    .iter()
+                    .any(|window| corners.iter().all(|(x, y)| window.contains(*x as usize, *y as usize))),
+            }
+    }
+
+    /// Whether a pixel of a cluster lies within a distance of a position, along columns and rows.
+    pub(super) fn is_near_cluster(&self, position: PixelPoint, distance_px: f64) -> bool {
+        let range = |at: f64, size: usize| {
+            let first = (at - distance_px).ceil().max(0.0) as usize;
+            first..=((at + distance_px).floor().max(0.0) as usize).min(size - 1)
+        };
+        let (columns, rows) = (self.frame.columns(), self.frame.rows());
+        range(position.y, rows)
+            .any(|y| range(position.x, columns).any(|x| self.detector.is_in_cluster(y * columns + x)))
+    }
 }
 
 /// A rectangle of pixels, clipped to the frame.

@@ -49,6 +49,9 @@ const MATCH_GAIN: f64 = 6.0;
 /// Standard deviations of the prior within which the offset is looked for.
 const SEARCH_SIGMAS: f64 = 3.5;
 
+/// By how much brighter than matched stars a star must be to be missed, mag: colours shift the order of brightness.
+const BRIGHTER_MAG: f64 = 0.5;
+
 /// Whether the brightness of a candidate allows it to be the star.
 fn is_as_bright(candidate: &StarCandidate, star: &ExpectedStar) -> bool {
     let Some(flux_e) = star.flux_e else { return true };
@@ -130,6 +133,29 @@ pub(super) fn matches_at_positions(
         }
     }
     matched
+}
+
+/// Whether matched stars are more than a coincidence: as many of the listed stars that are as bright must have an image as have none.
+/// `is_in_image` tells whether the position of a star was transmitted.
+///
+/// Of the stars brighter than half of the matched ones by half a magnitude, an image is missing where no candidate is within `gate_px`. A variable star or a
+/// stain on a lens leaves out one, a wrong offset nearly all.
+pub(super) fn are_confirmed(
+    matched: &[(usize, usize)],
+    candidates: &[StarCandidate],
+    stars: &[ExpectedStar],
+    gate_px: f64,
+    is_in_image: impl Fn(PixelPoint) -> bool,
+) -> bool {
+    let mut magnitudes: Vec<f64> = matched.iter().map(|&(_, s)| stars[s].star.magnitude).collect();
+    magnitudes.sort_by(f64::total_cmp);
+    let Some(&median) = magnitudes.get(magnitudes.len() / 2) else { return false };
+    let is_missing = |star: &&ExpectedStar| {
+        star.star.magnitude < median - BRIGHTER_MAG
+            && is_in_image(star.position)
+            && !candidates.iter().any(|candidate| candidate.position.distance(star.position) <= gate_px)
+    };
+    stars.iter().filter(is_missing).count() <= matched.len()
 }
 
 /// Residual of a star, px, and its derivative by a small turn of the camera about its axes, for an attitude; `None` where it has no image.

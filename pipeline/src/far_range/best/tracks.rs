@@ -18,6 +18,8 @@ pub(super) struct TargetCandidate {
     pub(super) is_flux_bounded: bool,
     /// Natural logarithm of the odds that a cluster of this brightness and shape is the target, from this frame alone.
     pub(super) log_odds: f64,
+    /// Natural logarithm of the likelihood with over that without the target, of a candidate that was looked for where the best track predicts it.
+    pub(super) evidence: Option<f64>,
     /// Direction along the axes of ICRS, by the attitude of this frame.
     pub(super) direction: Option<Direction<Icrs>>,
 }
@@ -46,8 +48,10 @@ pub(super) struct Track {
 pub(super) struct TrackModel {
     /// Greatest speed, px/s.
     pub(super) max_speed_px_per_s: f64,
-    /// Clutter clusters per px², with any flux.
+    /// Clutter per px², with any flux.
     pub(super) clutter_per_px2: f64,
+    /// Flux of a point at the threshold of clusters, photoelectrons per second.
+    pub(super) threshold_e_per_s: f64,
 }
 
 /// Disturbance of the position that does not grow with time (jitter of the pointing), px.
@@ -63,8 +67,12 @@ const LOG_FLUX_PER_ROOT_S: f64 = 0.03;
 /// Natural logarithm of the flux over that of the visible part of an image.
 const LARGEST_HIDDEN: f64 = 1.2;
 
-/// Part of the target's images that are detected.
+/// Part of the target's images that are detected, and of those that are not twice as bright as the threshold.
 const DETECTED: f64 = 0.95;
+const DETECTED_FAINT: f64 = 0.6;
+
+/// The most that one frame says for a position or a flux, natural logarithm.
+const MOST_EVIDENCE: f64 = 8.0;
 
 /// Odds beyond these say nothing more: a track must be able to lose.
 const LOG_ODDS: (f64, f64) = (-20.0, 25.0);
@@ -87,7 +95,7 @@ const SETTLED: f64 = 12.0;
 const LARGEST_REACH_PX: f64 = 10.0;
 
 /// Most tracks, and frames without a cluster after which one ends.
-const MAX_TRACKS: usize = 24;
+const MAX_TRACKS: usize = 64;
 const MAX_MISSES: u32 = 20;
 
 impl Track {
@@ -151,7 +159,7 @@ impl Track {
         // Clutter has fluxes over some four units of the natural logarithm.
         let by_flux =
             -0.5 * flux_distance - 0.5 * libm::log(std::f64::consts::TAU * flux_variance) + libm::log(4.0);
-        Some(libm::log(DETECTED) + by_position.min(8.0) + by_flux)
+        Some(libm::log(DETECTED) + by_position.min(MOST_EVIDENCE) + by_flux)
     }
 
     /// Odds by the motion since the last cluster: `position_of` gives where a direction among the stars is in the image now.
@@ -192,8 +200,10 @@ impl Track {
         self.candidate = Some(index);
     }
 
-    fn miss(&mut self) {
-        self.log_odds = (self.log_odds + libm::log(1.0 - DETECTED)).max(LOG_ODDS.0);
+    fn miss(&mut self, model: &TrackModel) {
+        let is_faint = libm::exp(self.log_flux) < 2.0 * model.threshold_e_per_s;
+        let detected = if is_faint { DETECTED_FAINT } else { DETECTED };
+        self.log_odds = (self.log_odds + libm::log(1.0 - detected)).max(LOG_ODDS.0);
         self.misses += 1;
     }
 }
@@ -246,7 +256,11 @@ impl Tracks {
         let mut pairs: Vec<(f64, f64, usize, usize)> = Vec::new();
         for (t, track) in self.tracks.iter().enumerate() {
             for (c, candidate) in candidates.iter().enumerate() {
-                if let Some(gain) = track.likelihood(candidate, model) {
+                let gain = match candidate.evidence {
+                    Some(evidence) => (t == 0).then_some(evidence.min(MOST_EVIDENCE)),
+                    None => track.likelihood(candidate, model),
+                };
+                if let Some(gain) = gain {
                     let gain = gain + track.motion_odds(candidate, position_of);
                     pairs.push((track.log_odds + gain, gain, t, c));
                 }
@@ -261,9 +275,9 @@ impl Tracks {
             }
         }
         for track in self.tracks.iter_mut().filter(|track| track.candidate.is_none()) {
-            track.miss();
+            track.miss(model);
         }
-        let new = candidates.iter().enumerate().filter(|(c, _)| !is_taken[*c]);
+        let new = candidates.iter().enumerate().filter(|(c, new)| !is_taken[*c] && new.evidence.is_none());
         self.tracks.extend(new.map(|(c, candidate)| Track::new(c, candidate, model)));
         self.tracks
             .retain(|track| track.misses <= MAX_MISSES && (track.misses == 0 || track.log_odds > -10.0));

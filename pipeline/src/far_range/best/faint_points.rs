@@ -1,0 +1,167 @@
+//! Points too faint for a cluster: maxima of the image convolved with the image of a point (matched filter).
+
+use contract::{PixelPoint, Window};
+
+use super::image_fit::PointImage;
+use super::photometry::FrameLight;
+
+/// A point below the threshold of clusters.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FaintPoint {
+    pub(super) position: PixelPoint,
+    /// Variance of the position along an axis, px².
+    pub(super) variance_px2: f64,
+    /// Electrons.
+    pub(super) flux_e: f64,
+}
+
+/// Finds [`FaintPoint`]s; owns its buffers.
+#[derive(Debug, Default)]
+pub(super) struct FaintPoints {
+    /// Electrons above the background, hot pixels and clusters taken out.
+    light: Vec<f32>,
+    along_rows: Vec<f32>,
+    filtered: Vec<f32>,
+    points: Vec<(f32, FaintPoint)>,
+}
+
+/// Signal-to-noise ratio of the flux from which on a maximum is a point: noise alone has about ten in half a million pixels.
+const LEAST_SNR: f64 = 4.0;
+
+/// Most points of a frame, the brightest.
+const MAX_POINTS: usize = 24;
+
+/// Distance from a cluster or a listed star within which a maximum is its light, px, beyond the reach of the filter.
+const APART_PX: f64 = 2.0;
+
+impl FaintPoints {
+    /// The points of a frame, the brightest first, that are apart from clusters and from the positions of `stars`. The noise of the background is that of
+    /// every pixel.
+    pub(super) fn find(
+        &mut self,
+        light: FrameLight<'_>,
+        image: &PointImage,
+        stars: &[PixelPoint],
+    ) -> Vec<FaintPoint> {
+        let kernel = kernel(image.sigma_px);
+        self.points.clear();
+        let whole = [Window { x: 0, y: 0, columns: light.frame.columns(), rows: light.frame.rows() }];
+        for window in light.frame.windows().unwrap_or(&whole) {
+            self.find_in(light, image, window, &kernel, stars);
+        }
+        self.points.sort_by(|a, b| b.0.total_cmp(&a.0));
+        self.points.truncate(MAX_POINTS);
+        self.points.iter().map(|(_, point)| *point).collect()
+    }
+
+    fn find_in(
+        &mut self,
+        light: FrameLight<'_>,
+        image: &PointImage,
+        window: &Window,
+        kernel: &[f32],
+        stars: &[PixelPoint],
+    ) {
+        let (columns, rows, reach) = (window.columns, window.rows, kernel.len() / 2);
+        if columns < kernel.len() || rows < kernel.len() {
+            return;
+        }
+        self.load(light, window);
+        self.convolve(columns, rows, kernel);
+        // The filter's output is the flux where its weights are k/Σk², with the noise σ/√Σk² of the pixels' σ.
+        let power: f32 = kernel.iter().map(|k| k * k).sum();
+        let power = f64::from(power * power);
+        let limit = LEAST_SNR * light.model.pixel_sigma_e * power.sqrt();
+        let sigma2 = image.sigma_px * image.sigma_px;
+        let apart_px = APART_PX + reach as f64;
+        for y in reach..rows - reach {
+            let row = &self.filtered[y * columns..(y + 1) * columns];
+            for (x, &value) in row.iter().enumerate().take(columns - reach).skip(reach) {
+                if f64::from(value) < limit || !self.is_maximum(x, y, columns) {
+                    continue;
+                }
+                let position = self.vertex(x, y, columns, window);
+                let is_taken = light.is_near_cluster(position, apart_px)
+                    || stars.iter().any(|star| star.distance(position) < apart_px);
+                if !is_taken {
+                    let flux_e = f64::from(value) / power;
+                    let snr = f64::from(value) / (light.model.pixel_sigma_e * power.sqrt());
+                    // That of a Gaussian in uniform noise: 2 σ²/snr².
+                    let point = FaintPoint { position, variance_px2: 2.0 * sigma2 / (snr * snr), flux_e };
+                    self.points.push((value, point));
+                }
+            }
+        }
+    }
+
+    /// Takes in the pixels of a window.
+    fn load(&mut self, light: FrameLight<'_>, window: &Window) {
+        let (gain, base_dn) = light.model.scale();
+        self.light.clear();
+        for y in window.y..window.y + window.rows {
+            let row = &light.frame.row(y)[window.x..window.x + window.columns];
+            self.light.extend(row.iter().map(|&dn| (f32::from(dn) - base_dn) * gain));
+        }
+        let columns = light.frame.columns();
+        let taken_out = light.detector.pixels_in_clusters().chain(light.hot_pixels.indices());
+        for (x, y) in taken_out.map(|index| (index % columns, index / columns)) {
+            if window.contains(x, y) {
+                self.light[(y - window.y) * window.columns + x - window.x] = 0.0;
+            }
+        }
+    }
+
+    /// Convolves along the rows, then along the columns; the margin of half a kernel stays 0.
+    fn convolve(&mut self, columns: usize, rows: usize, kernel: &[f32]) {
+        let reach = kernel.len() / 2;
+        self.along_rows.clear();
+        self.along_rows.resize(columns * rows, 0.0);
+        for (to, from) in self.along_rows.chunks_exact_mut(columns).zip(self.light.chunks_exact(columns)) {
+            let inner = &mut to[reach..columns - reach];
+            for (k, &weight) in kernel.iter().enumerate() {
+                for (to, from) in inner.iter_mut().zip(&from[k..]) {
+                    *to += weight * from;
+                }
+            }
+        }
+        self.filtered.clear();
+        self.filtered.resize(columns * rows, 0.0);
+        for (i, to) in self.filtered.chunks_exact_mut(columns).enumerate().take(rows - reach).skip(reach) {
+            for (k, &weight) in kernel.iter().enumerate() {
+                let first = (i + k - reach) * columns;
+                for (to, from) in to.iter_mut().zip(&self.along_rows[first..first + columns]) {
+                    *to += weight * from;
+                }
+            }
+        }
+    }
+
+    /// Whether no neighbour of the pixel is brighter; of equal ones the first counts.
+    fn is_maximum(&self, x: usize, y: usize, columns: usize) -> bool {
+        let at = y * columns + x;
+        let value = self.filtered[at];
+        let row = |y: usize| &self.filtered[y * columns + x - 1..=y * columns + x + 1];
+        let before = row(y - 1).iter().chain(&self.filtered[at - 1..at]);
+        let after = self.filtered[at + 1..=at + 1].iter().chain(row(y + 1));
+        before.into_iter().all(|v| *v < value) && after.into_iter().all(|v| *v <= value)
+    }
+
+    /// The maximum of the parabolas through a pixel and its neighbours along columns and rows, in the frame.
+    fn vertex(&self, x: usize, y: usize, columns: usize, window: &Window) -> PixelPoint {
+        let at = y * columns + x;
+        let offset = |step: usize| {
+            let [before, here, after] = [at - step, at, at + step].map(|i| f64::from(self.filtered[i]));
+            let curvature = 2.0 * here - before - after;
+            if curvature > 0.0 { (0.5 * (after - before) / curvature).clamp(-0.5, 0.5) } else { 0.0 }
+        };
+        PixelPoint::new((window.x + x) as f64 + offset(1), (window.y + y) as f64 + offset(columns))
+    }
+}
+
+/// Samples of a Gaussian on pixels, out to 2.5 widths.
+fn kernel(sigma_px: f64) -> Vec<f32> {
+    let sigma_px = sigma_px.clamp(0.4, 4.0);
+    let reach = (2.5 * sigma_px).ceil() as i32;
+    let edge = |at: f64| libm::erf(at / (sigma_px * std::f64::consts::SQRT_2));
+    (-reach..=reach).map(|i| (0.5 * (edge(f64::from(i) + 0.5) - edge(f64::from(i) - 0.5))) as f32).collect()
+}

@@ -1,0 +1,276 @@
+//! The candidates for the target in a frame, and their images.
+
+use contract::{Direction, Icrs, PixelPoint};
+
+use super::faint_points::FaintPoint;
+use super::frame_attitude::FrameAttitude;
+use super::photometry::{FittedSource, FrameLight, KnownSource, Source, TargetStart};
+use super::pipeline::BestPipeline;
+use super::tracks::TargetCandidate;
+use crate::far_range::overrides::{Identity, Overrides};
+
+/// What is known of a frame before its target is looked for.
+#[derive(Clone, Copy)]
+pub(super) struct TargetContext<'a> {
+    pub(super) light: FrameLight<'a>,
+    pub(super) sources: &'a [Source],
+    /// Flux of a point whose central pixel is at the threshold of clusters, electrons.
+    pub(super) threshold_e: f64,
+    pub(super) attitude: &'a FrameAttitude,
+    /// Listed stars of known flux.
+    pub(super) known: &'a [KnownSource],
+    pub(super) exposure_s: f64,
+}
+
+/// A candidate with what it was found by.
+pub(super) struct CandidateImage {
+    pub(super) candidate: TargetCandidate,
+    /// `None` as long as its image is not fitted.
+    pub(super) fit: Option<FittedSource>,
+    /// Index of its cluster; `None` for a candidate without one.
+    pub(super) cluster: Option<usize>,
+}
+
+/// Candidates whose images are fitted as long as no track is settled, the brightest; those where the best track is expected always are.
+const MAX_FITTED: usize = 2;
+
+/// Exponent of the numbers of clutter by flux: N(> F) ∝ F^−1.2, that of the stars (Allen 1973, Astrophysical Quantities, §117).
+const CLUTTER_EXPONENT: f64 = 1.2;
+
+/// Odds of a cluster at the threshold of detection, and of a point below it, natural logarithm.
+const THRESHOLD_LOG_ODDS: f64 = -2.0;
+const FAINT_LOG_ODDS: f64 = -6.0;
+
+/// Misfit from which on an unsaturated cluster is hardly a point or a small body, and the odds that it loses then.
+const CLUTTER_MISFIT: f64 = 4.0;
+const MISFIT_LOG_ODDS: f64 = 5.0;
+
+/// Expected stars within this distance of a cluster are fitted with it, px.
+const KNOWN_REACH_PX: f64 = 24.0;
+
+/// Odds of a track from which on its target is looked for where no cluster is, the largest standard deviation of the prediction, px, and the least
+/// signal-to-noise ratio.
+const PREDICTED_LOG_ODDS: f64 = 4.0;
+const PREDICTED_REACH_PX: f64 = 4.0;
+const PREDICTED_SNR: f64 = 2.0;
+
+impl BestPipeline {
+    /// The candidates of a frame: clusters, the brightest first, points below the threshold of clusters as long as no track is settled, and what is
+    /// where the best track predicts it.
+    pub(super) fn candidates(
+        &mut self,
+        of: TargetContext<'_>,
+        overrides: &Overrides<'_>,
+    ) -> Vec<CandidateImage> {
+        let mut images: Vec<CandidateImage> = Vec::new();
+        let max_fitted = if self.tracks.is_settled() { 0 } else { MAX_FITTED };
+        for i in target_clusters(of, overrides) {
+            let source = &of.sources[i];
+            let is_fitted = images.len() < max_fitted || self.tracks.is_expected(source.centre);
+            let fit = is_fitted.then(|| self.fit_cluster(of, i)).flatten();
+            let log_odds = log_odds(source, fit.as_ref(), of.threshold_e);
+            let candidate = self.cluster_candidate(of, source, fit.as_ref(), log_odds);
+            images.push(CandidateImage { candidate, fit, cluster: Some(i) });
+        }
+        if !self.tracks.is_settled() && overrides.identity.is_none() {
+            images.extend(self.faint_candidates(of));
+        }
+        images.extend(self.predicted_candidate(of, &images));
+        images
+    }
+
+    /// Points below the threshold of clusters, at no listed star.
+    fn faint_candidates(&mut self, of: TargetContext<'_>) -> Vec<CandidateImage> {
+        let image = self.psf.image([0.0; 2]);
+        let stars: Vec<PixelPoint> = of.attitude.expected.iter().map(|star| star.position).collect();
+        let points = self.faint_points.find(of.light, &image, &stars);
+        let candidate = |point: &FaintPoint| TargetCandidate {
+            position: point.position,
+            variance_px2: point.variance_px2,
+            flux_e_per_s: point.flux_e / of.exposure_s,
+            is_flux_bounded: false,
+            log_odds: FAINT_LOG_ODDS,
+            evidence: None,
+            direction: self.direction(point.position, of.attitude),
+        };
+        points
+            .iter()
+            .map(|point| CandidateImage { candidate: candidate(point), fit: None, cluster: None })
+            .collect()
+    }
+
+    /// Fits the image of a candidate that has not been fitted yet, if it can be.
+    pub(super) fn fit_candidate(&mut self, of: TargetContext<'_>, image: &mut CandidateImage) {
+        if image.fit.is_some() {
+            return;
+        }
+        let candidate = &mut image.candidate;
+        image.fit = match image.cluster {
+            Some(i) => self.fit_cluster(of, i),
+            None => {
+                self.fit_point(of, candidate.position, f64::INFINITY, candidate.flux_e_per_s * of.exposure_s)
+            }
+        };
+        if let Some(fit) = &image.fit {
+            candidate.position = fit.position;
+        }
+    }
+
+    /// Fits the image of a cluster as the target's.
+    fn fit_cluster(&mut self, of: TargetContext<'_>, cluster: usize) -> Option<FittedSource> {
+        let source = &of.sources[cluster];
+        let start = TargetStart {
+            position: source.centre,
+            position_sigma_px: f64::INFINITY,
+            flux_e: source.flux_e,
+            body_log_width: self.body_log_width(source.flux_e, of.exposure_s),
+            members: of.light.detector.members(cluster),
+            is_saturated: source.saturated > 0,
+            is_cut: source.is_cut,
+        };
+        self.fit_target(of, &start)
+    }
+
+    /// Fits the image of the target at a position where no cluster is.
+    fn fit_point(
+        &mut self,
+        of: TargetContext<'_>,
+        position: PixelPoint,
+        position_sigma_px: f64,
+        flux_e: f64,
+    ) -> Option<FittedSource> {
+        let start = TargetStart {
+            position,
+            position_sigma_px,
+            flux_e,
+            body_log_width: self.body_log_width(flux_e, of.exposure_s),
+            members: &[],
+            is_saturated: false,
+            is_cut: false,
+        };
+        self.fit_target(of, &start)
+    }
+
+    fn fit_target(&mut self, of: TargetContext<'_>, start: &TargetStart<'_>) -> Option<FittedSource> {
+        let is_near = |star: &&KnownSource| {
+            star.position.distance(start.position) <= KNOWN_REACH_PX && star.flux_e > 1e-3 * start.flux_e
+        };
+        let near: Vec<KnownSource> = of.known.iter().filter(is_near).copied().collect();
+        self.fitter.target(of.light, start, &self.psf, &near)
+    }
+
+    fn cluster_candidate(
+        &self,
+        of: TargetContext<'_>,
+        source: &Source,
+        fit: Option<&FittedSource>,
+        log_odds: f64,
+    ) -> TargetCandidate {
+        let position = fit.map_or(source.centre, |fit| fit.position);
+        let fitted_flux_e = fit.map(|fit| fit.image.flux_e).filter(|flux_e| *flux_e > 0.0);
+        let variance_px2 = fit.map_or(0.1, |fit| {
+            let [xx, _, yy] = fit.image.covariance_px2;
+            xx.max(yy).min(4.0)
+        });
+        TargetCandidate {
+            position,
+            variance_px2,
+            flux_e_per_s: fitted_flux_e.unwrap_or(source.flux_e) / of.exposure_s,
+            is_flux_bounded: fitted_flux_e.is_none() && (source.saturated > 0 || source.is_cut),
+            log_odds,
+            evidence: None,
+            direction: self.direction(position, of.attitude),
+        }
+    }
+
+    pub(super) fn direction(
+        &self,
+        position: PixelPoint,
+        attitude: &FrameAttitude,
+    ) -> Option<Direction<Icrs>> {
+        Some(attitude.camera_from_icrs?.inverse() * self.model.back_project(position)?)
+    }
+
+    /// The target where the best track predicts it, when no candidate is there: too faint for a cluster, or merged with a star. What its light says for it
+    /// adds to the odds of the track, frame by frame: those of frames of which none would show the target alone are added up along the predicted motion.
+    fn predicted_candidate(
+        &mut self,
+        of: TargetContext<'_>,
+        others: &[CandidateImage],
+    ) -> Option<CandidateImage> {
+        let track = *self.tracks.best().next()?;
+        let sigma_px = track.variance_px2().sqrt();
+        if track.log_odds < PREDICTED_LOG_ODDS || sigma_px > PREDICTED_REACH_PX {
+            return None;
+        }
+        let reach_px = 4.0 * sigma_px + 1.0;
+        if others.iter().any(|other| other.candidate.position.distance(track.position) <= reach_px) {
+            return None;
+        }
+        let (rate, rate_sigma) = track.flux_e_per_s();
+        let expected_e = rate * of.exposure_s;
+        let fit = self.fit_point(of, track.position, sigma_px, expected_e)?;
+        let (flux_e, sigma_e) = (fit.image.flux_e, fit.image.flux_sigma_e);
+        let log_flux = libm::log((flux_e / expected_e).max(1e-9));
+        let evidence = evidence(flux_e, sigma_e, expected_e, rate_sigma * expected_e);
+        let is_seen = evidence > 0.0
+            && flux_e > PREDICTED_SNR * sigma_e
+            && log_flux.abs() < 3.0 * rate_sigma.max(0.3)
+            && fit.image.misfit() < CLUTTER_MISFIT;
+        let [xx, _, yy] = fit.image.covariance_px2;
+        is_seen.then(|| CandidateImage {
+            candidate: TargetCandidate {
+                position: fit.position,
+                variance_px2: xx.max(yy),
+                flux_e_per_s: flux_e / of.exposure_s,
+                is_flux_bounded: false,
+                log_odds: THRESHOLD_LOG_ODDS,
+                evidence: Some(evidence),
+                direction: self.direction(fit.position, of.attitude),
+            },
+            fit: Some(fit),
+            cluster: None,
+        })
+    }
+}
+
+/// Natural logarithm of the likelihood of a measured flux where one is expected, over that where there is none.
+fn evidence(flux: f64, sigma: f64, expected: f64, expected_sigma: f64) -> f64 {
+    let variance = sigma * sigma + expected_sigma * expected_sigma;
+    let (with, without) = (flux - expected, flux / sigma);
+    0.5 * (without * without - with * with / variance + libm::log(sigma * sigma / variance))
+}
+
+/// Clusters that may be the target, the brightest first.
+fn target_clusters(of: TargetContext<'_>, overrides: &Overrides<'_>) -> Vec<usize> {
+    let is_hot = |source: &Source| {
+        source.spike.is_some() || {
+            let (x, y) = (source.centre.x.round(), source.centre.y.round());
+            source.blob.pixels <= 2
+                && x >= 0.0
+                && y >= 0.0
+                && of.light.hot_pixels.contains(y as usize * of.light.frame.columns() + x as usize)
+        }
+    };
+    let mut clusters: Vec<usize> = (0..of.sources.len())
+        .filter(|&i| match overrides.identity {
+            Some(identity) => identity(of.sources[i].centre) == Identity::Neither,
+            None => of.attitude.star_of[i].is_none() && !is_hot(&of.sources[i]),
+        })
+        .collect();
+    clusters.sort_by(|&a, &b| of.sources[b].flux_e.total_cmp(&of.sources[a].flux_e).then(a.cmp(&b)));
+    clusters
+}
+
+/// Natural logarithm of the odds that a cluster is the target, by its brightness and shape alone.
+fn log_odds(source: &Source, fit: Option<&FittedSource>, threshold_e: f64) -> f64 {
+    let mut log_odds =
+        THRESHOLD_LOG_ODDS + CLUTTER_EXPONENT * libm::log((source.flux_e / threshold_e).max(1e-3));
+    if source.saturated == 0
+        && let Some(fit) = fit
+        && (fit.image.misfit() > CLUTTER_MISFIT || fit.image.width < 0.6)
+    {
+        log_odds -= MISFIT_LOG_ODDS;
+    }
+    log_odds
+}
