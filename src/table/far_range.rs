@@ -199,8 +199,9 @@ fn number(value: f64) -> String {
     format!("{value:.2}")
 }
 
-fn whole(value: f64) -> String {
-    format!("{value:.0}")
+/// A count. The interval of a mean count may begin below 0, where no count is.
+fn whole(count: f64) -> String {
+    format!("{:.0}", count.max(0.0))
 }
 
 fn pixels(px: f64) -> String {

@@ -2,8 +2,8 @@
 //! bounds are computed here, from another Gaussian integrated over pixels.
 
 use contract::{
-    Calibration, Camera, CameraFrame, Direction, Frame, Icrs, ListedStar, Outcome, Pipeline, PixelPoint,
-    PsfCalibration, Readout, Rotation, Setup, TargetCalibration, Telemetry,
+    AttitudeKnowledge, AttitudeSource, Calibration, Camera, CameraFrame, Direction, Frame, Icrs, ListedStar,
+    Outcome, Pipeline, PixelPoint, PsfCalibration, Readout, Rotation, Setup, TargetCalibration, Telemetry,
 };
 use hifitime::{Duration, Epoch};
 use nalgebra::{Matrix2x3, Matrix3, Matrix4, Vector3, Vector4};
@@ -275,37 +275,44 @@ fn attitude_bound(stars: &[(PixelPoint, f64)], side: usize) -> Matrix3<f64> {
     fisher.try_inverse().unwrap()
 }
 
+/// Side of the images of star fields, px.
+const FIELD_SIDE: usize = 160;
+
+/// Sixteen stars, one in each cell of a grid, by place and electrons, with an attitude and the list that has them there.
+fn star_field(number: usize) -> (Vec<(PixelPoint, f64)>, Rotation<CameraFrame, Icrs>, Vec<ListedStar>) {
+    const FLUXES_E: [f64; 5] = [3000.0, 6000.0, 15_000.0, 40_000.0, 120_000.0];
+    let stars: Vec<(PixelPoint, f64)> = (0..16)
+        .map(|k| {
+            let (u, v) = lattice(16 * number + k);
+            let cell = |i: usize, jitter: f64| 40.0 * i as f64 + 12.0 + 15.0 * jitter;
+            (PixelPoint::new(cell(k % 4, u), cell(k / 4, v)), FLUXES_E[(k + number) % FLUXES_E.len()])
+        })
+        .collect();
+    let (u, v) = lattice(number);
+    let truth = Rotation::from_rotation_vector(Vector3::new(3.0 * u, 3.0 * v, 1.0));
+    let listed = stars
+        .iter()
+        .zip(1..)
+        .map(|((place, electrons), id)| {
+            let centre = 0.5 * FIELD_SIDE as f64;
+            let ray = Vector3::new((place.x - centre) / FOCAL_PX, (place.y - centre) / FOCAL_PX, 1.0);
+            let seen: Direction<CameraFrame> = Direction::from_vector(ray).unwrap();
+            let magnitude = -2.5 * libm::log10(electrons / (0.25 * ZERO_MAGNITUDE_E_PER_S));
+            ListedStar { id, direction: truth.inverse() * seen, magnitude }
+        })
+        .collect();
+    (stars, truth, listed)
+}
+
 /// Sixteen stars a frame, 1000 frames: the RMS across the boresight is known to 1.6 %, that about it to 2.2 %.
 #[test]
 fn the_weighted_attitude_reaches_the_cramer_rao_bound() {
-    const SIDE: usize = 160;
     const FRAMES: usize = 1000;
-    const FLUXES_E: [f64; 5] = [3000.0, 6000.0, 15_000.0, 40_000.0, 120_000.0];
-    let sensor = sensor(SIDE, SIDE, None);
+    let sensor = sensor(FIELD_SIDE, FIELD_SIDE, None);
     let (mut across, mut roll) = (Errors::default(), Errors::default());
     let (mut bound_across, mut bound_roll) = (0.0, 0.0);
     for number in 0..FRAMES {
-        let stars: Vec<(PixelPoint, f64)> = (0..16)
-            .map(|k| {
-                let (u, v) = lattice(16 * number + k);
-                let cell = |i: usize, jitter: f64| 40.0 * i as f64 + 12.0 + 15.0 * jitter;
-                (PixelPoint::new(cell(k % 4, u), cell(k / 4, v)), FLUXES_E[(k + number) % FLUXES_E.len()])
-            })
-            .collect();
-        let (u, v) = lattice(number);
-        let truth: Rotation<CameraFrame, Icrs> =
-            Rotation::from_rotation_vector(Vector3::new(3.0 * u, 3.0 * v, 1.0));
-        let listed: Vec<ListedStar> = stars
-            .iter()
-            .zip(1..)
-            .map(|((place, electrons), id)| {
-                let centre = 0.5 * SIDE as f64;
-                let ray = Vector3::new((place.x - centre) / FOCAL_PX, (place.y - centre) / FOCAL_PX, 1.0);
-                let seen: Direction<CameraFrame> = Direction::from_vector(ray).unwrap();
-                let magnitude = -2.5 * libm::log10(electrons / (0.25 * ZERO_MAGNITUDE_E_PER_S));
-                ListedStar { id, direction: truth.inverse() * seen, magnitude }
-            })
-            .collect();
+        let (stars, truth, listed) = star_field(number);
         let raw = draw(&sensor, &PsfConfig::Gaussian { sigma_px: SIGMA_PX }, &stars, number as u64);
         let frame = downlink(&raw, 0, None).unwrap();
         let outcome = answer(calibration(0.0, 0.0), &frame, &listed, truth);
@@ -314,7 +321,7 @@ fn the_weighted_attitude_reaches_the_cramer_rao_bound() {
         across.add(error.x);
         across.add(error.y);
         roll.add(error.z);
-        let covariance = attitude_bound(&stars, SIDE);
+        let covariance = attitude_bound(&stars, FIELD_SIDE);
         bound_across += (covariance[(0, 0)] + covariance[(1, 1)]) / (2 * FRAMES) as f64;
         bound_roll += covariance[(2, 2)] / FRAMES as f64;
     }
@@ -334,6 +341,39 @@ fn the_weighted_attitude_reaches_the_cramer_rao_bound() {
             errors.rms()
         );
     }
+}
+
+/// A telemetry that is off by a multiple of what the calibration says: some of the sixteen stars lie by chance where others are looked for.
+#[test]
+fn a_prior_beyond_its_sigma_gives_no_false_attitude() {
+    const FRAMES: usize = 400;
+    let sensor = sensor(FIELD_SIDE, FIELD_SIDE, None);
+    let arcsec = |radians: f64| radians.to_degrees() * 3600.0;
+    // 6 px, where 30 px are meant.
+    let sigma = [0.0, 0.0, 0.0].map(|_: f64| arcsec(6.0 / FOCAL_PX));
+    let attitude = AttitudeKnowledge {
+        white_arcsec: sigma,
+        slow_arcsec: [1.0; 3],
+        slow_period_s: 1000.0,
+        constant_arcsec: [1.0; 3],
+    };
+    let (mut wrong, mut right, mut refused) = (0, 0, 0);
+    for number in 0..FRAMES {
+        let (stars, truth, listed) = star_field(number);
+        let raw = draw(&sensor, &PsfConfig::Gaussian { sigma_px: SIGMA_PX }, &stars, number as u64);
+        let frame = downlink(&raw, 0, None).unwrap();
+        let off = Rotation::from_rotation_vector(Vector3::new(40.0 / FOCAL_PX, -35.0 / FOCAL_PX, 0.0));
+        let calibration = Calibration { attitude: Some(attitude), ..calibration(0.0, 0.0) };
+        let outcome = answer(calibration, &frame, &listed, off * truth);
+        let error = (outcome.camera_from_icrs.unwrap() * truth.inverse()).quaternion().angle();
+        match outcome.attitude_source {
+            Some(AttitudeSource::Stars) if error < 0.5 / FOCAL_PX => right += 1,
+            Some(AttitudeSource::Stars) => wrong += 1,
+            _ => refused += 1,
+        }
+    }
+    println!("off beyond the search: {right} right, {wrong} wrong, {refused} refused of {FRAMES}");
+    assert!(100 * wrong <= FRAMES, "{wrong} of {FRAMES}");
 }
 
 /// A target so bright that its core is saturated, and whose image the region of interest cuts at the bottom: the first pixel

@@ -56,7 +56,7 @@ const BRIGHTER_MAG: f64 = 0.5;
 fn is_as_bright(candidate: &StarCandidate, star: &ExpectedStar) -> bool {
     let Some(flux_e) = star.flux_e else { return true };
     let ratio = libm::log(candidate.flux_e.max(1e-9) / flux_e.max(1e-9));
-    ratio >= LOG_FLUX_RATIO.0 && (ratio <= LOG_FLUX_RATIO.1 || candidate.is_saturated)
+    ratio <= LOG_FLUX_RATIO.1 && (ratio >= LOG_FLUX_RATIO.0 || candidate.is_saturated)
 }
 
 /// Matches candidates with expected stars through the common offset of the image that explains most of them: pairs (candidate, star).

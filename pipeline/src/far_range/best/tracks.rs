@@ -4,6 +4,8 @@
 //! clusters, in position and flux, against that of clutter (Bar-Shalom & Li 1995, Multitarget-Multisensor Tracking, Sec. 7.3), and fall
 //! when it is not seen and when its cluster moves as the stars do.
 
+use std::collections::VecDeque;
+
 use contract::{Direction, Icrs, PixelPoint};
 
 /// A cluster that may be the target.
@@ -84,6 +86,9 @@ const OWN_MOTION: f64 = 1.5;
 /// Distance from where the stars went within which a cluster moved with them, and beyond which it did not, px.
 const WITH_STARS_PX: f64 = 0.8;
 const APART_PX: f64 = 2.0;
+
+/// Frames whose candidates are remembered, to tell stars that no list has from the target.
+const RECENT_FRAMES: usize = 3;
 
 /// Normalised distance, squared, within which a candidate continues a track.
 const GATE: f64 = 20.0;
@@ -212,12 +217,15 @@ impl Track {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tracks {
     tracks: Vec<Track>,
+    /// Candidates of the last frames, the latest frame first: where they were in the image and among the stars.
+    recent: VecDeque<Vec<(PixelPoint, Direction<Icrs>)>>,
 }
 
 impl Tracks {
     /// Ends all tracks.
     pub(super) fn clear(&mut self) {
         self.tracks.clear();
+        self.recent.clear();
     }
 
     /// Moves all tracks to the next frame.
@@ -277,11 +285,32 @@ impl Tracks {
         for track in self.tracks.iter_mut().filter(|track| track.candidate.is_none()) {
             track.miss(model);
         }
-        let new = candidates.iter().enumerate().filter(|(c, new)| !is_taken[*c] && new.evidence.is_none());
-        self.tracks.extend(new.map(|(c, candidate)| Track::new(c, candidate, model)));
+        let with_stars = self.moved_with_the_stars(position_of);
+        for (c, candidate) in candidates.iter().enumerate() {
+            if is_taken[c] || candidate.evidence.is_some() {
+                continue;
+            }
+            let reach_px = WITH_STARS_PX + 2.0 * candidate.variance_px2.sqrt();
+            let is_star = with_stars.iter().any(|at| at.distance(candidate.position) < reach_px);
+            let mut track = Track::new(c, candidate, model);
+            track.log_odds -= if is_star { STAR_MOTION } else { 0.0 };
+            self.tracks.push(track);
+        }
+        self.recent.push_front(candidates.iter().filter_map(|c| Some((c.position, c.direction?))).collect());
+        self.recent.truncate(RECENT_FRAMES);
         self.tracks
             .retain(|track| track.misses <= MAX_MISSES && (track.misses == 0 || track.log_odds > -10.0));
         self.tracks.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds).then(b.hits.cmp(&a.hits)));
         self.tracks.truncate(MAX_TRACKS);
+    }
+
+    /// Where the candidates of the last frames are in the image now if they are stars, as far as the stars have moved since.
+    fn moved_with_the_stars(
+        &self,
+        position_of: &dyn Fn(&Direction<Icrs>) -> Option<PixelPoint>,
+    ) -> Vec<PixelPoint> {
+        let recent = self.recent.iter().flatten();
+        let now = recent.filter_map(|(before, direction)| Some((before, position_of(direction)?)));
+        now.filter(|(before, now)| now.distance(**before) > APART_PX).map(|(_, now)| now).collect()
     }
 }
