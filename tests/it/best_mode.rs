@@ -278,30 +278,56 @@ fn attitude_bound(stars: &[(PixelPoint, f64)], side: usize) -> Matrix3<f64> {
 /// Side of the images of star fields, px.
 const FIELD_SIDE: usize = 160;
 
-/// Sixteen stars, one in each cell of a grid, by place and electrons, with an attitude and the list that has them there.
-fn star_field(number: usize) -> (Vec<(PixelPoint, f64)>, Rotation<CameraFrame, Icrs>, Vec<ListedStar>) {
+/// Sixteen stars, one in each cell of a grid, so that no two are merged; with an attitude and the list that has them there.
+fn star_grid(number: usize) -> StarField {
     const FLUXES_E: [f64; 5] = [3000.0, 6000.0, 15_000.0, 40_000.0, 120_000.0];
-    let stars: Vec<(PixelPoint, f64)> = (0..16)
-        .map(|k| {
-            let (u, v) = lattice(16 * number + k);
-            let cell = |i: usize, jitter: f64| 40.0 * i as f64 + 12.0 + 15.0 * jitter;
-            (PixelPoint::new(cell(k % 4, u), cell(k / 4, v)), FLUXES_E[(k + number) % FLUXES_E.len()])
-        })
-        .collect();
-    let (u, v) = lattice(number);
-    let truth = Rotation::from_rotation_vector(Vector3::new(3.0 * u, 3.0 * v, 1.0));
-    let listed = stars
-        .iter()
-        .zip(1..)
-        .map(|((place, electrons), id)| {
+    let star = |k: usize| {
+        let (u, v) = lattice(16 * number + k);
+        let cell = |i: usize, jitter: f64| 40.0 * i as f64 + 12.0 + 15.0 * jitter;
+        (PixelPoint::new(cell(k % 4, u), cell(k / 4, v)), FLUXES_E[(k + number) % FLUXES_E.len()])
+    };
+    StarField::of((0..16).map(star).collect(), number)
+}
+
+/// Twenty stars at random places with random fluxes, N(> F) ∝ F^−1.2.
+fn random_stars(number: usize) -> StarField {
+    // SplitMix64 (Steele, Lea & Flood 2014).
+    let uniform = |i: usize| {
+        let mut z = (20 * number as u64 * 3 + i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let star = |k: usize| {
+        let [x, y, flux] = [0, 1, 2].map(|i| uniform(3 * k + i));
+        let place = PixelPoint::new(FIELD_SIDE as f64 * x, FIELD_SIDE as f64 * y);
+        (place, 2500.0 * libm::pow(flux, -1.0 / 1.2))
+    };
+    StarField::of((0..20).map(star).collect(), number)
+}
+
+struct StarField {
+    /// Place and electrons of each star.
+    stars: Vec<(PixelPoint, f64)>,
+    camera_from_icrs: Rotation<CameraFrame, Icrs>,
+    /// The list that has them there.
+    listed: Vec<ListedStar>,
+}
+
+impl StarField {
+    fn of(stars: Vec<(PixelPoint, f64)>, number: usize) -> Self {
+        let (u, v) = lattice(number);
+        let camera_from_icrs = Rotation::from_rotation_vector(Vector3::new(3.0 * u, 3.0 * v, 1.0));
+        let listed = |((place, electrons), id): (&(PixelPoint, f64), u32)| {
             let centre = 0.5 * FIELD_SIDE as f64;
             let ray = Vector3::new((place.x - centre) / FOCAL_PX, (place.y - centre) / FOCAL_PX, 1.0);
             let seen: Direction<CameraFrame> = Direction::from_vector(ray).unwrap();
             let magnitude = -2.5 * libm::log10(electrons / (0.25 * ZERO_MAGNITUDE_E_PER_S));
-            ListedStar { id, direction: truth.inverse() * seen, magnitude }
-        })
-        .collect();
-    (stars, truth, listed)
+            ListedStar { id, direction: camera_from_icrs.inverse() * seen, magnitude }
+        };
+        let listed = stars.iter().zip(1..).map(listed).collect();
+        Self { stars, camera_from_icrs, listed }
+    }
 }
 
 /// Sixteen stars a frame, 1000 frames: the RMS across the boresight is known to 1.6 %, that about it to 2.2 %.
@@ -312,7 +338,7 @@ fn the_weighted_attitude_reaches_the_cramer_rao_bound() {
     let (mut across, mut roll) = (Errors::default(), Errors::default());
     let (mut bound_across, mut bound_roll) = (0.0, 0.0);
     for number in 0..FRAMES {
-        let (stars, truth, listed) = star_field(number);
+        let StarField { stars, camera_from_icrs: truth, listed } = star_grid(number);
         let raw = draw(&sensor, &PsfConfig::Gaussian { sigma_px: SIGMA_PX }, &stars, number as u64);
         let frame = downlink(&raw, 0, None).unwrap();
         let outcome = answer(calibration(0.0, 0.0), &frame, &listed, truth);
@@ -343,7 +369,7 @@ fn the_weighted_attitude_reaches_the_cramer_rao_bound() {
     }
 }
 
-/// A telemetry that is off by a multiple of what the calibration says: some of the sixteen stars lie by chance where others are looked for.
+/// A telemetry that is off by a multiple of what the calibration says: some of twenty stars lie by chance where others are looked for.
 #[test]
 fn a_prior_beyond_its_sigma_gives_no_false_attitude() {
     const FRAMES: usize = 400;
@@ -359,7 +385,7 @@ fn a_prior_beyond_its_sigma_gives_no_false_attitude() {
     };
     let (mut wrong, mut right, mut refused) = (0, 0, 0);
     for number in 0..FRAMES {
-        let (stars, truth, listed) = star_field(number);
+        let StarField { stars, camera_from_icrs: truth, listed } = random_stars(number);
         let raw = draw(&sensor, &PsfConfig::Gaussian { sigma_px: SIGMA_PX }, &stars, number as u64);
         let frame = downlink(&raw, 0, None).unwrap();
         let off = Rotation::from_rotation_vector(Vector3::new(40.0 / FOCAL_PX, -35.0 / FOCAL_PX, 0.0));

@@ -206,7 +206,8 @@ impl BestPipeline {
         let at_centre = image_covariance(&error.covariance, 0.1, 0.1, (fx, fy));
         let gate_px = 2.0 + 3.5 * at_centre[(0, 0)].max(at_centre[(1, 1)]).sqrt();
         let is_in_image = |position: PixelPoint| light.is_well_inside(position, gate_px);
-        let is_chance = n_stars > 0 && !are_confirmed(&matched, &candidates, &expected, gate_px, is_in_image);
+        let is_chance = n_stars > 0
+            && !are_confirmed(&matched, &candidates, &expected, gate_px, light.threshold_e, is_in_image);
         if is_chance {
             error = prior;
             camera_from_icrs = of(prior.mean);

@@ -164,6 +164,8 @@ pub(super) struct FrameLight<'a> {
     pub(super) detector: &'a Detector,
     pub(super) model: &'a PhotometryModel,
     pub(super) hot_pixels: &'a HotPixels,
+    /// Flux of a point whose central pixel is at the threshold of clusters, electrons.
+    pub(super) threshold_e: f64,
 }
 
 impl FrameLight<'_> {
@@ -395,7 +397,7 @@ impl SourceFitter {
         known: &[Neighbour],
         spills: bool,
     ) {
-        let FrameLight { frame, detector, model, hot_pixels } = light;
+        let FrameLight { frame, detector, model, hot_pixels, .. } = light;
         let columns = frame.columns();
         self.saturated.clear();
         for row in 0..window.rows {

@@ -162,15 +162,21 @@ impl BestPipeline {
         let photometry = self.photometry(frame, background);
         let detector = std::mem::take(&mut self.detector);
         let hot_pixels = std::mem::take(&mut self.hot_pixels);
-        let light = FrameLight { frame, detector: &detector, model: &photometry, hot_pixels: &hot_pixels };
+        let threshold_e =
+            self.threshold_flux_e(f64::from(thresholds.high_dn) - background.median_dn, &photometry);
+        let light = FrameLight {
+            frame,
+            detector: &detector,
+            model: &photometry,
+            hot_pixels: &hot_pixels,
+            threshold_e,
+        };
         let sources: Vec<Source> = blobs
             .iter()
             .enumerate()
             .map(|(i, blob)| photometry.source(frame, blob, detector.members(i), &self.psf.image([0.0; 2])))
             .collect();
-        let threshold_e =
-            self.threshold_flux_e(f64::from(thresholds.high_dn) - background.median_dn, &photometry);
-        let outcome = self.answer(light, &sources, threshold_e, telemetry, elapsed_s, overrides);
+        let outcome = self.answer(light, &sources, telemetry, elapsed_s, overrides);
         self.detector = detector;
         self.hot_pixels = hot_pixels;
         for spike in sources.iter().filter_map(|source| source.spike) {
@@ -227,7 +233,6 @@ impl BestPipeline {
         &mut self,
         light: FrameLight<'_>,
         sources: &[Source],
-        threshold_e: f64,
         telemetry: &Telemetry,
         elapsed_s: Option<f64>,
         overrides: &Overrides<'_>,
@@ -240,14 +245,13 @@ impl BestPipeline {
         };
         let known = self.known_sources(&attitude, trail_px);
         let exposure_s = telemetry.exposure_s;
-        let of =
-            TargetContext { light, sources, threshold_e, attitude: &attitude, known: &known, exposure_s };
+        let of = TargetContext { light, sources, attitude: &attitude, known: &known, exposure_s };
         let mut images = self.candidates(of, overrides);
         let candidates: Vec<TargetCandidate> = images.iter().map(|image| image.candidate).collect();
         let track_model = TrackModel {
             max_speed_px_per_s: self.config.best.max_speed_px_per_s,
             clutter_per_px2: (candidates.len() as f64 + 1.0) / transmitted_pixels(light.frame).max(1) as f64,
-            threshold_e_per_s: threshold_e / exposure_s,
+            threshold_e_per_s: light.threshold_e / exposure_s,
         };
         let model = &self.model;
         let position_of = |direction: &Direction<Icrs>| {

@@ -135,23 +135,28 @@ pub(super) fn matches_at_positions(
     matched
 }
 
-/// Whether matched stars are more than a coincidence: as many of the listed stars that are as bright must have an image as have none.
-/// `is_in_image` tells whether the position of a star was transmitted.
+/// Whether matched stars are more than a coincidence: of the listed stars that must have an image no more may lack one than are matched. A variable star or a
+/// stain on a lens leaves out one, a wrong offset nearly all. `is_in_image` tells whether the position of a star was transmitted.
 ///
-/// Of the stars brighter than half of the matched ones by half a magnitude, an image is missing where no candidate is within `gate_px`. A variable star or a
-/// stain on a lens leaves out one, a wrong offset nearly all.
+/// An image must be within `gate_px` of a star that is bright enough even if V shows it too bright; as long as the brightness scale is not known, of one that is
+/// half a magnitude brighter than half of the matched ones.
 pub(super) fn are_confirmed(
     matched: &[(usize, usize)],
     candidates: &[StarCandidate],
     stars: &[ExpectedStar],
     gate_px: f64,
+    threshold_e: f64,
     is_in_image: impl Fn(PixelPoint) -> bool,
 ) -> bool {
     let mut magnitudes: Vec<f64> = matched.iter().map(|&(_, s)| stars[s].star.magnitude).collect();
     magnitudes.sort_by(f64::total_cmp);
     let Some(&median) = magnitudes.get(magnitudes.len() / 2) else { return false };
     let is_missing = |star: &&ExpectedStar| {
-        star.star.magnitude < median - BRIGHTER_MAG
+        let is_bright = match star.flux_e {
+            Some(flux_e) => libm::log(flux_e / threshold_e) + LOG_FLUX_RATIO.0 > 0.0,
+            None => star.star.magnitude < median - BRIGHTER_MAG,
+        };
+        is_bright
             && is_in_image(star.position)
             && !candidates.iter().any(|candidate| candidate.position.distance(star.position) <= gate_px)
     };

@@ -14,8 +14,6 @@ use crate::far_range::overrides::{Identity, Overrides};
 pub(super) struct TargetContext<'a> {
     pub(super) light: FrameLight<'a>,
     pub(super) sources: &'a [Source],
-    /// Flux of a point whose central pixel is at the threshold of clusters, electrons.
-    pub(super) threshold_e: f64,
     pub(super) attitude: &'a FrameAttitude,
     /// Listed stars of known flux.
     pub(super) known: &'a [KnownSource],
@@ -68,7 +66,7 @@ impl BestPipeline {
             let source = &of.sources[i];
             let is_fitted = images.len() < max_fitted || self.tracks.is_expected(source.centre);
             let fit = is_fitted.then(|| self.fit_cluster(of, i)).flatten();
-            let log_odds = log_odds(source, fit.as_ref(), of.threshold_e);
+            let log_odds = log_odds(source, fit.as_ref(), of.light.threshold_e);
             let candidate = self.cluster_candidate(of, source, fit.as_ref(), log_odds);
             images.push(CandidateImage { candidate, fit, cluster: Some(i) });
         }
