@@ -37,6 +37,8 @@ DETECTION = [
     ("process-plain", "**Boresight**: the far-range pipeline", 50),
     ("process-argon-whole", "Boresight: on whole frames of ARGON, with identification and tracks", 50),
     ("process-argon-regions", "Boresight: the same on 40 regions", 50),
+    ("process-argon-best-whole", "Boresight: the best mode on whole frames of ARGON", 50),
+    ("process-argon-best-regions", "Boresight: the same on 40 regions", 50),
 ]
 FRAMES_COMPARED = 8
 ANCHOR = "getframes 2.6: `Camera.observe`"

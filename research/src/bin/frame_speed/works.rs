@@ -8,7 +8,7 @@ use boresight::run::{FarRangeMission, World as _};
 use boresight::scenario::FarRangeScenario;
 use contract::{Frame, Outcome, Pipeline, Rotation, Setup, Telemetry};
 use hifitime::{Epoch, Unit};
-use pipeline::far_range::{FarRangeConfig, FarRangePipeline};
+use pipeline::far_range::{FarRangeConfig, FarRangePipeline, Mode};
 use sim::Simulator;
 use sim::onboard::ShutterConfig;
 use sim::scene::BackgroundConfig;
@@ -25,6 +25,9 @@ const FRAMES_OF_A_DAY: u64 = 10;
 const STEP: u64 = 20;
 /// Frames that are kept for detection.
 const KEPT: u64 = 8;
+
+/// The same of ARGON: after the last the pipeline begins anew.
+const KEPT_OF_ARGON: u64 = 64;
 
 type Step = Box<dyn FnMut() -> Result<Option<Outcome>, Box<dyn Error>>>;
 
@@ -73,8 +76,12 @@ pub(crate) fn works(scene: &PlainScene) -> Result<Vec<Work>, Box<dyn Error>> {
     }
     let setup = FarRangeMission::new(&source)?.setup().clone();
     works.push(detection_plain(scene, &setup)?);
-    works.push(detection("process-argon-regions", regions, &scenario.far_range, &setup)?);
-    works.push(detection("process-argon-whole", whole, &scenario.far_range, &setup)?);
+    let best = FarRangeConfig { mode: Mode::Best, ..scenario.far_range.clone() };
+    for (images, simulator) in [("regions", regions), ("whole", whole)] {
+        for (mode, config) in [("", &scenario.far_range), ("-best", &best)] {
+            works.push(detection(&format!("process-argon{mode}-{images}"), simulator, config, &setup)?);
+        }
+    }
     Ok(works)
 }
 
@@ -167,7 +174,7 @@ fn detection(
     setup: &Setup,
 ) -> Result<Work, Box<dyn Error>> {
     let mut camera = simulator.camera()?;
-    let kept = (0..KEPT)
+    let kept = (0..KEPT_OF_ARGON)
         .map(|number| {
             let exposure = camera.expose(5000 + number)?;
             Ok((exposure.frame, exposure.telemetry))
