@@ -123,7 +123,7 @@ pub fn joint_test(figures: &[BlockEffects], exchanges: &Exchanges, alpha: f64) -
     let statistics = |set: Set<'_>, into: &mut [f64]| {
         into.fill(0.0);
         for (block, row) in rows.chunks_exact(figures.len().max(1)).enumerate() {
-            let sign = if set.has(block) { -1.0 } else { 1.0 };
+            let sign = 1.0 - 2.0 * f64::from(u8::from(set.has(block)));
             into.iter_mut().zip(row).for_each(|(sum, effect)| *sum += sign * effect);
         }
         for (value, root) in into.iter_mut().zip(&roots) {

@@ -169,20 +169,21 @@ pub(crate) fn interval(
 enum Side {
     /// Sum and count of each block; whether the figure is the root of their ratio.
     Ratio { blocks: Vec<(f64, f64)>, is_root: bool },
-    /// Values in order, each with its block; and how many each block has.
-    Sorted { values: Vec<(f64, usize)>, counts: Vec<usize> },
+    /// Values in order, the block of each, and how many each block has.
+    Sorted { values: Vec<f64>, blocks: Vec<u32>, counts: Vec<usize> },
 }
 
 impl Side {
     fn of_run(reduction: Reduction, terms: &[Term], blocks: &Blocks) -> Self {
         if reduction == Reduction::Median {
             let with_value = terms.iter().enumerate().filter(|(_, term)| term.of > 0);
-            let mut sorted: Vec<(f64, usize)> =
-                with_value.map(|(unit, term)| (term.sum, blocks.of(unit))).collect();
+            let mut sorted: Vec<(f64, u32)> =
+                with_value.map(|(unit, term)| (term.sum, blocks.of(unit) as u32)).collect();
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
             let mut counts = vec![0; blocks.count()];
-            sorted.iter().for_each(|(_, block)| counts[*block] += 1);
-            return Self::Sorted { values: sorted, counts };
+            sorted.iter().for_each(|(_, block)| counts[*block as usize] += 1);
+            let (values, blocks) = sorted.into_iter().unzip();
+            return Self::Sorted { values, blocks, counts };
         }
         let mut sums = vec![(0.0, 0.0); blocks.count()];
         for (unit, (sum, of)) in Sums::of_terms(terms, reduction, 0.0).units.into_iter().enumerate() {
@@ -195,19 +196,33 @@ impl Side {
     fn value(&self, taken: &[bool]) -> Option<f64> {
         match self {
             Self::Ratio { blocks, is_root } => {
-                let (sum, of) = blocks
-                    .iter()
-                    .enumerate()
-                    .filter(|(block, _)| taken[*block])
-                    .fold((0.0, 0.0), |(sum, of), (_, block)| (sum + block.0, of + block.1));
+                let (mut sum, mut of) = (0.0, 0.0);
+                // Without a branch: half of the blocks are taken, at random.
+                for (block, taken) in blocks.iter().zip(taken) {
+                    sum += if *taken { block.0 } else { 0.0 };
+                    of += if *taken { block.1 } else { 0.0 };
+                }
                 let ratio = (of > 0.0).then(|| sum / of)?;
                 Some(if *is_root { ratio.max(0.0).sqrt() } else { ratio })
             }
-            Self::Sorted { values, counts } => {
+            Self::Sorted { values, blocks, counts } => {
                 let count: usize =
-                    counts.iter().zip(taken).filter(|(_, taken)| **taken).map(|(count, _)| count).sum();
-                let chosen = values.iter().filter(|(_, block)| taken[*block]).map(|(value, _)| *value);
-                let mut middle = chosen.skip(count.checked_sub(1)? / 2);
+                    counts.iter().zip(taken).map(|(count, taken)| count * usize::from(*taken)).sum();
+                let mut before = count.checked_sub(1)? / 2;
+                let is_taken = |block: &u32| taken[*block as usize];
+                // Whole parts before the middle are counted without a branch.
+                let mut first = 0;
+                for part in blocks.chunks(64) {
+                    let of_part: usize = part.iter().map(|block| usize::from(is_taken(block))).sum();
+                    if of_part > before {
+                        break;
+                    }
+                    before -= of_part;
+                    first += part.len();
+                }
+                let rest = values[first..].iter().zip(&blocks[first..]);
+                let mut middle =
+                    rest.filter(|(_, block)| is_taken(block)).map(|(value, _)| *value).skip(before);
                 let lower = middle.next()?;
                 Some(if count % 2 == 1 { lower } else { f64::midpoint(lower, middle.next()?) })
             }
