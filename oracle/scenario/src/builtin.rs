@@ -1,5 +1,6 @@
 //! Scenarios that are embedded in the binary.
 use std::path::Path;
+use std::sync::LazyLock;
 
 use super::FarRangeScenario;
 use crate::run_file::ScenarioFile;
@@ -23,9 +24,11 @@ pub const BUILT_IN: &[BuiltIn] = &[
 /// Whether a scenario flies what the built-in `argon` flies, the same orbits and the same images, and counts errors within the same
 /// limits. Only then do the figures that the paper publishes stand beside its own.
 pub fn is_argon(scenario: &FarRangeScenario) -> bool {
-    let built_in = BUILT_IN.iter().find(|built_in| built_in.name == "argon");
-    let argon = built_in.and_then(|argon| FarRangeScenario::parse(Path::new("argon"), argon.text).ok());
-    argon.is_some_and(|argon| {
+    static ARGON: LazyLock<Option<FarRangeScenario>> = LazyLock::new(|| {
+        let built_in = BUILT_IN.iter().find(|built_in| built_in.name == "argon")?;
+        FarRangeScenario::parse(Path::new("argon"), built_in.text).ok()
+    });
+    ARGON.as_ref().is_some_and(|argon| {
         argon.orbit == scenario.orbit
             && argon.schedule == scenario.schedule
             && argon.score.within_deg == scenario.score.within_deg

@@ -50,13 +50,36 @@ const CONE_MARGIN: f64 = 1e-4;
 /// Of the sine of a declination, far more than rounding makes of it.
 const ROUNDING: f64 = 1e-9;
 
+/// The sine of the declination and the place of each star, from the south to the north.
+///
+/// In two steps, because a sky of stars is sorted for every case of a study: into belts of the same area, and within each.
+fn by_declination(stars: &[ListedStar]) -> Vec<(f64, u32)> {
+    let belts = stars.len().clamp(1, 1 << 14);
+    let sine = |star: &ListedStar| star.direction.vector().z;
+    let belt = |star: &ListedStar| ((0.5 * (sine(star) + 1.0) * belts as f64) as usize).min(belts - 1);
+    // Where the stars of each belt begin.
+    let mut next = vec![0; belts + 1];
+    stars.iter().for_each(|star| next[belt(star) + 1] += 1);
+    (0..belts).for_each(|i| next[i + 1] += next[i]);
+    let mut sorted = vec![(0.0, 0); stars.len()];
+    for (star, place) in stars.iter().zip(0..) {
+        let at = &mut next[belt(star)];
+        sorted[*at] = (sine(star), place);
+        *at += 1;
+    }
+    let mut first = 0;
+    for end in next.into_iter().take(belts) {
+        sorted[first..end].sort_by(|a, b| a.0.total_cmp(&b.0));
+        first = end;
+    }
+    sorted
+}
+
 impl StarList {
     pub(super) fn new(stars: &[ListedStar], max_magnitude: f64, model: &CameraModel) -> Self {
         let bright_enough = |star: &&ListedStar| star.magnitude <= max_magnitude;
         let stars: Vec<_> = stars.iter().filter(bright_enough).copied().collect();
-        let mut by_declination: Vec<_> =
-            stars.iter().zip(0..).map(|(star, place)| (star.direction.vector().z, place)).collect();
-        by_declination.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let by_declination = by_declination(&stars);
         Self { stars, by_declination, cos_cone: (model.cos_half_field() - CONE_MARGIN).max(0.0) }
     }
 

@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 
 use spectra::Spectrum;
 
+use crate::memo::Memo;
+
 /// V magnitude of the Sun at 1 au (Willmer 2018, ApJS 236, 47: −26.76, Vega system, Johnson V).
 pub const SUN_V_MAG_AT_1_AU: f64 = -26.76;
 
@@ -92,12 +94,19 @@ pub struct Radiometry {
     collecting_area_m2: Option<f64>,
 }
 
+/// The latest that were prepared: the integrals over all spectra are those of a few cameras.
+static PREPARED: Memo<RadiometryConfig, Radiometry> = Memo::new();
+
 impl Radiometry {
     /// Prepares the conversion.
     ///
     /// # Errors
     /// [`OutOfRange`] for a number outside its range, or when the detector sees nothing of the light.
     pub fn new(config: &RadiometryConfig) -> Result<Self, OutOfRange> {
+        Ok((*PREPARED.get(config.clone(), Self::prepared)?).clone())
+    }
+
+    fn prepared(config: &RadiometryConfig) -> Result<Self, OutOfRange> {
         config.check()?;
         let prepared = match config {
             RadiometryConfig::ZeroPoint { zero_point_e_per_s } => Self {

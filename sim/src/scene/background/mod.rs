@@ -91,7 +91,7 @@ pub struct Background {
     /// Of the grid, row by row.
     nodes: Vec<Node>,
     /// Of the Earth's light, which comes in many rays.
-    earth_transmittance: Option<TransmittanceTable>,
+    earth_transmittance: Option<Arc<TransmittanceTable>>,
     /// Electrons a second and pixel of 1 S10, by a steradian of the pixel.
     s10_e_per_s_sr: f64,
     /// Electrons a second and pixel when sunlight as at 1 au falls on the bare detector; `None` when the aperture is unknown.
@@ -155,7 +155,7 @@ impl Background {
             })
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Some(Self {
-            earth_transmittance: config.earth.as_ref().map(|earth| TransmittanceTable::new(&earth.scatter)),
+            earth_transmittance: config.earth.as_ref().map(|earth| TransmittanceTable::of(&earth.scatter)),
             config: config.clone(),
             grid,
             nodes,

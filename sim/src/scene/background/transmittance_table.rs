@@ -1,6 +1,10 @@
 //! The transmittance of a stray light law from a table, for sources of many rays.
 
+use std::convert::Infallible;
+use std::sync::Arc;
+
 use super::stray::StrayLightConfig;
+use crate::memo::Memo;
 
 /// Steps between a number and its double.
 const STEPS_LOG2: u32 = 9;
@@ -27,8 +31,17 @@ pub(super) struct TransmittanceTable {
     far: Vec<f64>,
 }
 
+/// The latest that were made.
+static MADE: Memo<StrayLightConfig, TransmittanceTable> = Memo::new();
+
 impl TransmittanceTable {
-    pub(super) fn new(law: &StrayLightConfig) -> Self {
+    /// That of a law, made once.
+    pub(super) fn of(law: &StrayLightConfig) -> Arc<Self> {
+        let Ok(table) = MADE.get(law.clone(), |law| Ok::<_, Infallible>(Self::new(law)));
+        table
+    }
+
+    fn new(law: &StrayLightConfig) -> Self {
         let steps = 1 << STEPS_LOG2;
         let value = |i: u32| {
             let octave = f64::from(1_u32 << (OCTAVES - i / steps).min(31));
