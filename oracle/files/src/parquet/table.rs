@@ -12,9 +12,9 @@ use crate::table::column::Column;
 use crate::{FileError, WholeFile};
 
 /// Rows held before they are encoded, and read at a time.
-const BATCH_ROWS: usize = 8192;
+const BATCH_ROWS: usize = 1024;
 /// Rows whose encoded bytes are held before they are written.
-const ROW_GROUP_ROWS: usize = 131_072;
+const ROW_GROUP_ROWS: usize = 16_384;
 
 /// A row of a table that is kept as Parquet.
 pub trait Row: Sized {

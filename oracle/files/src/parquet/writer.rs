@@ -25,6 +25,9 @@ use crate::table::column::{Cells, Coding, Column, ColumnValues, TextCells};
 /// Bytes that are written at once: the crate copies columns into a file 8 KB at a time.
 const BUFFER_BYTES: usize = 1 << 18;
 
+/// Largest dictionary of a column in a row group: that of a column without repeats would hold all of its values twice.
+const DICTIONARY_BYTES: usize = 1 << 16;
+
 /// What a file has beside its columns.
 #[derive(Debug, Clone)]
 pub struct TableOptions {
@@ -178,6 +181,7 @@ fn properties(columns: &[Column], options: &TableOptions) -> WriterProperties {
     let notes: Vec<KeyValue> = notes.collect();
     let mut properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
+        .set_dictionary_page_size_limit(DICTIONARY_BYTES)
         .set_key_value_metadata((!notes.is_empty()).then_some(notes));
     if !options.has_statistics {
         properties = properties.set_statistics_enabled(EnabledStatistics::None);
