@@ -223,6 +223,13 @@ def opencv(court):
     return "poses nearer to the truth than OpenCV's in every row"
 
 
+def night_sky(court):
+    """Attitudes of the images of the night sky that GalSim draws."""
+    python = court.environment("night-sky", GOLDEN / "night_sky" / "requirements.txt")
+    frames = ["--frames", "3"] if court.fast else []
+    return claims_of(court.run(python, GOLDEN / "night_sky" / "check.py", court.program("boresight"), *frames))
+
+
 def docking(court):
     """Mitsuba's images of the docking target, made again; the smallest one alone when it must be fast."""
     python = court.environment("mitsuba", GOLDEN / "docking" / "requirements.txt")
@@ -263,6 +270,7 @@ WITNESSES = {
     "extractor": ("SEP: recall and places of stars", looks("extractor.py", ["--pointings", "20"])),
     "tetra3rs": ("tetra3rs: boresights, lost in space", looks("plate_solve.py", ["--pointings", "60"])),
     "astrometry.net": ("astrometry.net: boresights, lost in space", looks("astrometry_net.py", ["--pointings", "15"], needs=ASTROMETRY_NET)),
+    "night_sky": ("GalSim, OpenCV: attitudes of night-sky images of four cameras", night_sky),
     "opencv": ("OpenCV: poses of the docking target", opencv),
     "mitsuba": ("Mitsuba: closed forms", mitsuba),
 }
