@@ -516,8 +516,7 @@ fn a_target_that_fades_is_followed_below_what_a_frame_shows() {
 #[test]
 fn noise_alone_is_no_target() {
     let answered: usize = (0..5)
-        .map(|run| sequence(|_| 0.0, 60, 300_000 + 100 * run))
-        .flatten()
+        .flat_map(|run| sequence(|_| 0.0, 60, 300_000 + 100 * run))
         .filter(|error| error.is_finite())
         .count();
     println!("{answered} answers to 300 frames of noise");
