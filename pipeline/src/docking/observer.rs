@@ -18,6 +18,7 @@ use super::extraction::outline::{self, OutlineTrack, RESOLVED_CIRCLE_PX, SMALLES
 use super::extraction::range_memory::RangeMemory;
 use super::extraction::recognise::{Recognition, Sight};
 use super::extraction::self_check;
+use super::portions::OutlineRange;
 use super::pose::model_fit::{Fitted, ModelFit};
 use super::pose::paper_pose::{PaperMeasurement, PaperTarget};
 use super::pose::paper_sigma;
@@ -51,6 +52,8 @@ pub(crate) struct Observed {
     pub(crate) common: Matrix6<f64>,
     /// Whether only one of the two ways to a pose has one, cross and circle or the best estimator: it needs the motion's confirmation.
     pub(crate) is_backup: bool,
+    /// The range by the station's outline, which the motion takes too.
+    pub(crate) outline: Option<OutlineRange>,
     /// Where brightness and contrast are to be judged.
     pub(crate) region: Rectangle,
 }
@@ -63,6 +66,7 @@ impl Observed {
             features: Features::default(),
             common: Matrix6::zeros(),
             is_backup: false,
+            outline: None,
             region: Rectangle::ALL,
         }
     }
@@ -129,6 +133,7 @@ impl Observer {
             self.track.reset();
             observed.solution = DockingSolution::NoSolution(NoPose::Inconsistent);
             observed.paper = None;
+            observed.outline = None;
         }
         observed
     }
@@ -201,6 +206,9 @@ impl Observer {
         let Observed { features, region, .. } = &mut observed;
         observed.solution = outline::range(lens, &self.target, outline, features, region, reason)
             .unwrap_or_else(DockingSolution::NoSolution);
+        if let DockingSolution::RangeOnly { .. } = observed.solution {
+            observed.outline = outline.range(&self.target.station, lens.focal_px());
+        }
         observed
     }
 
@@ -260,7 +268,8 @@ impl Observer {
             // Cross and marks are there and of one target: the paper's pose is worse than the best one, and better than none.
             Err(_) => (by_features, Matrix6::zeros(), None, true),
         };
-        match self_check::range(sheet.view, lens, &self.target, cross, plane, &best) {
+        let outline = self_check::outline(sheet.view, lens, &self.target, cross, plane);
+        match self_check::range(lens, &self.target, plane, outline.as_ref(), &best) {
             Ok(()) => {}
             Err(NoPose::Inconsistent) => doubt = doubt.or(Some(Doubt::Features)),
             Err(reason) => return Err(reason),
@@ -278,6 +287,7 @@ impl Observer {
             features,
             common,
             is_backup,
+            outline: outline.and_then(|outline| outline.range(&self.target.station, lens.focal_px())),
             region: evidence::plate(lens, plane, &self.target),
         })
     }
@@ -297,6 +307,7 @@ impl Observer {
             common: fitted.common,
             // Where cross and marks should be seen and are not, the prediction may have led the fit to something else.
             is_backup: !near_edge,
+            outline: None,
             region: plane.map_or(Rectangle::ALL, |plane| evidence::plate(lens, &plane, &self.target)),
         }
     }

@@ -109,6 +109,15 @@ impl DockingPipeline {
     /// Tests a pose against the fields before, and brings its covariance to their scatter.
     fn test(&mut self, field: &Field, time_s: f64, observed: Observed) -> Observed {
         let is_repeated = self.repeats.is_repeated(field);
+        let outline = observed.outline.filter(|_| !is_repeated);
+        let tested = self.test_pose(is_repeated, time_s, observed);
+        if let Some(outline) = outline {
+            self.motion.add_range(time_s, &outline);
+        }
+        tested
+    }
+
+    fn test_pose(&mut self, is_repeated: bool, time_s: f64, observed: Observed) -> Observed {
         let Observed { solution: DockingSolution::Measured(mut measurement), common, is_backup, .. } =
             observed
         else {
