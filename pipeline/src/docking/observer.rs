@@ -52,6 +52,8 @@ pub(crate) struct Observed {
     pub(crate) common: Matrix6<f64>,
     /// Whether only one of the two ways to a pose has one, cross and circle or the best estimator: it needs the motion's confirmation.
     pub(crate) is_backup: bool,
+    /// Blur across the lines that the best estimator found, px.
+    pub(crate) blur_px: f64,
     /// The range by the station's outline, which the motion takes too.
     pub(crate) outline: Option<OutlineRange>,
     /// Where brightness and contrast are to be judged.
@@ -66,6 +68,7 @@ impl Observed {
             features: Features::default(),
             common: Matrix6::zeros(),
             is_backup: false,
+            blur_px: 0.0,
             outline: None,
             region: Rectangle::ALL,
         }
@@ -259,14 +262,14 @@ impl Observer {
             fitted = self.fit.fit(sheet.field, lens.model(), &self.target, &measurement.aimed_pose(&target)?);
         }
         let by_features = paper_sigma::estimate(&measurement, &target, cross.seed.half_length_px)?;
-        let (best, common, mut doubt, is_backup) = match fitted {
+        let (best, common, mut doubt, is_backup, blur_px) = match fitted {
             Ok(fitted) => {
                 evidence::refine(&mut features, &fitted);
                 let doubt = self_check::fit(&self.target, lens.focal_px(), &fitted, &by_features);
-                (fitted.estimate, fitted.common, doubt, false)
+                (fitted.estimate, fitted.common, doubt, false, fitted.blur_px[1])
             }
             // Cross and marks are there and of one target: the paper's pose is worse than the best one, and better than none.
-            Err(_) => (by_features, Matrix6::zeros(), None, true),
+            Err(_) => (by_features, Matrix6::zeros(), None, true, 0.0),
         };
         let outline = self_check::outline(sheet.view, lens, &self.target, cross, plane);
         match self_check::range(lens, &self.target, plane, outline.as_ref(), &best) {
@@ -287,6 +290,7 @@ impl Observer {
             features,
             common,
             is_backup,
+            blur_px,
             outline: outline.and_then(|outline| outline.range(&self.target.station, lens.focal_px())),
             region: evidence::plate(lens, plane, &self.target),
         })
@@ -307,6 +311,7 @@ impl Observer {
             common: fitted.common,
             // Where cross and marks should be seen and are not, the prediction may have led the fit to something else.
             is_backup: !near_edge,
+            blur_px: fitted.blur_px[1],
             outline: None,
             region: plane.map_or(Rectangle::ALL, |plane| evidence::plate(lens, &plane, &self.target)),
         }

@@ -239,6 +239,15 @@ impl Track {
         self.modes.iter().all(|mode| mode.state.iter().all(|v| v.is_finite()))
     }
 
+    /// Expected products of the rates of the pose.
+    pub(super) fn squares_of_rates(&self) -> Matrix6<f64> {
+        let of_mode = |mode: &Mode| {
+            let rate = mode.state.fixed_rows::<6>(6);
+            (mode.covariance.fixed_view::<6, 6>(6, 6) + rate * rate.transpose()) * mode.probability
+        };
+        self.modes.iter().map(of_mode).sum()
+    }
+
     /// The mean of the filters and the covariance about it, with what the fields of seconds have in common.
     pub(super) fn motion(&self, fields: u32) -> Motion {
         let state: State = self.modes.iter().map(|mode| mode.state * mode.probability).sum();
@@ -285,6 +294,11 @@ fn spread(config: &MotionConfig, axis: usize) -> (f64, f64) {
         0..3 => (config.speed_m_s, config.acceleration_m_s2),
         _ => (config.rotation_deg_s.to_radians(), config.angular_acceleration_deg_s2.to_radians()),
     }
+}
+
+/// The same of [`Track::squares_of_rates`] where nothing is measured.
+pub(super) fn unknown_rates(config: &MotionConfig) -> Matrix6<f64> {
+    Matrix6::from_diagonal(&Vector6::from_fn(|axis, _| spread(config, axis).0.powi(2)))
 }
 
 impl Mode {

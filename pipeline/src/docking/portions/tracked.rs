@@ -3,7 +3,7 @@
 use contract::docking::{Motion, PoseEstimate};
 use nalgebra::Matrix6;
 
-use super::filters::{MotionConfig, OutlineRange, Track};
+use super::filters::{MotionConfig, OutlineRange, Track, unknown_rates};
 use super::scatter::Scatter;
 use crate::PipelineError;
 use crate::docking::pose::geometry::to_vector;
@@ -78,6 +78,14 @@ impl MotionTracker {
         next.predict(time_s, &self.config);
         let square = next.least_square(&to_vector(&estimate.pose), &(estimate.covariance + track.common));
         square.is_some_and(|square| square <= self.config.field_gate)
+    }
+
+    /// What is added to the covariance of a pose whose moment is known to a standard deviation only, s: the motion within that time. Before there
+    /// is a motion it is as fast as a camera may be.
+    pub(in crate::docking) fn by_moment(&self, time_s: f64, sigma_s: f64) -> Matrix6<f64> {
+        let kept = self.track.as_ref().filter(|track| (0.0..=MAX_GAP_S).contains(&(time_s - track.time_s)));
+        let squares = kept.map_or_else(|| unknown_rates(&self.config), Track::squares_of_rates);
+        squares * (sigma_s * sigma_s)
     }
 
     /// Takes the pose of a field, and the part of its covariance that errs alike in the fields of seconds. Says whether it continues the

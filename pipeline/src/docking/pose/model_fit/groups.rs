@@ -115,6 +115,14 @@ impl Groups {
         scores.map(|scores| scores * scores.transpose()).sum()
     }
 
+    /// The same from effects that are one in several groups.
+    pub(super) fn shifted_together(&self, groups: impl Iterator<Item = usize> + Clone) -> GlobalMatrix {
+        let sum = |k: usize| -> Globals {
+            groups.clone().filter_map(|group| Some(self.groups.get(group)?.scores[k])).sum()
+        };
+        (0..EFFECTS).map(sum).map(|scores| scores * scores.transpose()).sum()
+    }
+
     /// The swelling as an unknown of the fit, its effect that of the first group: what it changes in the globals, their covariance from it, and
     /// what is known of it now. `inverse` is that of the information, `variance` a pixel's.
     pub(super) fn as_unknown(

@@ -185,7 +185,10 @@ pub(super) struct Uncertainty {
 const SMALL_CROSS_PX: f64 = 0.04;
 
 /// The same of a mark that is narrower than a pixel; of a wider one it falls with the square of the width.
-const SMALL_MARK_PX: f64 = 0.03;
+const SMALL_MARK_PX: f64 = 0.02;
+
+/// By which part of the swelling the cross may lie aside: its edges against a lit side face swell otherwise than those against the plate.
+const SIDEWAYS: f64 = 0.5;
 
 /// The least part of a pixel's variance that is noise of its own: what lines and patches both explain is counted twice.
 const LEAST_NOISE: f64 = 0.25;
@@ -261,8 +264,11 @@ pub(super) fn uncertainty(
         };
         by_patches += of_patches.shifted(index) * (off_px * off_px);
     }
-    let noise = (variance - explained_by_lines - explained_by_patches).max(LEAST_NOISE * variance);
     let (change, by_swelling, swelling) = swellings.as_unknown(&inverse, variance, known_swelling)?;
+    let crosses = used().filter(|(_, patch)| patch.feature == Feature::Cross).map(|(index, _)| index);
+    let aside_px = SIDEWAYS * swelling.weighted / swelling.weight;
+    by_patches += of_patches.shifted_together(crosses) * (aside_px * aside_px);
+    let noise = (variance - explained_by_lines - explained_by_patches).max(LEAST_NOISE * variance);
     let common = inverse * by_patches * inverse + by_swelling;
     Some(Uncertainty {
         change,
