@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Variants of the scenario `docking`, drawn by a study: is sigma honest at every range?
 
-    python3 research/docking_variants/run.py --boresight target/release/boresight --out variants [--cases 30] [--jobs 2]
+    python3 research/docking_variants/run.py --boresight target/release/boresight --out variants [--cases 30] [--jobs 1]
 
 The draws are those of study.toml (Sun, television, lens, approach), the approach is approach.toml, all else is scenarios/docking.toml. Every case is
 flown with `boresight study replay`; a case that is there already is not flown again. Printed by bin of true range and lens: NEES of single
@@ -41,7 +41,7 @@ def write_study(out):
 def fly(program, out, case):
     run = out / f"case-{case:03d}"
     if not (run / "score.json").is_file():
-        words = ["study", "replay", out / "study.toml", "--case", case, "--out", run, "--no-report", "--jobs", 1]
+        words = ["study", "replay", out / "study.toml", "--case", case, "--out", run, "--no-report"]
         subprocess.run([program, *map(str, words)], check=True, stdout=subprocess.DEVNULL)
     return json.loads((run / "score.json").read_text())
 
@@ -84,7 +84,7 @@ def main():
     parser.add_argument("--boresight", required=True, type=lambda path: str(pathlib.Path(path).resolve()))
     parser.add_argument("--out", required=True, type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("--cases", type=int, default=30)
-    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--jobs", type=int, default=1)
     arguments = parser.parse_args()
     write_study(arguments.out)
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
