@@ -11,7 +11,7 @@ every artefact. `defocus` is not degraded: the simulator's lens has the blur. Pr
 grossly wrong fields, what is wrong and not doubtful with the upper end of its 95 % interval (Clopper and Pearson), NEES over its
 dimension, and the share of motion parameters within 3 σ.
 
---renderer mitsuba draws the scene by Mitsuba (docs/mitsuba.md): a minute of CPU a field at 128 rays, so that a sample of six fields a block is
+--renderer mitsuba draws the scene by Mitsuba (docs/mitsuba.md): half a minute of CPU a field at 64 rays, so that a sample of six fields a block is
 what there is time for; its images are kept in --mitsuba-cache.
 
     python3 research/docking_matrix/run.py --boresight ... --renderer mitsuba --mitsuba venv/bin/mitsuba --blocks 1 --fields 6 --motions constant
@@ -248,7 +248,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--renderer", choices=["fast", "mitsuba"], default="fast")
     parser.add_argument("--mitsuba", help="command of Mitsuba")
-    parser.add_argument("--mitsuba-rays", type=int, default=128)
+    parser.add_argument("--mitsuba-rays", type=int, default=64, help="a square number")
     parser.add_argument("--mitsuba-cache", type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--max-nees", type=float, default=math.inf)

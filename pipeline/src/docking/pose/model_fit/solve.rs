@@ -184,7 +184,7 @@ pub(super) struct Uncertainty {
 /// no other patch shows by its scatter what the video does to it.
 const SMALL_CROSS_PX: f64 = 0.04;
 
-/// The same of a mark that is narrower than a pixel; of a wider one it falls with the square of the width.
+/// The same of a mark that is narrower than a pixel; of a wider one it falls with the fourth power of the width.
 const SMALL_MARK_PX: f64 = 0.02;
 
 /// By which part of the swelling the cross may lie aside: its edges against a lit side face swell otherwise than those against the plate.
@@ -257,7 +257,7 @@ pub(super) fn uncertainty(
     for (index, patch) in used() {
         let off_px = match patch.feature {
             Feature::Mark(mark) => {
-                SMALL_MARK_PX / (scale * width_m(&scene.target.marks[mark])).max(1.0).powi(2)
+                SMALL_MARK_PX / (scale * width_m(&scene.target.marks[mark])).max(1.0).powi(4)
             }
             Feature::Cross if is_small => SMALL_CROSS_PX,
             Feature::Cross => continue,
