@@ -88,9 +88,10 @@ class Cell:
         figures = score["figures"]
 
         def pooled(name):
+            """The sum and the number of what a figure is counted over: of a rate `count` is the sum itself."""
             figure = figures.get(name) or {}
-            count = figure.get("count", 0)
-            return (figure["value"] * count, count) if count else (0.0, 0)
+            value, number = figure.get("value"), figure.get("count" if name == "nees_mean" else "of", 0)
+            return (0.0, 0) if value is None else (value * number, number)
 
         frames = score["frames"]
         self.fields += frames

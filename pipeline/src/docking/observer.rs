@@ -277,6 +277,7 @@ impl Observer {
             Err(NoPose::Inconsistent) => doubt = doubt.or(Some(Doubt::Features)),
             Err(reason) => return Err(reason),
         }
+        doubt = doubt.or_else(|| self_check::tilt(&best));
         if doubt.is_none() {
             self.remember(sheet, lens, best.pose);
         }

@@ -166,6 +166,15 @@ pub(crate) fn fit(
     (!(range && cross)).then_some(Doubt::Features)
 }
 
+/// Largest standard deviation of pitch and yaw, rad: two and a half of them are 5°, beyond which a pose is that of something else.
+const MAX_TILT_SIGMA: f64 = 2.0 / 180.0 * std::f64::consts::PI;
+
+/// Whether a pose is to be doubted because by its own covariance it may as well be a wrong one.
+pub(crate) fn tilt(best: &PoseEstimate) -> Option<Doubt> {
+    let variance = best.covariance[(3, 3)].max(best.covariance[(4, 4)]);
+    (variance > MAX_TILT_SIGMA * MAX_TILT_SIGMA).then_some(Doubt::Residuals)
+}
+
 /// Radius of the circle of the marks, px, up to which a target must have its station around it.
 const SMALL_CIRCLE_PX: f64 = 18.0;
 

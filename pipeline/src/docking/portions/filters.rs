@@ -298,7 +298,8 @@ fn spread(config: &MotionConfig, axis: usize) -> (f64, f64) {
 
 /// The same of [`Track::squares_of_rates`] where nothing is measured.
 pub(super) fn unknown_rates(config: &MotionConfig) -> Matrix6<f64> {
-    Matrix6::from_diagonal(&Vector6::from_fn(|axis, _| spread(config, axis).0.powi(2)))
+    let rates = Vector6::from_fn(|axis, _| spread(config, axis).0);
+    Matrix6::from_diagonal(&rates.component_mul(&rates))
 }
 
 impl Mode {

@@ -257,7 +257,8 @@ pub(super) fn uncertainty(
     for (index, patch) in used() {
         let off_px = match patch.feature {
             Feature::Mark(mark) => {
-                SMALL_MARK_PX / (scale * width_m(&scene.target.marks[mark])).max(1.0).powi(4)
+                let width_px = (scale * width_m(&scene.target.marks[mark])).max(1.0);
+                SMALL_MARK_PX / (width_px * width_px * width_px * width_px)
             }
             Feature::Cross if is_small => SMALL_CROSS_PX,
             Feature::Cross => continue,
