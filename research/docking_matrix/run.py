@@ -11,6 +11,11 @@ every artefact. `defocus` is not degraded: the simulator's lens has the blur. Pr
 grossly wrong fields, what is wrong and not doubtful with the upper end of its 95 % interval (Clopper and Pearson), NEES over its
 dimension, and the share of motion parameters within 3 σ.
 
+--renderer mitsuba draws the scene by Mitsuba (docs/mitsuba.md): half a minute of CPU a field at 64 rays, so that a sample of six fields a block is
+what there is time for; its images are kept in --mitsuba-cache.
+
+    python3 research/docking_matrix/run.py --boresight ... --renderer mitsuba --mitsuba venv/bin/mitsuba --blocks 1 --fields 6 --motions constant
+
 --check: exit status 1 when a field is grossly wrong and not doubtful, or a cell's NEES is above --max-nees.
 
 Needs ffmpeg and the packages of requirements.txt.
@@ -83,9 +88,10 @@ class Cell:
         figures = score["figures"]
 
         def pooled(name):
+            """The sum and the number of what a figure is counted over: of a rate `count` is the sum itself."""
             figure = figures.get(name) or {}
-            count = figure.get("count", 0)
-            return (figure["value"] * count, count) if count else (0.0, 0)
+            value, number = figure.get("value"), figure.get("count" if name == "nees_mean" else "of", 0)
+            return (0.0, 0) if value is None else (value * number, number)
 
         frames = score["frames"]
         self.fields += frames
@@ -166,12 +172,17 @@ def turned_truth(table):
     return table
 
 
-def render(program, work, toml, first, count, seed):
-    """A dataset of the fields first to first + count."""
+def render(arguments, work, toml, first, seed):
+    """A dataset of a block's fields."""
     work.mkdir(parents=True)
     (work / "scenario.toml").write_text(toml)
-    words = ["render", work / "scenario.toml", "--frames", f"{first}..{first + count}", "--seed", seed, "--jobs", 1]
-    boresight(program, *words, "--out", work / "clean")
+    frames = f"{first}..{first + arguments.fields}"
+    words = ["render", work / "scenario.toml", "--frames", frames, "--seed", seed, "--jobs", 1]
+    if arguments.renderer == "mitsuba":
+        words += ["--renderer", "mitsuba", "--mitsuba-rays", arguments.mitsuba_rays]
+        words += ["--mitsuba", arguments.mitsuba] if arguments.mitsuba else []
+        words += ["--mitsuba-cache", arguments.mitsuba_cache] if arguments.mitsuba_cache else []
+    boresight(arguments.boresight, *words, "--out", work / "clean")
     return work / "clean"
 
 
@@ -202,7 +213,6 @@ def jobs(arguments):
         if arguments.ranges and name not in arguments.ranges:
             continue
         for block in range(arguments.blocks):
-            total = arguments.blocks * count
             d3_m = at["d3_m"] + at["rate_m_s"] * block * count / 50
             toml = scenario(constant_velocity(d3_m, at["rate_m_s"], count))
             if "constant" in arguments.motions:
@@ -212,7 +222,6 @@ def jobs(arguments):
             begin = first + 2 * int(spread * block / 2)
             if "approach" in arguments.motions:
                 yield "approach", name, SCENARIO.read_text(), begin, arguments.kinds, block
-            del total
     if "defocus" in arguments.motions:
         for blur_px, d3_m in DEFOCUS:
             for block in range(arguments.blocks):
@@ -223,7 +232,7 @@ def jobs(arguments):
 def block(arguments, scratch, job):
     motion, name, toml, first, kinds, number = job
     work = pathlib.Path(scratch) / f"{motion}-{name}-{number}".replace(" ", "_")
-    clean = render(arguments.boresight, work, toml, first, arguments.fields, SEED + number)
+    clean = render(arguments, work, toml, first, SEED + number)
     scores = [(kind, measure(arguments.boresight, clean, work / "degraded", kind, first)) for kind in kinds]
     shutil.rmtree(work)
     return motion, name, scores
@@ -238,6 +247,10 @@ def main():
     parser.add_argument("--ranges", nargs="+", default=[], choices=list(RANGES))
     parser.add_argument("--motions", nargs="+", default=["constant", "approach", "defocus"])
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--renderer", choices=["fast", "mitsuba"], default="fast")
+    parser.add_argument("--mitsuba", help="command of Mitsuba")
+    parser.add_argument("--mitsuba-rays", type=int, default=64, help="a square number")
+    parser.add_argument("--mitsuba-cache", type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--max-nees", type=float, default=math.inf)
     parser.add_argument("--json", type=pathlib.Path, help="write the cells here too")

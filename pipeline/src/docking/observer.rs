@@ -18,6 +18,7 @@ use super::extraction::outline::{self, OutlineTrack, RESOLVED_CIRCLE_PX, SMALLES
 use super::extraction::range_memory::RangeMemory;
 use super::extraction::recognise::{Recognition, Sight};
 use super::extraction::self_check;
+use super::portions::OutlineRange;
 use super::pose::model_fit::{Fitted, ModelFit};
 use super::pose::paper_pose::{PaperMeasurement, PaperTarget};
 use super::pose::paper_sigma;
@@ -51,6 +52,10 @@ pub(crate) struct Observed {
     pub(crate) common: Matrix6<f64>,
     /// Whether only one of the two ways to a pose has one, cross and circle or the best estimator: it needs the motion's confirmation.
     pub(crate) is_backup: bool,
+    /// Blur across the lines that the best estimator found, px.
+    pub(crate) blur_px: f64,
+    /// The range by the station's outline, which the motion takes too.
+    pub(crate) outline: Option<OutlineRange>,
     /// Where brightness and contrast are to be judged.
     pub(crate) region: Rectangle,
 }
@@ -63,6 +68,8 @@ impl Observed {
             features: Features::default(),
             common: Matrix6::zeros(),
             is_backup: false,
+            blur_px: 0.0,
+            outline: None,
             region: Rectangle::ALL,
         }
     }
@@ -129,6 +136,7 @@ impl Observer {
             self.track.reset();
             observed.solution = DockingSolution::NoSolution(NoPose::Inconsistent);
             observed.paper = None;
+            observed.outline = None;
         }
         observed
     }
@@ -201,6 +209,9 @@ impl Observer {
         let Observed { features, region, .. } = &mut observed;
         observed.solution = outline::range(lens, &self.target, outline, features, region, reason)
             .unwrap_or_else(DockingSolution::NoSolution);
+        if let DockingSolution::RangeOnly { .. } = observed.solution {
+            observed.outline = outline.range(&self.target.station, lens.focal_px());
+        }
         observed
     }
 
@@ -251,20 +262,22 @@ impl Observer {
             fitted = self.fit.fit(sheet.field, lens.model(), &self.target, &measurement.aimed_pose(&target)?);
         }
         let by_features = paper_sigma::estimate(&measurement, &target, cross.seed.half_length_px)?;
-        let (best, common, mut doubt, is_backup) = match fitted {
+        let (best, common, mut doubt, is_backup, blur_px) = match fitted {
             Ok(fitted) => {
                 evidence::refine(&mut features, &fitted);
                 let doubt = self_check::fit(&self.target, lens.focal_px(), &fitted, &by_features);
-                (fitted.estimate, fitted.common, doubt, false)
+                (fitted.estimate, fitted.common, doubt, false, fitted.blur_px[1])
             }
             // Cross and marks are there and of one target: the paper's pose is worse than the best one, and better than none.
-            Err(_) => (by_features, Matrix6::zeros(), None, true),
+            Err(_) => (by_features, Matrix6::zeros(), None, true, 0.0),
         };
-        match self_check::range(sheet.view, lens, &self.target, cross, plane, &best) {
+        let outline = self_check::outline(sheet.view, lens, &self.target, cross, plane);
+        match self_check::range(lens, &self.target, plane, outline.as_ref(), &best) {
             Ok(()) => {}
             Err(NoPose::Inconsistent) => doubt = doubt.or(Some(Doubt::Features)),
             Err(reason) => return Err(reason),
         }
+        doubt = doubt.or_else(|| self_check::tilt(&best));
         if doubt.is_none() {
             self.remember(sheet, lens, best.pose);
         }
@@ -278,6 +291,8 @@ impl Observer {
             features,
             common,
             is_backup,
+            blur_px,
+            outline: outline.and_then(|outline| outline.range(&self.target.station, lens.focal_px())),
             region: evidence::plate(lens, plane, &self.target),
         })
     }
@@ -297,6 +312,8 @@ impl Observer {
             common: fitted.common,
             // Where cross and marks should be seen and are not, the prediction may have led the fit to something else.
             is_backup: !near_edge,
+            blur_px: fitted.blur_px[1],
+            outline: None,
             region: plane.map_or(Rectangle::ALL, |plane| evidence::plate(lens, &plane, &self.target)),
         }
     }

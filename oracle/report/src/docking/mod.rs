@@ -16,7 +16,7 @@ pub use run::{DockingRun, PortionReport};
 use crate::charts::chart::{BESIDE, Chart, MEASURED, bars, rounded, stacked_bars};
 use crate::charts::plotly::Trace;
 use crate::figures::words::spoken;
-use crate::figures::{figure_table, least_to_most, percent_cell, shown_percent};
+use crate::figures::{cell, figure_table, least_to_most, percent_cell, shown_percent};
 use crate::page::colours::colour_of;
 use crate::page::data_table::DataTable;
 use crate::page::picture::Rendered;
@@ -60,9 +60,11 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldSheet) -> Result<Page, Failur
         kind: "Docking: a run",
         version: run.run_file.version.clone(),
         lead: vec![format!(
-            "{} fields: the pose was measured in {} of those in which it can be asked for; {} of all fields were grossly wrong.",
+            "{} fields: the pose was measured in {} of those in which it can be asked for; of all fields {} were doubtful by the pipeline's own \
+             tests, and {} grossly wrong without being so.",
             run.score.frames,
             figure("success_rate"),
+            figure("doubtful_rate"),
             figure("wrong_rate")
         )]
         .into_iter()
@@ -84,33 +86,57 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldSheet) -> Result<Page, Failur
     })
 }
 
-/// Figures by range, and all of them.
+/// Figures by range: how accurate, how honest, how often in doubt or wrong, then how often there is an answer; and all of them.
 fn figures_section(run: &DockingRun) -> Section {
     let score = &run.score;
-    let mut table = DataTable::new([
-        "range",
-        "fields",
-        "reports",
-        "success",
-        "of clear ones",
-        "range alone",
-        "wrong",
-        "missed",
-    ])
-    .caption("Percent, with 95 % intervals, by true range and lens.");
-    let rates = ["success_rate", "clear_success_rate", "range_only_rate", "wrong_rate", "miss_rate"];
-    let groups = score
-        .groups
-        .iter()
-        .map(|(name, group)| (name.as_str(), group.frames, group.portions, &group.figures));
-    for (name, frames, portions, figures) in
+    let groups = || {
+        let groups = score
+            .groups
+            .iter()
+            .map(|(name, group)| (name.as_str(), group.frames, group.portions, &group.figures));
         groups.chain([("all", score.frames, score.portions, &score.figures)])
-    {
-        let mut cells = vec![name.to_owned(), frames.to_string(), portions.to_string()];
-        cells.extend(rates.map(|rate| percent_cell(figures.get(rate))));
-        table.push(cells);
+    };
+    let rms = ["range_rms_m", "lateral_rms_m", "attitude_rms_deg", "motion_range_rate_rms_m_s"];
+    let mut accuracy = DataTable::new([
+        "range",
+        "range, m",
+        "across, m",
+        "attitude, °",
+        "range rate, m/s",
+        "within 3 σ",
+        "NEES",
+        "motion within 3 σ",
+        "motion NEES",
+        "doubtful",
+        "wrong",
+    ])
+    .caption(
+        "Root mean squares of the errors of measured fields, and of the reported range rate; how honest their σ is (within 3 σ: percent, 99.73 of \
+         normal errors; NEES: 1 in the mean); doubtful and grossly wrong in percent of the fields. With 95 % intervals, by true range and lens.",
+    );
+    for (name, _, _, figures) in groups() {
+        let number = |key: &str| cell(figures.get(key).and_then(|figure| figure.value));
+        let percent = |key: &str| percent_cell(figures.get(key));
+        let mut cells = vec![name.to_owned()];
+        cells.extend(rms.map(number));
+        cells.extend([percent("within_3_sigma"), number("nees_mean")]);
+        cells.extend([percent("motion_within_3_sigma"), number("motion_nees_mean")]);
+        cells.extend(["doubtful_rate", "wrong_rate"].map(percent));
+        accuracy.push(cells);
     }
-    Section::new("figures", "Figures").table(table).folded("All figures", figure_table(&score.figures))
+    let mut answers =
+        DataTable::new(["range", "fields", "reports", "success", "of clear ones", "range alone", "missed"])
+            .caption("Percent, with 95 % intervals, by true range and lens.");
+    for (name, frames, portions, figures) in groups() {
+        let mut cells = vec![name.to_owned(), frames.to_string(), portions.to_string()];
+        let rates = ["success_rate", "clear_success_rate", "range_only_rate", "miss_rate"];
+        cells.extend(rates.map(|rate| percent_cell(figures.get(rate))));
+        answers.push(cells);
+    }
+    Section::new("figures", "Figures")
+        .table(accuracy)
+        .table(answers)
+        .folded("All figures", figure_table(&score.figures))
 }
 
 /// What became of the fields, by range.
@@ -149,6 +175,9 @@ fn verdicts(run: &DockingRun) -> Section {
         let count = |figures: &IndexMap<String, Figure>| figures.get(name).map_or(0, |figure| figure.count);
         let what = if name == "success_rate" { "success" } else { "range alone" };
         add(what, "", counted(&|group| count(&group.figures)), count(&score.figures));
+    }
+    for (test, all) in &score.doubtful {
+        add("doubtful", test, counted(&|group| group.doubtful.get(test).copied().unwrap_or(0)), *all);
     }
     for (cause, all) in &score.wrong {
         add("wrong", cause, counted(&|group| group.wrong.get(cause).copied().unwrap_or(0)), *all);

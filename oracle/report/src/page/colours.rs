@@ -1,4 +1,5 @@
 //! A colour for every cause, the same in every chart.
+use contract::docking::Doubt;
 use score::Cause;
 use score::docking::{Gross, MissCause};
 
@@ -8,11 +9,17 @@ const PALETTE: [&str; 18] = [
     "#8a5a1f", "#d9b23c", "#8d6bc4", "#d36bb0", "#6d2b3a", "#2f7fc1", "#2f9e69", "#a9c96a", "#c8cdd2",
 ];
 
+/// Failed tests of a doubtful pose.
+const DOUBTS: [&str; 4] = ["#fff0b8", "#fbdc76", "#f2c230", "#b58a00"];
+
 /// The colour of a cause by its word.
 pub(crate) fn colour_of(cause: &str) -> &'static str {
     let far_range = |cause: &str| Cause::ALL.iter().position(|of| of.code() == cause);
     if let Some(place) = far_range(cause) {
         return PALETTE[place];
+    }
+    if let Some(place) = Doubt::ALL.iter().position(|of| of.code() == cause) {
+        return DOUBTS[place];
     }
     // Docking shares some causes: its others take the colours that are left.
     let codes = || MissCause::CODES.into_iter().chain(Gross::ALL.map(Gross::code));
@@ -33,6 +40,7 @@ mod tests {
             assert_eq!(colours.len(), codes.len());
         };
         distinct(Cause::ALL.map(Cause::code).to_vec());
-        distinct(MissCause::CODES.into_iter().chain(Gross::ALL.map(Gross::code)).collect());
+        let doubts = Doubt::ALL.map(Doubt::code);
+        distinct(MissCause::CODES.into_iter().chain(Gross::ALL.map(Gross::code)).chain(doubts).collect());
     }
 }

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::votes::{self, Proposal};
 use crate::docking::cross_and_circle::circle::{self, CircleFit};
+use crate::docking::portions::OutlineRange;
 use crate::docking::pose::paper_pose::range_from_outline;
 use crate::docking::preprocessing::histogram::Histogram;
 use crate::docking::preprocessing::region::Rectangle;
@@ -17,8 +18,22 @@ pub(crate) struct StationOutline {
     pub(crate) circle: CircleFit,
     /// How many points of its edge lie on it.
     pub(crate) points: u32,
+    /// Standard deviation of its radius, px: from field to field, and as it errs alike for long.
+    pub(crate) noise_px: f64,
+    common_px: f64,
+}
+
+impl StationOutline {
     /// Standard deviation of its radius, px.
-    pub(crate) sigma_px: f64,
+    pub(crate) fn sigma_px(&self) -> f64 {
+        libm::hypot(self.noise_px, self.common_px)
+    }
+
+    /// The range that it gives, with its standard deviation from field to field.
+    pub(crate) fn range(&self, outline: &Outline, focal_px: f64) -> Option<OutlineRange> {
+        let (range_m, sigma_m) = range(outline, focal_px, self.circle.radius, self.noise_px)?;
+        Some(OutlineRange { range_m, sigma_m })
+    }
 }
 
 /// Circles of the search that are measured.
@@ -271,8 +286,8 @@ fn fit(
     // move the edge together on all rays: by a part of the width of the blur and of the rim.
     let independent = (on_it.len() as f64).min(3.0 * circle.radius);
     let common_px = 0.15 + 0.004 * circle.radius;
-    let sigma_px = (circle.rms * circle.rms / independent / share + common_px * common_px).sqrt();
-    Some(StationOutline { circle, points: on_it.len() as u32, sigma_px })
+    let noise_px = circle.rms / (independent * share).sqrt();
+    Some(StationOutline { circle, points: on_it.len() as u32, noise_px, common_px })
 }
 
 /// d3 and its standard deviation, m: Rs = f r_s/(d3 + h_s). `None` unless it is positive.
@@ -321,7 +336,7 @@ mod tests {
             });
             let found = look_at(&field).unwrap();
             let error = found.circle.radius - radius;
-            assert!(error.abs() < 3.0 * found.sigma_px, "{radius}: {found:?}");
+            assert!(error.abs() < 3.0 * found.sigma_px(), "{radius}: {found:?}");
             assert!(error.abs() < 1.0 + 0.02 * radius, "{radius}: {error}");
         }
     }

@@ -47,7 +47,7 @@ pub(crate) fn range(
     // made a candidate inconsistent was none.
     let radius_px = outline.circle.radius;
     let resolved = RESOLVED_CIRCLE_PX / target.mark_circle_radius_m * target.station.radius_m;
-    match contour::range(&target.station, lens.focal_px(), radius_px, outline.sigma_px) {
+    match contour::range(&target.station, lens.focal_px(), radius_px, outline.sigma_px()) {
         Some((range_m, sigma_m)) if radius_px < resolved && reason != NoPose::AmbiguousTarget => {
             Ok(DockingSolution::RangeOnly { range_m, sigma_m })
         }

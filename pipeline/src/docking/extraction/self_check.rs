@@ -4,7 +4,7 @@ use contract::docking::{Doubt, MarkUse, NoPose, PoseEstimate, TargetModel};
 
 use nalgebra::Vector3;
 
-use super::contour;
+use super::contour::{self, StationOutline};
 use super::docking_unit::{self, DiskEdge, Side};
 use crate::docking::cross_and_circle::cross::CrossFit;
 use crate::docking::cross_and_circle::marks::{MarksFit, Plane};
@@ -96,37 +96,47 @@ pub(crate) fn on_station(
     }
 }
 
-/// Whether the range of a small target is known at all, and is the one that the station's outline has where most of that is in the
-/// image. A pose of few pixels may be that of noise about a cross.
-///
-/// # Errors
-/// [`NoPose::TooFewFeatures`] when the range's standard deviation is larger than a sixtieth of it,
-/// [`NoPose::Inconsistent`] when the two ranges differ by more than three times their standard deviations.
-pub(crate) fn range(
+/// The outline of the station about a small target, where most of it is in the image.
+pub(crate) fn outline(
     view: &View<'_>,
     lens: &Lens,
     model: &TargetModel,
     cross: &CrossFit,
     plane: &Plane,
+) -> Option<StationOutline> {
+    if model.mark_circle_radius_m * plane.scale_px_m > SMALL_CIRCLE_PX {
+        return None;
+    }
+    let centre = cross.seed.centre;
+    let place = docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
+    contour::measure_at(view, lens, place, MIN_OUTLINE_STEP)
+}
+
+/// Whether the range of a small target is known at all, and is the one that the station's outline has. A pose of few pixels may be that of
+/// noise about a cross.
+///
+/// # Errors
+/// [`NoPose::TooFewFeatures`] when the range's standard deviation is larger than a sixtieth of it,
+/// [`NoPose::Inconsistent`] when the two ranges differ by more than three times their standard deviations.
+pub(crate) fn range(
+    lens: &Lens,
+    model: &TargetModel,
+    plane: &Plane,
+    outline: Option<&StationOutline>,
     best: &PoseEstimate,
 ) -> Result<(), NoPose> {
     if model.mark_circle_radius_m * plane.scale_px_m > SMALL_CIRCLE_PX {
         return Ok(());
     }
-    let sigma_m = best.covariance[(2, 2)].max(0.0).sqrt();
-    if sigma_m > MAX_RANGE_SIGMA * best.pose.position_m.z {
+    let best_sigma_m = best.covariance[(2, 2)].max(0.0).sqrt();
+    if best_sigma_m > MAX_RANGE_SIGMA * best.pose.position_m.z {
         return Err(NoPose::TooFewFeatures);
     }
-    let centre = cross.seed.centre;
-    let place = docking_unit::predict(model, &model.station, lens.focal_px(), plane, centre, Side::Nominal);
-    let Some(outline) = contour::measure_at(view, lens, place, MIN_OUTLINE_STEP) else { return Ok(()) };
-    let (focal_px, radius_px) = (lens.focal_px(), outline.circle.radius);
-    let Some((range_m, sigma_m)) = contour::range(&model.station, focal_px, radius_px, outline.sigma_px)
-    else {
-        return Ok(());
-    };
-    let sigma_m = libm::hypot(sigma_m, best.covariance[(2, 2)].max(0.0).sqrt());
-    let agrees = (best.pose.position_m.z - range_m).abs() <= 3.0 * sigma_m;
+    let told = outline.and_then(|outline| {
+        contour::range(&model.station, lens.focal_px(), outline.circle.radius, outline.sigma_px())
+    });
+    let Some((range_m, sigma_m)) = told else { return Ok(()) };
+    let agrees = (best.pose.position_m.z - range_m).abs() <= 3.0 * libm::hypot(sigma_m, best_sigma_m);
     if agrees { Ok(()) } else { Err(NoPose::Inconsistent) }
 }
 
@@ -154,6 +164,15 @@ pub(crate) fn fit(
     let range = (other.z / best.z - 1.0).abs() <= OTHER_RANGE;
     let cross = (parallax(best) - parallax(other)).norm() <= OTHER_PARALLAX_PX;
     (!(range && cross)).then_some(Doubt::Features)
+}
+
+/// Largest standard deviation of pitch and yaw, rad: two and a half of them are 5°, beyond which a pose is that of something else.
+const MAX_TILT_SIGMA: f64 = 2.0 / 180.0 * std::f64::consts::PI;
+
+/// Whether a pose is to be doubted because by its own covariance it may as well be a wrong one.
+pub(crate) fn tilt(best: &PoseEstimate) -> Option<Doubt> {
+    let variance = best.covariance[(3, 3)].max(best.covariance[(4, 4)]);
+    (variance > MAX_TILT_SIGMA * MAX_TILT_SIGMA).then_some(Doubt::Residuals)
 }
 
 /// Radius of the circle of the marks, px, up to which a target must have its station around it.

@@ -2,16 +2,19 @@
 //!
 //! - [`PaperPortions`]: the docking paper's (3.2) two stages, on cross and circle, linear in time, each portion with the one before as
 //!   a prior that is forgotten by a factor, with its standard deviations as printed;
-//! - [`MotionTracker`]: from poses with their full covariance, field by field, with acceleration.
+//! - [`MotionTracker`]: from poses with their full covariance and the ranges of the station's outline, field by field, with acceleration.
 
+mod filters;
 mod inverse;
 mod paper;
 mod scatter;
 mod tracked;
 
+pub use filters::MotionConfig;
+pub(in crate::docking) use filters::OutlineRange;
 pub(in crate::docking) use inverse::inverse;
 pub use paper::{PaperPortionConfig, PaperPortions};
-pub use tracked::{Continuity, MotionConfig, MotionTracker};
+pub use tracked::{Continuity, MotionTracker};
 
 #[cfg(test)]
 pub(in crate::docking) mod tests {

@@ -1,90 +1,21 @@
-//! Motion from poses of fields, with acceleration: three filters of one state that differ in how hard the camera accelerates, and a
-//! probability of each.
-//!
-//! State: (d, φ), its rates and accelerations. An acceleration is a random function of time with a standard deviation σ and a
-//! memory τ (Singer 1970); the filters have σ, a fifth and a thirtieth of it, and exchange their estimates as the probabilities of a change between them
-//! say (interacting multiple models: Blom & Bar-Shalom 1988). A hold or a glide is followed with a small σ, a braking ship
-//! with a large one, and the covariance holds the doubt which of them it is.
+//! Motion from poses of fields, and from the station's outline where it shows: which fields are taken, and what is reported.
 
 use contract::docking::{Motion, PoseEstimate};
-use contract::{OutOfRange, bounds};
-use nalgebra::{Cholesky, Matrix6, SMatrix, SVector, Vector6};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use nalgebra::Matrix6;
 
+use super::filters::{MotionConfig, OutlineRange, Track, unknown_rates};
 use super::scatter::Scatter;
 use crate::PipelineError;
-use crate::docking::pose::geometry::{to_pose, to_vector};
-
-/// (d, φ), rates, accelerations.
-type State = SVector<f64, 18>;
-type Square = SMatrix<f64, 18, 18>;
-
-/// How the camera may move.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct MotionConfig {
-    /// Standard deviation of each component of acceleration while the ship manoeuvres, m/s², above 0 to 100: a change of speed by
-    /// 0.8 m/s within 3 s.
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
-    pub acceleration_m_s2: f64,
-    /// The same of rotation, degrees/s², above 0 to 100.
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
-    pub angular_acceleration_deg_s2: f64,
-    /// Memory of an acceleration, s, 0.1 to 1000.
-    #[schemars(range(min = 0.1, max = 1000))]
-    pub memory_s: f64,
-    /// Standard deviation of each component of velocity before anything is measured, m/s, above 0 to 100; no motion is reported
-    /// whose range rate is above three of it.
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
-    pub speed_m_s: f64,
-    /// The same of rotation, degrees/s, above 0 to 100.
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
-    pub rotation_deg_s: f64,
-    /// A field is left out when its pose is off the motion by more than this normalised square (chi-square of 6 degrees of
-    /// freedom), above 0 to 1e12.
-    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e12))]
-    pub field_gate: f64,
-}
-
-impl Default for MotionConfig {
-    /// A cargo ship that docks; a gate that noise passes once in 10⁷ fields.
-    fn default() -> Self {
-        Self {
-            acceleration_m_s2: 0.3,
-            angular_acceleration_deg_s2: 0.3,
-            memory_s: 3.0,
-            speed_m_s: 2.0,
-            rotation_deg_s: 1.0,
-            field_gate: 45.0,
-        }
-    }
-}
-
-impl MotionConfig {
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`OutOfRange`] for the first one outside its range.
-    pub fn check(&self) -> Result<(), OutOfRange> {
-        bounds::check(self, "motion")
-    }
-}
-
-/// Accelerations of the filters, as parts of the configured one.
-const MODES: [f64; 3] = [1.0, 0.2, 0.03];
-
-/// Mean time after which one filter's motion gives way to another's, s.
-const CHANGE_S: f64 = 5.0;
-
-/// Longest step of a prediction, s: accelerations fade within some of them.
-const STEP_S: f64 = 0.5;
+use crate::docking::pose::geometry::to_vector;
 
 /// After a longer time without a pose nothing is known of the motion, s.
 const MAX_GAP_S: f64 = 5.0;
 
 /// Fields in a row that are off the motion, and near each other, begin it anew.
 const CONTRARY: u32 = 5;
+
+/// An outline's range is left out when it is off the motion by more than this normalised square.
+const OUTLINE_GATE: f64 = 25.0;
 
 /// Fields after which a motion confirms a pose that would not be told alone.
 const ESTABLISHED: u32 = 4;
@@ -100,25 +31,11 @@ pub struct MotionTracker {
     scatter: Scatter,
     /// Fields in a row that were left out.
     contrary: u32,
-    /// Fields taken since the last report, and since the motion began.
+    /// Outlines in a row that were.
+    contrary_outlines: u32,
+    /// Poses taken since the last report, and since the motion began.
     fields: u32,
     all_fields: u32,
-}
-
-#[derive(Debug, Clone)]
-struct Track {
-    time_s: f64,
-    modes: [Mode; MODES.len()],
-    /// What errs alike in the fields of seconds: added to what the filters say.
-    common: Matrix6<f64>,
-}
-
-/// One filter.
-#[derive(Debug, Clone)]
-struct Mode {
-    probability: f64,
-    state: State,
-    covariance: Square,
 }
 
 /// Whether a pose is on the motion so far.
@@ -137,7 +54,15 @@ impl MotionTracker {
     /// Those of [`MotionConfig::check`].
     pub fn new(config: MotionConfig) -> Result<Self, PipelineError> {
         config.check()?;
-        Ok(Self { config, track: None, scatter: Scatter::default(), contrary: 0, fields: 0, all_fields: 0 })
+        Ok(Self {
+            config,
+            track: None,
+            scatter: Scatter::default(),
+            contrary: 0,
+            contrary_outlines: 0,
+            fields: 0,
+            all_fields: 0,
+        })
     }
 
     /// Whether a pose lies on a motion that is established, by as many fields as would begin one anew.
@@ -153,6 +78,14 @@ impl MotionTracker {
         next.predict(time_s, &self.config);
         let square = next.least_square(&to_vector(&estimate.pose), &(estimate.covariance + track.common));
         square.is_some_and(|square| square <= self.config.field_gate)
+    }
+
+    /// What is added to the covariance of a pose whose moment is known to a standard deviation only, s: the motion within that time. Before there
+    /// is a motion it is as fast as a camera may be.
+    pub(in crate::docking) fn by_moment(&self, time_s: f64, sigma_s: f64) -> Matrix6<f64> {
+        let kept = self.track.as_ref().filter(|track| (0.0..=MAX_GAP_S).contains(&(time_s - track.time_s)));
+        let squares = kept.map_or_else(|| unknown_rates(&self.config), Track::squares_of_rates);
+        squares * (sigma_s * sigma_s)
     }
 
     /// Takes the pose of a field, and the part of its covariance that errs alike in the fields of seconds. Says whether it continues the
@@ -176,16 +109,43 @@ impl MotionTracker {
         (self.follow(time_s, &noise, common), factor)
     }
 
+    /// Takes the range by the station's outline, after the pose of the field where there is one.
+    pub(in crate::docking) fn add_range(&mut self, time_s: f64, range: &OutlineRange) {
+        if !time_s.is_finite() {
+            return;
+        }
+        let elapsed_s = self.track.as_ref().map(|track| time_s - track.time_s);
+        if !elapsed_s.is_some_and(|elapsed_s| (0.0..=MAX_GAP_S).contains(&elapsed_s)) {
+            self.begin_at_range(time_s, range);
+            return;
+        }
+        let Some(track) = &mut self.track else { return };
+        let mut next = track.clone();
+        next.predict(time_s, &self.config);
+        if next.least_square_of_range(range) <= OUTLINE_GATE && next.update_range(range) {
+            self.contrary_outlines = 0;
+            *track = next;
+            return;
+        }
+        self.contrary_outlines += 1;
+        if self.contrary_outlines >= CONTRARY && self.all_fields == 0 {
+            self.begin_at_range(time_s, range);
+        }
+    }
+
+    fn begin_at_range(&mut self, time_s: f64, range: &OutlineRange) {
+        (self.contrary, self.contrary_outlines) = (0, 0);
+        (self.fields, self.all_fields) = (0, 0);
+        self.track = Some(Track::begin_at_range(time_s, range, &self.config));
+    }
+
     fn follow(&mut self, time_s: f64, estimate: &PoseEstimate, common: &Matrix6<f64>) -> Continuity {
         let noise = &estimate.covariance;
         let measured = to_vector(&estimate.pose);
         let Some(track) = &mut self.track else { return Continuity::Continues };
         let mut next = track.clone();
         next.predict(time_s, &self.config);
-        let Some(square) = next.least_square(&measured, &(noise + common)) else {
-            self.begin(time_s, estimate, common);
-            return Continuity::Continues;
-        };
+        let square = next.least_square(&measured, &(noise + common)).unwrap_or(f64::INFINITY);
         if square > self.config.field_gate {
             self.contrary += 1;
             if self.contrary >= CONTRARY {
@@ -206,7 +166,7 @@ impl MotionTracker {
     }
 
     fn begin(&mut self, time_s: f64, estimate: &PoseEstimate, common: &Matrix6<f64>) {
-        self.contrary = 0;
+        (self.contrary, self.contrary_outlines) = (0, 0);
         self.fields = 1;
         self.all_fields = 1;
         self.track = Some(Track::begin(time_s, estimate, common, &self.config));
@@ -225,230 +185,13 @@ impl MotionTracker {
     }
 }
 
-impl Track {
-    fn begin(time_s: f64, estimate: &PoseEstimate, common: &Matrix6<f64>, config: &MotionConfig) -> Self {
-        let modes = MODES.map(|part| {
-            let mut state = State::zeros();
-            state.fixed_rows_mut::<6>(0).copy_from(&to_vector(&estimate.pose));
-            let mut covariance = Square::zeros();
-            covariance.fixed_view_mut::<6, 6>(0, 0).copy_from(&estimate.covariance);
-            for axis in 0..6 {
-                let (rate, acceleration) = spread(config, axis);
-                covariance[(6 + axis, 6 + axis)] = rate * rate;
-                covariance[(12 + axis, 12 + axis)] = (part * acceleration) * (part * acceleration);
-            }
-            Mode { probability: 1.0 / MODES.len() as f64, state, covariance }
-        });
-        Self { time_s, modes, common: *common }
-    }
-
-    fn predict(&mut self, time_s: f64, config: &MotionConfig) {
-        while self.time_s < time_s {
-            let step_s = (time_s - self.time_s).min(STEP_S);
-            self.mix(step_s);
-            for (mode, part) in self.modes.iter_mut().zip(MODES) {
-                mode.predict(step_s, part, config);
-            }
-            self.time_s = if step_s < STEP_S { time_s } else { self.time_s + step_s };
-        }
-    }
-
-    /// Each filter begins from all of them, weighted by how probably it follows on each.
-    fn mix(&mut self, step_s: f64) {
-        let change = 1.0 - libm::exp(-step_s / CHANGE_S);
-        let others = (MODES.len() - 1) as f64;
-        let before = self.modes.clone();
-        for (k, mode) in self.modes.iter_mut().enumerate() {
-            let weight = |j: usize| {
-                let passes = if j == k { 1.0 - change } else { change / others };
-                passes * before[j].probability
-            };
-            let total: f64 = (0..MODES.len()).map(weight).sum();
-            mode.probability = total;
-            mode.state = before.iter().enumerate().map(|(j, one)| one.state * (weight(j) / total)).sum();
-            mode.covariance = before
-                .iter()
-                .enumerate()
-                .map(|(j, one)| {
-                    let off = one.state - mode.state;
-                    (one.covariance + off * off.transpose()) * (weight(j) / total)
-                })
-                .sum();
-        }
-    }
-
-    /// The smallest normalised square by which a pose is off any filter.
-    fn least_square(&self, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> Option<f64> {
-        let squares = self.modes.iter().map(|mode| Some(Innovation::of(mode, measured, noise)?.square));
-        squares.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::min)
-    }
-
-    /// Whether it could be done.
-    fn update(&mut self, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> bool {
-        let mut logs = [0.0; MODES.len()];
-        for (mode, log) in self.modes.iter_mut().zip(&mut logs) {
-            let Some(innovation) = Innovation::of(mode, measured, noise) else { return false };
-            *log = innovation.log_likelihood + libm::log(mode.probability.max(1e-12));
-            innovation.update(mode);
-        }
-        let most = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let weights = logs.map(|log| libm::exp(log - most));
-        let total: f64 = weights.iter().sum();
-        if !total.is_finite() {
-            return false;
-        }
-        for (mode, weight) in self.modes.iter_mut().zip(weights) {
-            mode.probability = weight / total;
-        }
-        self.modes.iter().all(|mode| mode.state.iter().all(|v| v.is_finite()))
-    }
-
-    /// The mean of the filters and the covariance about it, with what the fields of seconds have in common.
-    fn motion(&self, fields: u32) -> Motion {
-        let state: State = self.modes.iter().map(|mode| mode.state * mode.probability).sum();
-        let mut covariance: Square = self
-            .modes
-            .iter()
-            .map(|mode| {
-                let off = mode.state - state;
-                (mode.covariance + off * off.transpose()) * mode.probability
-            })
-            .sum();
-        {
-            let mut pose = covariance.fixed_view_mut::<6, 6>(0, 0);
-            pose += self.common;
-        }
-        {
-            let mut rate = covariance.fixed_view_mut::<6, 6>(6, 6);
-            rate += self.common / (COMMON_S * COMMON_S);
-        }
-        let pick = |first: usize| {
-            let place = |i: usize| if i < 3 { first + i } else { first + i + 3 };
-            let part = Matrix6::from_fn(|i, j| covariance[(place(i), place(j))]);
-            (part + part.transpose()) * 0.5
-        };
-        Motion {
-            time_s: self.time_s,
-            pose: to_pose(&state.fixed_rows::<6>(0).into_owned()),
-            velocity_m_s: state.fixed_rows::<3>(6).into(),
-            phi_rate_rad_s: state.fixed_rows::<3>(9).into(),
-            position_covariance: pick(0),
-            attitude_covariance: pick(3),
-            cross_covariance: covariance.fixed_view::<3, 3>(0, 3).into(),
-            fields,
-        }
-    }
-}
-
-/// Time over which what the fields have in common changes, s: an edge passes from pixel to pixel, a shadow over a mark.
-const COMMON_S: f64 = 3.0;
-
-/// Standard deviations of the rate and of the acceleration along an axis of the pose.
-fn spread(config: &MotionConfig, axis: usize) -> (f64, f64) {
-    match axis {
-        0..3 => (config.speed_m_s, config.acceleration_m_s2),
-        _ => (config.rotation_deg_s.to_radians(), config.angular_acceleration_deg_s2.to_radians()),
-    }
-}
-
-impl Mode {
-    fn predict(&mut self, step_s: f64, part: f64, config: &MotionConfig) {
-        let tau_s = config.memory_s;
-        // How an acceleration `s` earlier has moved place, rate and acceleration since.
-        let effect = |s: f64| {
-            let x = s / tau_s;
-            let faded = libm::exp(-x);
-            [tau_s * tau_s * (x - 1.0 + faded), tau_s * (1.0 - faded), faded]
-        };
-        let [place, rate, left] = effect(step_s);
-        let mut by = Square::identity();
-        for axis in 0..6 {
-            by[(axis, 6 + axis)] = step_s;
-            by[(axis, 12 + axis)] = place;
-            by[(6 + axis, 12 + axis)] = rate;
-            by[(12 + axis, 12 + axis)] = left;
-        }
-        self.state = by * self.state;
-        self.covariance = by * self.covariance * by.transpose();
-        // ∫ effect effectᵀ ds by Gauss and Legendre's four points.
-        const POINTS: [(f64, f64); 4] = [
-            (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
-            (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
-            (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
-            (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
-        ];
-        let mut grown = [[0.0; 3]; 3];
-        for (at, weight) in POINTS {
-            let effect = effect(at * step_s);
-            for (i, row) in grown.iter_mut().enumerate() {
-                for (j, cell) in row.iter_mut().enumerate() {
-                    *cell += weight * step_s * effect[i] * effect[j];
-                }
-            }
-        }
-        for axis in 0..6 {
-            let (_, acceleration) = spread(config, axis);
-            let density = 2.0 * (part * acceleration) * (part * acceleration) / tau_s;
-            for (i, row) in grown.iter().enumerate() {
-                for (j, cell) in row.iter().enumerate() {
-                    self.covariance[(6 * i + axis, 6 * j + axis)] += density * cell;
-                }
-            }
-        }
-    }
-}
-
-/// A measured pose less a filter's.
-struct Innovation {
-    off: Vector6<f64>,
-    noise: Matrix6<f64>,
-    inverse: Matrix6<f64>,
-    square: f64,
-    log_likelihood: f64,
-}
-
-impl Innovation {
-    fn of(mode: &Mode, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> Option<Self> {
-        let off = measured - mode.state.fixed_rows::<6>(0);
-        let covariance: Matrix6<f64> = mode.covariance.fixed_view::<6, 6>(0, 0) + noise;
-        // Metres beside radians: scaled to a unit diagonal first.
-        let scale = covariance.diagonal().map(|variance| 1.0 / variance.sqrt());
-        let factor = Cholesky::new(Matrix6::from_fn(|i, j| covariance[(i, j)] * scale[i] * scale[j]))?;
-        let diagonal = factor.l_dirty().diagonal();
-        let log_determinant: f64 =
-            diagonal.iter().zip(scale.iter()).map(|(l, s)| 2.0 * libm::log(l / s)).sum();
-        let scaled = factor.inverse();
-        let inverse = Matrix6::from_fn(|i, j| scaled[(i, j)] * scale[i] * scale[j]);
-        let square = off.dot(&(inverse * off));
-        let log_likelihood = -0.5 * (square + log_determinant);
-        (square.is_finite() && log_likelihood.is_finite()).then_some(Self {
-            off,
-            noise: *noise,
-            inverse,
-            square,
-            log_likelihood,
-        })
-    }
-
-    fn update(&self, mode: &mut Mode) {
-        let gain: SMatrix<f64, 18, 6> = mode.covariance.fixed_columns::<6>(0) * self.inverse;
-        mode.state += gain * self.off;
-        // Joseph's form: what is left stays a covariance, however much more is measured than was known.
-        let mut kept = Square::identity();
-        {
-            let mut columns = kept.fixed_columns_mut::<6>(0);
-            columns -= gain;
-        }
-        let left = kept * mode.covariance * kept.transpose() + gain * self.noise * gain.transpose();
-        mode.covariance = (left + left.transpose()) * 0.5;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::tests::{approach, normal};
     use super::*;
+    use crate::docking::pose::geometry::to_pose;
     use contract::docking::Pose;
+    use nalgebra::{Cholesky, Vector6};
 
     /// Covariance of a field: metres beside radians, and lateral position with attitude as strongly correlated as they are.
     fn field_covariance() -> Matrix6<f64> {
@@ -512,6 +255,32 @@ mod tests {
         assert!(place >= 0.98 && rate >= 0.98, "{place} {rate}");
         let (place, rate) = share_within_3_sigma(braking, 9);
         assert!(place >= 0.98 && rate >= 0.97, "{place} {rate}");
+    }
+
+    #[test]
+    fn an_outline_makes_the_range_rate_known_before_a_pose_is() {
+        let mut tracker = MotionTracker::new(MotionConfig::default()).unwrap();
+        let range = |k: u32| 60.0 - 1.2 * f64::from(k) * 0.02;
+        for k in 0..160 {
+            let t = f64::from(k) * 0.02;
+            if k >= 150 {
+                let sigma = Vector6::new(1.0, 1.0, 0.3, 0.02, 0.02, 0.01);
+                let draw = Vector6::from_fn(|i, _| normal(u64::from(k) * 8 + i as u64));
+                let at = Vector6::new(0.3, -0.2, range(k), 0.0, 0.0, 0.0);
+                let pose = to_pose(&(at + sigma.component_mul(&draw)));
+                let covariance = Matrix6::from_diagonal(&sigma.component_mul(&sigma));
+                let (continuity, _) = tracker.add(t, &PoseEstimate { pose, covariance }, &Matrix6::zeros());
+                assert_eq!(continuity, Continuity::Continues, "field {k}");
+            }
+            // The rim makes it 0.7 % too large.
+            let range_m = 0.993 * range(k) + 0.03 * normal(90_000 + u64::from(k));
+            tracker.add_range(t, &OutlineRange { range_m, sigma_m: 0.03 });
+            assert!(k >= 152 || tracker.clone().report().is_none());
+        }
+        let motion = tracker.report().unwrap();
+        let rate = -motion.velocity_m_s.z;
+        assert!((rate - 1.2).abs() < 0.05 && motion.position_covariance[(5, 5)].sqrt() < 0.05, "{motion:?}");
+        assert!((motion.pose.position_m.z - range(159)).abs() < 0.3);
     }
 
     #[test]

@@ -7,6 +7,8 @@
 
 use nalgebra::SVector;
 
+use super::samples::Patch;
+use super::swelling::Swelling;
 use super::unknowns::{GlobalMatrix, Globals, LOCALS, POSE};
 
 /// Of a line shift and level, of a patch the two shifts.
@@ -26,11 +28,20 @@ struct Group {
     scores: [Globals; EFFECTS],
 }
 
-/// Sums over a group's pixels in one patch, for what the patch's levels take.
+/// Sums over a group's pixels in one patch, of which the patch's levels take a part.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
+    group: usize,
     squares: [f64; EFFECTS],
     by_levels: [SVector<f64, LOCALS>; EFFECTS],
+    by_globals: [Globals; EFFECTS],
+}
+
+impl Piece {
+    fn of(group: usize) -> Self {
+        let (by_levels, by_globals) = ([SVector::zeros(); EFFECTS], [Globals::zeros(); EFFECTS]);
+        Self { group, squares: [0.0; EFFECTS], by_levels, by_globals }
+    }
 }
 
 /// Sums group by group; owns its buffers.
@@ -48,7 +59,7 @@ pub(super) struct GroupedPixel {
     pub(super) residual: f64,
     /// What a unit of each effect adds to it, DN.
     pub(super) effects: [f64; EFFECTS],
-    /// Its derivatives by the globals, levels eliminated.
+    /// Derivatives of its coverage by the globals.
     pub(super) slopes: Globals,
     /// Its regressors of the levels.
     pub(super) levels: SVector<f64, LOCALS>,
@@ -68,26 +79,31 @@ impl Groups {
             self.groups
                 .resize(group + 1, Group { seen: [0.0; EFFECTS], squares: [0.0; EFFECTS], scores: zero });
         }
-        if self.pieces.len() <= *group {
-            let zero = [SVector::zeros(); EFFECTS];
-            self.pieces.resize(group + 1, Piece { squares: [0.0; EFFECTS], by_levels: zero });
-        }
-        let (sums, piece) = (&mut self.groups[*group], &mut self.pieces[*group]);
+        // A patch's pixels come line by line: the piece is nearly always the last.
+        let place = self.pieces.iter().rposition(|piece| piece.group == *group).unwrap_or_else(|| {
+            self.pieces.push(Piece::of(*group));
+            self.pieces.len() - 1
+        });
+        let (sums, piece) = (&mut self.groups[*group], &mut self.pieces[place]);
         for (k, effect) in effects.iter().enumerate() {
             sums.seen[k] += effect * residual;
-            sums.scores[k] += slopes * *effect;
             piece.squares[k] += effect * effect;
             piece.by_levels[k] += levels * *effect;
+            piece.by_globals[k] += slopes * *effect;
         }
         self.pixels += 1.0;
     }
 
-    /// Closes a patch, whose levels have this inverse of their normal equations.
-    pub(super) fn close(&mut self, inverse: &nalgebra::SMatrix<f64, LOCALS, LOCALS>) {
-        for (sums, piece) in self.groups.iter_mut().zip(&self.pieces) {
+    /// Closes a patch: its levels take their part of every sum.
+    pub(super) fn close(&mut self, patch: &Patch) {
+        let level = patch.levels[LOCALS - 1];
+        let by_levels = patch.levels_by_globals.transpose();
+        for piece in &self.pieces {
+            let sums = &mut self.groups[piece.group];
             for k in 0..EFFECTS {
-                let taken = piece.by_levels[k].dot(&(inverse * piece.by_levels[k]));
+                let taken = piece.by_levels[k].dot(&(patch.levels_inverse * piece.by_levels[k]));
                 sums.squares[k] += (piece.squares[k] - taken).max(0.0);
+                sums.scores[k] += (piece.by_globals[k] - by_levels * piece.by_levels[k]) * level;
             }
         }
         self.pieces.clear();
@@ -99,22 +115,29 @@ impl Groups {
         scores.map(|scores| scores * scores.transpose()).sum()
     }
 
-    /// The least squares of one effect of the first group, when it is taken for an unknown of the fit with this prior standard deviation: what
-    /// changes in the globals, and their covariance from it. `inverse` is that of the information, `variance` a pixel's.
+    /// The same from effects that are one in several groups.
+    pub(super) fn shifted_together(&self, groups: impl Iterator<Item = usize> + Clone) -> GlobalMatrix {
+        let sum = |k: usize| -> Globals {
+            groups.clone().filter_map(|group| Some(self.groups.get(group)?.scores[k])).sum()
+        };
+        (0..EFFECTS).map(sum).map(|scores| scores * scores.transpose()).sum()
+    }
+
+    /// The swelling as an unknown of the fit, its effect that of the first group: what it changes in the globals, their covariance from it, and
+    /// what is known of it now. `inverse` is that of the information, `variance` a pixel's.
     pub(super) fn as_unknown(
         &self,
         inverse: &GlobalMatrix,
         variance: f64,
-        prior: f64,
-    ) -> Option<(Globals, GlobalMatrix)> {
+        known: &Swelling,
+    ) -> Option<(Globals, GlobalMatrix, Swelling)> {
         let all = self.groups.first()?;
         let by_globals = inverse * all.scores[0];
         let alone = (all.squares[0] - all.scores[0].dot(&by_globals)).max(0.0);
-        let weight = alone / variance + 1.0 / (prior * prior);
-        let size = all.seen[0] / variance / weight;
-        let change = by_globals * -size;
-        let covariance = by_globals * by_globals.transpose() / weight;
-        (change.iter().chain(&covariance).all(|v| v.is_finite())).then_some((change, covariance))
+        let now = known.with(alone / variance, all.seen[0] / variance);
+        let change = by_globals * -(now.weighted / now.weight);
+        let covariance = by_globals * by_globals.transpose() / now.weight;
+        (change.iter().chain(&covariance).all(|v| v.is_finite())).then_some((change, covariance, now))
     }
 
     /// Covariance of the gradient from what the pixels of a group have in common, DN², and what it takes off the variance of a pixel.
@@ -158,6 +181,7 @@ pub(super) fn turns(by_pose: &nalgebra::SMatrix<f64, 2, POSE>) -> Option<[SVecto
 
 #[cfg(test)]
 mod tests {
+    use super::super::samples::Feature;
     use super::*;
 
     /// Normal to a few percent: twelve uniform numbers of a multiplicative congruential sequence (Park and Miller 1988).
@@ -189,7 +213,9 @@ mod tests {
                 });
             }
         }
-        lines.close(&nalgebra::SMatrix::zeros());
+        let mut patch = Patch::new(Feature::Cross, 0..1, (0.0, 0.0));
+        patch.levels[LOCALS - 1] = 1.0;
+        lines.close(&patch);
         lines
     }
 

@@ -24,6 +24,7 @@ mod samples;
 mod scene;
 mod shadow;
 mod solve;
+mod swelling;
 mod unknowns;
 
 #[cfg(test)]
@@ -41,6 +42,7 @@ use self::samples::{Feature, Samples};
 use self::scene::Scene;
 use self::shadow::ShadowFinder;
 use self::solve::{Evaluation, Search, normals, residual, solve, uncertainty};
+use self::swelling::Swelling;
 use self::unknowns::{BLUR, GLOBALS, GRID, Globals, LOCALS, POSE};
 use crate::CameraModel;
 use crate::docking::pose::geometry::{View, project, to_pose, to_vector};
@@ -81,6 +83,9 @@ const MOST_REJECTED: f64 = 0.15;
 
 /// Error of the model that is no reason for a rejection, as a part of the feature's level.
 const MODEL_ERROR: f64 = 0.005;
+
+/// The same of a cross of a few pixels, which is one patch: its side faces, its post and its shadow are less than a line of a field.
+const SMALL_CROSS_ERROR: f64 = 0.015;
 
 /// A mark fainter than this part of the median mark is not seen.
 const FAINTEST_MARK: f64 = 0.15;
@@ -133,7 +138,8 @@ pub struct ModelFit {
     marks: SampledMarks,
     lines: Groups,
     patches: Groups,
-    swelling: Groups,
+    swellings: Groups,
+    swelling: Swelling,
     variances: Vec<f64>,
     blur: Blur,
 }
@@ -154,7 +160,8 @@ impl ModelFit {
             marks: SampledMarks::default(),
             lines: Groups::default(),
             patches: Groups::default(),
-            swelling: Groups::default(),
+            swellings: Groups::default(),
+            swelling: Swelling::default(),
             variances: Vec::new(),
             blur: Blur::new(FIRST_BLUR_PX2, FIRST_BLUR_PX2),
         }
@@ -270,7 +277,8 @@ impl ModelFit {
         }
         let fitted = judge(
             samples,
-            [&mut self.lines, &mut self.patches, &mut self.swelling],
+            [&mut self.lines, &mut self.patches, &mut self.swellings],
+            &mut self.swelling,
             &scene,
             &globals,
             &evaluation,
@@ -323,10 +331,13 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
     // Of a normal distribution the median of the absolute deviations is 0.6745 σ.
     let scatter_of_marks = median(mark_levels).unwrap_or(0.0) / 0.6745;
 
+    let crosses = patches.iter().filter(|patch| patch.feature == Feature::Cross).count();
     let (mut is_changed, mut changed) = (false, 0);
     for patch in patches.iter_mut() {
         let level = patch.levels[LOCALS - 1];
-        let tolerated = typical + MODEL_ERROR * MODEL_ERROR * level * level;
+        let model_error =
+            if patch.feature == Feature::Cross && crosses == 1 { SMALL_CROSS_ERROR } else { MODEL_ERROR };
+        let tolerated = typical + model_error * model_error * level * level;
         let gate = PIXEL_GATE * PIXEL_GATE * tolerated;
         let (mut squares, mut used) = (0.0, 0);
         let all = patch.end - patch.first;
@@ -364,6 +375,7 @@ fn reject(samples: &mut Samples, variances: &mut Vec<f64>) -> Result<bool, NoPos
 fn judge(
     samples: &Samples,
     groups: [&mut Groups; 3],
+    swelling: &mut Swelling,
     scene: &Scene,
     globals: &Globals,
     evaluation: &Evaluation,
@@ -379,7 +391,8 @@ fn judge(
     if median(&mut levels).is_none_or(|level| level < FAINTEST_LEVEL * variance.sqrt()) {
         return Err(too_few(samples));
     }
-    let known = uncertainty(scene, samples, groups, globals, evaluation).ok_or_else(|| too_few(samples))?;
+    let known =
+        uncertainty(scene, samples, groups, swelling, globals, evaluation).ok_or_else(|| too_few(samples))?;
     let covariance: Matrix6<f64> = known.covariance.fixed_view::<POSE, POSE>(0, 0).into();
     let common: Matrix6<f64> = known.common.fixed_view::<POSE, POSE>(0, 0).into();
     let pose = to_pose(&(globals + known.change));
@@ -391,6 +404,7 @@ fn judge(
     if !is_determined {
         return Err(too_few(samples));
     }
+    *swelling = known.swelling.faded();
     let see = |point: Vector3<f64>| project(scene.camera, &pose, &point).ok_or(NoPose::Inconsistent);
     Ok(Fitted {
         estimate: PoseEstimate { pose, covariance },

@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use contract::docking::TargetModel;
 use nalgebra::{SMatrix, SVector, Vector2, Vector3};
 use pulp::Arch;
 
@@ -13,6 +12,7 @@ use super::equations::{Cover, Image, Look, NormalEquations, Work, regressors};
 use super::groups::{GroupedPixel, Groups, turns};
 use super::samples::{Feature, Patch, Sample, Samples};
 use super::scene::Scene;
+use super::swelling::{self, Swelling};
 use super::unknowns::{BLUR, ByGlobals, GLOBALS, GRID, GlobalMatrix, Globals, LOCALS, POSE, SIDES};
 use crate::docking::portions::inverse;
 use crate::docking::pose::geometry::{View, to_pose};
@@ -176,29 +176,34 @@ pub(super) struct Uncertainty {
     pub(super) covariance: GlobalMatrix,
     /// The part of the covariance that is the scene's and the video's, and so the same in the fields of seconds.
     pub(super) common: GlobalMatrix,
+    /// What is known of the swelling after this field.
+    pub(super) swelling: Swelling,
 }
-
-/// How far edges may lie farther out than the target's dimensions have them, px, one standard deviation: a video that is not linear in
-/// light moves them towards the darker side.
-const SWELLING_PX: f64 = 0.05;
 
 /// How far a cross of a few pixels, which is one patch, may lie off its place, px, one standard deviation: lines of a field are 2 px apart, and
 /// no other patch shows by its scatter what the video does to it.
 const SMALL_CROSS_PX: f64 = 0.04;
 
-/// The step by which the effect of a swelling is formed, px.
-const SWELLING_STEP_PX: f64 = 0.05;
+/// The same of a mark that is narrower than a pixel; of a wider one it falls with the fourth power of the width.
+const SMALL_MARK_PX: f64 = 0.02;
+
+/// By which part of the swelling the cross may lie aside: its edges against a lit side face swell otherwise than those against the plate.
+const SIDEWAYS: f64 = 0.5;
+
+/// The least part of a pixel's variance that is noise of its own: what lines and patches both explain is counted twice.
+const LEAST_NOISE: f64 = 0.25;
 
 /// Uncertainty of the globals at a solution: that of noise, independent from pixel to pixel, and of what lines and patches have in
 /// common.
 ///
 /// The estimate is off by H⁻¹ Jᵀ n, H being the information: with noise of σ² that has the covariance σ² H⁻¹, and with lines that
 /// are off by s_l e_l as well, of variance τ², H⁻¹ (σ² H + τ² Σ_l (Jᵀ e_l)(Jᵀ e_l)ᵀ) H⁻¹. A swelling of all features is one more unknown,
-/// with a prior. `None` when nothing is determined.
+/// of which the fields before told something. `None` when nothing is determined.
 pub(super) fn uncertainty(
     scene: &Scene,
     samples: &Samples,
-    [lines, of_patches, swelling]: [&mut Groups; 3],
+    [lines, of_patches, swellings]: [&mut Groups; 3],
+    known_swelling: &Swelling,
     globals: &Globals,
     evaluation: &Evaluation,
 ) -> Option<Uncertainty> {
@@ -206,12 +211,12 @@ pub(super) fn uncertainty(
     let variance = evaluation.variance();
     let images = Images::new(scene, globals, 0.0)?;
     let pose = to_pose(globals);
-    let swollen = swollen(scene.target, scene.camera.focal_px().0 / pose.position_m.z);
+    let swollen = swelling::swollen(scene.target, scene.camera.focal_px().0 / pose.position_m.z);
     let swollen = Images::new(&Scene { target: &swollen, ..*scene }, globals, 0.0)?;
     let centre = View::new(scene.camera, &pose).see(&Vector3::zeros())?;
     let [along, across] = turns(&centre.by_pose)?;
-    let groups = [lines, of_patches, swelling];
-    let [lines, of_patches, swelling] = groups.map(|groups| {
+    let groups = [lines, of_patches, swellings];
+    let [lines, of_patches, swellings] = groups.map(|groups| {
         groups.clear();
         groups
     });
@@ -231,51 +236,53 @@ pub(super) fn uncertainty(
                     group: pixel.row,
                     residual: residual(patch, pixel),
                     effects: [shift[0], 1.0],
-                    slopes: (slopes - patch.levels_by_globals.transpose() * levels) * level,
+                    slopes,
                     levels,
                 };
                 lines.add(&of_line);
                 of_patches.add(&GroupedPixel { group: index, effects: shift, ..of_line });
-                let swell = level * (wider[l] - coverage.value[l]) / SWELLING_STEP_PX;
-                swelling.add(&GroupedPixel { group: 0, effects: [swell, 0.0], ..of_line });
+                let swell = level * (wider[l] - coverage.value[l]) / swelling::STEP_PX;
+                swellings.add(&GroupedPixel { group: 0, effects: [swell, 0.0], ..of_line });
             }
         }
-        lines.close(&patch.levels_inverse);
-        of_patches.close(&patch.levels_inverse);
-        swelling.close(&patch.levels_inverse);
+        lines.close(patch);
+        of_patches.close(patch);
+        swellings.close(patch);
     }
     let (by_lines, explained_by_lines) = lines.scatter(variance);
     let (mut by_patches, explained_by_patches) = of_patches.scatter(variance);
-    let mut crosses = samples.patches.iter().filter(|patch| patch.is_used).enumerate();
-    let mut crosses = crosses.by_ref().filter(|(_, patch)| patch.feature == Feature::Cross);
-    if let (Some((index, _)), None) = (crosses.next(), crosses.next()) {
-        by_patches += of_patches.shifted(index) * (SMALL_CROSS_PX * SMALL_CROSS_PX);
+    let used = || samples.patches.iter().filter(|patch| patch.is_used).enumerate();
+    let is_small = used().filter(|(_, patch)| patch.feature == Feature::Cross).count() == 1;
+    let scale = scene.camera.focal_px().0 / pose.position_m.z;
+    for (index, patch) in used() {
+        let off_px = match patch.feature {
+            Feature::Mark(mark) => {
+                let width_px = (scale * width_m(&scene.target.marks[mark])).max(1.0);
+                SMALL_MARK_PX / (width_px * width_px * width_px * width_px)
+            }
+            Feature::Cross if is_small => SMALL_CROSS_PX,
+            Feature::Cross => continue,
+        };
+        by_patches += of_patches.shifted(index) * (off_px * off_px);
     }
-    let noise = (variance - explained_by_lines - explained_by_patches).max(0.0);
-    let (change, by_swelling) = swelling.as_unknown(&inverse, variance, SWELLING_PX)?;
-    let common = inverse * by_patches * inverse;
+    let (change, by_swelling, swelling) = swellings.as_unknown(&inverse, variance, known_swelling)?;
+    let crosses = used().filter(|(_, patch)| patch.feature == Feature::Cross).map(|(index, _)| index);
+    let aside_px = SIDEWAYS * swelling.weighted / swelling.weight;
+    by_patches += of_patches.shifted_together(crosses) * (aside_px * aside_px);
+    let noise = (variance - explained_by_lines - explained_by_patches).max(LEAST_NOISE * variance);
+    let common = inverse * by_patches * inverse + by_swelling;
     Some(Uncertainty {
         change,
-        covariance: inverse * noise + inverse * by_lines * inverse + common + by_swelling,
+        covariance: inverse * noise + inverse * by_lines * inverse + common,
         common,
+        swelling,
     })
 }
 
-/// The target with all edges of its features so far outside that they lie [`SWELLING_STEP_PX`] farther out in the image; `scale`: px/m on the
-/// plate.
-fn swollen(target: &TargetModel, scale: f64) -> TargetModel {
-    let by_m = SWELLING_STEP_PX / scale;
-    let mut swollen = target.clone();
-    swollen.cross.width_m += 2.0 * by_m;
-    swollen.cross.half_length_m += by_m;
-    for (corners, new) in target.marks.iter().zip(&mut swollen.marks) {
-        for k in 0..4 {
-            let at = Vector2::from(corners[k]);
-            let outwards = |other: usize| (at - Vector2::from(corners[other % 4])).normalize();
-            new[k] = (at + (outwards(k + 1) + outwards(k + 3)) * by_m).into();
-        }
-    }
-    swollen
+/// The shorter side of a mark, m.
+fn width_m(corners: &[[f64; 2]; 4]) -> f64 {
+    let side = |k: usize| (Vector2::from(corners[k]) - Vector2::from(corners[(k + 1) % 4])).norm();
+    (0..4).map(side).fold(f64::INFINITY, f64::min)
 }
 
 /// Whether a global is at the end of its range and would leave it.

@@ -1,0 +1,438 @@
+//! The motion by three filters of one state that differ in how hard the camera accelerates, and a probability of each.
+//!
+//! State: (d, φ), its rates and accelerations, and by which part of itself the station's outline is seen too large. An acceleration is a
+//! random function of time with a standard deviation σ and a memory τ (Singer 1970); the filters have σ, a fifth and a thirtieth
+//! of it, and exchange their estimates as the probabilities of a change between them say (interacting multiple models: Blom &
+//! Bar-Shalom 1988). A hold or a glide is followed with a small σ, a braking ship with a large one, and the covariance holds the doubt
+//! which of them it is.
+
+use contract::docking::{Motion, PoseEstimate};
+use contract::{OutOfRange, bounds};
+use nalgebra::{Cholesky, Matrix6, SMatrix, SVector, Vector6};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::docking::pose::geometry::{to_pose, to_vector};
+
+const SIZE: usize = 19;
+/// Place of the outline's scale in the state.
+const SCALE: usize = 18;
+type State = SVector<f64, SIZE>;
+type Square = SMatrix<f64, SIZE, SIZE>;
+
+/// How the camera may move.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct MotionConfig {
+    /// Standard deviation of each component of acceleration while the ship manoeuvres, m/s², above 0 to 100: a change of speed by
+    /// 0.8 m/s within 3 s.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
+    pub acceleration_m_s2: f64,
+    /// The same of rotation, degrees/s², above 0 to 100.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
+    pub angular_acceleration_deg_s2: f64,
+    /// Memory of an acceleration, s, 0.1 to 1000.
+    #[schemars(range(min = 0.1, max = 1000))]
+    pub memory_s: f64,
+    /// Standard deviation of each component of velocity before anything is measured, m/s, above 0 to 100; no motion is reported
+    /// whose range rate is above three of it.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
+    pub speed_m_s: f64,
+    /// The same of rotation, degrees/s, above 0 to 100.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 100))]
+    pub rotation_deg_s: f64,
+    /// A field is left out when its pose is off the motion by more than this normalised square (chi-square of 6 degrees of
+    /// freedom), above 0 to 1e12.
+    #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1e12))]
+    pub field_gate: f64,
+}
+
+impl Default for MotionConfig {
+    /// A cargo ship that docks; a gate that noise passes once in 10⁷ fields.
+    fn default() -> Self {
+        Self {
+            acceleration_m_s2: 0.3,
+            angular_acceleration_deg_s2: 0.3,
+            memory_s: 3.0,
+            speed_m_s: 2.0,
+            rotation_deg_s: 1.0,
+            field_gate: 45.0,
+        }
+    }
+}
+
+impl MotionConfig {
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for the first one outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        bounds::check(self, "motion")
+    }
+}
+
+/// Accelerations of the filters, as parts of the configured one.
+const MODES: [f64; 3] = [1.0, 0.2, 0.03];
+
+/// Mean time after which one filter's motion gives way to another's, s.
+const CHANGE_S: f64 = 5.0;
+
+/// By which part of itself the radius of a station's outline may be off, one standard deviation, and by how much of that it changes within a
+/// second: a rim that is brighter than the face, a shadow on it, what shows behind it.
+const OUTLINE_SCALE: f64 = 0.01;
+const OUTLINE_DRIFT: f64 = 2e-4;
+
+/// How far from the middle, as a part of the range, and how far turned, rad, a camera is thought that sees nothing but an outline.
+const UNSEEN_OFFSET: f64 = 0.2;
+const UNSEEN_ANGLE_RAD: f64 = 0.2;
+
+/// The range by a station's outline.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::docking) struct OutlineRange {
+    /// d3, m.
+    pub(in crate::docking) range_m: f64,
+    /// Its standard deviation from field to field, m: without what errs alike for long.
+    pub(in crate::docking) sigma_m: f64,
+}
+
+/// Longest step of a prediction, s: accelerations fade within some of them.
+const STEP_S: f64 = 0.5;
+
+/// The filters at a moment.
+#[derive(Debug, Clone)]
+pub(super) struct Track {
+    pub(super) time_s: f64,
+    modes: [Mode; MODES.len()],
+    /// What errs alike in the fields of seconds: added to what the filters say.
+    pub(super) common: Matrix6<f64>,
+}
+
+/// One filter.
+#[derive(Debug, Clone)]
+struct Mode {
+    probability: f64,
+    state: State,
+    covariance: Square,
+}
+
+impl Track {
+    pub(super) fn begin(
+        time_s: f64,
+        estimate: &PoseEstimate,
+        common: &Matrix6<f64>,
+        config: &MotionConfig,
+    ) -> Self {
+        let modes = MODES.map(|part| {
+            let mut state = State::zeros();
+            state.fixed_rows_mut::<6>(0).copy_from(&to_vector(&estimate.pose));
+            let mut covariance = Square::zeros();
+            covariance.fixed_view_mut::<6, 6>(0, 0).copy_from(&estimate.covariance);
+            for axis in 0..6 {
+                let (rate, acceleration) = spread(config, axis);
+                covariance[(6 + axis, 6 + axis)] = rate * rate;
+                covariance[(12 + axis, 12 + axis)] = (part * acceleration) * (part * acceleration);
+            }
+            covariance[(SCALE, SCALE)] = OUTLINE_SCALE * OUTLINE_SCALE;
+            Mode { probability: 1.0 / MODES.len() as f64, state, covariance }
+        });
+        Self { time_s, modes, common: *common }
+    }
+
+    pub(super) fn predict(&mut self, time_s: f64, config: &MotionConfig) {
+        while self.time_s < time_s {
+            let step_s = (time_s - self.time_s).min(STEP_S);
+            self.mix(step_s, config);
+            for (mode, part) in self.modes.iter_mut().zip(MODES) {
+                mode.predict(step_s, part, config);
+            }
+            self.time_s = if step_s < STEP_S { time_s } else { self.time_s + step_s };
+        }
+    }
+
+    /// From a station's outline alone: nothing is known but the range.
+    pub(super) fn begin_at_range(time_s: f64, range: &OutlineRange, config: &MotionConfig) -> Self {
+        let (place, angle) = (UNSEEN_OFFSET * range.range_m, UNSEEN_ANGLE_RAD);
+        let sigma = Vector6::new(place, place, place, angle, angle, angle);
+        let covariance = Matrix6::from_diagonal(&sigma.component_mul(&sigma));
+        let pose = to_pose(&Vector6::new(0.0, 0.0, range.range_m, 0.0, 0.0, 0.0));
+        let mut track = Self::begin(time_s, &PoseEstimate { pose, covariance }, &Matrix6::zeros(), config);
+        track.update_range(range);
+        track
+    }
+
+    /// Each filter begins from all of them, weighted by how probably it follows on each. A change is a thruster that is switched on or off: the
+    /// acceleration begins anew.
+    fn mix(&mut self, step_s: f64, config: &MotionConfig) {
+        let change = 1.0 - libm::exp(-step_s / CHANGE_S);
+        let others = (MODES.len() - 1) as f64;
+        let before = self.modes.clone();
+        for (k, mode) in self.modes.iter_mut().enumerate() {
+            let weight = |j: usize| {
+                let passes = if j == k { 1.0 - change } else { change / others };
+                passes * before[j].probability
+            };
+            let total: f64 = (0..MODES.len()).map(weight).sum();
+            let from: [Mode; MODES.len()] = std::array::from_fn(|j| {
+                if j == k { before[j].clone() } else { before[j].switched(MODES[k], config) }
+            });
+            mode.probability = total;
+            mode.state = from.iter().enumerate().map(|(j, one)| one.state * (weight(j) / total)).sum();
+            mode.covariance = from
+                .iter()
+                .enumerate()
+                .map(|(j, one)| {
+                    let off = one.state - mode.state;
+                    (one.covariance + off * off.transpose()) * (weight(j) / total)
+                })
+                .sum();
+        }
+    }
+
+    /// The smallest normalised square by which a pose is off any filter.
+    pub(super) fn least_square(&self, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> Option<f64> {
+        let squares = self.modes.iter().map(|mode| Some(Innovation::of(mode, measured, noise)?.square));
+        squares.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::min)
+    }
+
+    /// The same of the range from a station's outline.
+    pub(super) fn least_square_of_range(&self, range: &OutlineRange) -> f64 {
+        self.modes.iter().map(|mode| RangeInnovation::of(mode, range).square()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether it could be done.
+    pub(super) fn update(&mut self, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> bool {
+        let mut logs = [0.0; MODES.len()];
+        for (mode, log) in self.modes.iter_mut().zip(&mut logs) {
+            let Some(innovation) = Innovation::of(mode, measured, noise) else { return false };
+            *log = innovation.log_likelihood;
+            innovation.update(mode);
+        }
+        self.weigh(logs)
+    }
+
+    /// Whether it could be done.
+    pub(super) fn update_range(&mut self, range: &OutlineRange) -> bool {
+        let mut logs = [0.0; MODES.len()];
+        for (mode, log) in self.modes.iter_mut().zip(&mut logs) {
+            let innovation = RangeInnovation::of(mode, range);
+            *log = -0.5 * (innovation.square() + libm::log(innovation.variance));
+            innovation.update(mode);
+        }
+        self.weigh(logs)
+    }
+
+    /// Makes the filters as probable as they predicted well; whether all of them are numbers.
+    fn weigh(&mut self, logs: [f64; MODES.len()]) -> bool {
+        let mut weights = logs;
+        for (weight, mode) in weights.iter_mut().zip(&self.modes) {
+            *weight += libm::log(mode.probability.max(1e-12));
+        }
+        let most = weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let weights = weights.map(|log| libm::exp(log - most));
+        let total: f64 = weights.iter().sum();
+        if !total.is_finite() {
+            return false;
+        }
+        for (mode, weight) in self.modes.iter_mut().zip(weights) {
+            mode.probability = weight / total;
+        }
+        self.modes.iter().all(|mode| mode.state.iter().all(|v| v.is_finite()))
+    }
+
+    /// Expected products of the rates of the pose.
+    pub(super) fn squares_of_rates(&self) -> Matrix6<f64> {
+        let of_mode = |mode: &Mode| {
+            let rate = mode.state.fixed_rows::<6>(6);
+            (mode.covariance.fixed_view::<6, 6>(6, 6) + rate * rate.transpose()) * mode.probability
+        };
+        self.modes.iter().map(of_mode).sum()
+    }
+
+    /// The mean of the filters and the covariance about it, with what the fields of seconds have in common.
+    pub(super) fn motion(&self, fields: u32) -> Motion {
+        let state: State = self.modes.iter().map(|mode| mode.state * mode.probability).sum();
+        let mut covariance: Square = self
+            .modes
+            .iter()
+            .map(|mode| {
+                let off = mode.state - state;
+                (mode.covariance + off * off.transpose()) * mode.probability
+            })
+            .sum();
+        {
+            let mut pose = covariance.fixed_view_mut::<6, 6>(0, 0);
+            pose += self.common;
+        }
+        {
+            let mut rate = covariance.fixed_view_mut::<6, 6>(6, 6);
+            rate += self.common / (COMMON_S * COMMON_S);
+        }
+        let pick = |first: usize| {
+            let place = |i: usize| if i < 3 { first + i } else { first + i + 3 };
+            let part = Matrix6::from_fn(|i, j| covariance[(place(i), place(j))]);
+            (part + part.transpose()) * 0.5
+        };
+        Motion {
+            time_s: self.time_s,
+            pose: to_pose(&state.fixed_rows::<6>(0).into_owned()),
+            velocity_m_s: state.fixed_rows::<3>(6).into(),
+            phi_rate_rad_s: state.fixed_rows::<3>(9).into(),
+            position_covariance: pick(0),
+            attitude_covariance: pick(3),
+            cross_covariance: covariance.fixed_view::<3, 3>(0, 3).into(),
+            fields,
+        }
+    }
+}
+
+/// Time over which what the fields have in common changes, s: an edge passes from pixel to pixel, a shadow over a mark.
+const COMMON_S: f64 = 3.0;
+
+/// Standard deviations of the rate and of the acceleration along an axis of the pose.
+fn spread(config: &MotionConfig, axis: usize) -> (f64, f64) {
+    match axis {
+        0..3 => (config.speed_m_s, config.acceleration_m_s2),
+        _ => (config.rotation_deg_s.to_radians(), config.angular_acceleration_deg_s2.to_radians()),
+    }
+}
+
+/// The same of [`Track::squares_of_rates`] where nothing is measured.
+pub(super) fn unknown_rates(config: &MotionConfig) -> Matrix6<f64> {
+    let rates = Vector6::from_fn(|axis, _| spread(config, axis).0);
+    Matrix6::from_diagonal(&rates.component_mul(&rates))
+}
+
+impl Mode {
+    /// With accelerations of which nothing is known but their size.
+    fn switched(&self, part: f64, config: &MotionConfig) -> Self {
+        let mut switched = self.clone();
+        for axis in 0..6 {
+            let (_, acceleration) = spread(config, axis);
+            let i = 12 + axis;
+            switched.state[i] = 0.0;
+            switched.covariance.row_mut(i).fill(0.0);
+            switched.covariance.column_mut(i).fill(0.0);
+            switched.covariance[(i, i)] = (part * acceleration) * (part * acceleration);
+        }
+        switched
+    }
+
+    fn predict(&mut self, step_s: f64, part: f64, config: &MotionConfig) {
+        let tau_s = config.memory_s;
+        // How an acceleration `s` earlier has moved place, rate and acceleration since.
+        let effect = |s: f64| {
+            let x = s / tau_s;
+            let faded = libm::exp(-x);
+            [tau_s * tau_s * (x - 1.0 + faded), tau_s * (1.0 - faded), faded]
+        };
+        let [place, rate, left] = effect(step_s);
+        let mut by = Square::identity();
+        for axis in 0..6 {
+            by[(axis, 6 + axis)] = step_s;
+            by[(axis, 12 + axis)] = place;
+            by[(6 + axis, 12 + axis)] = rate;
+            by[(12 + axis, 12 + axis)] = left;
+        }
+        self.state = by * self.state;
+        self.covariance = by * self.covariance * by.transpose();
+        self.covariance[(SCALE, SCALE)] += OUTLINE_DRIFT * OUTLINE_DRIFT * step_s;
+        // ∫ effect effectᵀ ds by Gauss and Legendre's four points.
+        const POINTS: [(f64, f64); 4] = [
+            (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
+            (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
+            (0.669_990_521_792_428_1, 0.326_072_577_431_273_07),
+            (0.930_568_155_797_026_3, 0.173_927_422_568_726_93),
+        ];
+        let mut grown = [[0.0; 3]; 3];
+        for (at, weight) in POINTS {
+            let effect = effect(at * step_s);
+            for (i, row) in grown.iter_mut().enumerate() {
+                for (j, cell) in row.iter_mut().enumerate() {
+                    *cell += weight * step_s * effect[i] * effect[j];
+                }
+            }
+        }
+        for axis in 0..6 {
+            let (_, acceleration) = spread(config, axis);
+            let density = 2.0 * (part * acceleration) * (part * acceleration) / tau_s;
+            for (i, row) in grown.iter().enumerate() {
+                for (j, cell) in row.iter().enumerate() {
+                    self.covariance[(6 * i + axis, 6 * j + axis)] += density * cell;
+                }
+            }
+        }
+    }
+}
+
+/// A measured pose less a filter's.
+struct Innovation {
+    off: Vector6<f64>,
+    noise: Matrix6<f64>,
+    inverse: Matrix6<f64>,
+    square: f64,
+    log_likelihood: f64,
+}
+
+impl Innovation {
+    fn of(mode: &Mode, measured: &Vector6<f64>, noise: &Matrix6<f64>) -> Option<Self> {
+        let off = measured - mode.state.fixed_rows::<6>(0);
+        let covariance: Matrix6<f64> = mode.covariance.fixed_view::<6, 6>(0, 0) + noise;
+        // Metres beside radians: scaled to a unit diagonal first.
+        let scale = covariance.diagonal().map(|variance| 1.0 / variance.sqrt());
+        let factor = Cholesky::new(Matrix6::from_fn(|i, j| covariance[(i, j)] * scale[i] * scale[j]))?;
+        let diagonal = factor.l_dirty().diagonal();
+        let log_determinant: f64 =
+            diagonal.iter().zip(scale.iter()).map(|(l, s)| 2.0 * libm::log(l / s)).sum();
+        let scaled = factor.inverse();
+        let inverse = Matrix6::from_fn(|i, j| scaled[(i, j)] * scale[i] * scale[j]);
+        let square = off.dot(&(inverse * off));
+        let log_likelihood = -0.5 * (square + log_determinant);
+        (square.is_finite() && log_likelihood.is_finite()).then_some(Self {
+            off,
+            noise: *noise,
+            inverse,
+            square,
+            log_likelihood,
+        })
+    }
+
+    fn update(&self, mode: &mut Mode) {
+        let gain: SMatrix<f64, SIZE, 6> = mode.covariance.fixed_columns::<6>(0) * self.inverse;
+        mode.state += gain * self.off;
+        // Joseph's form: what is left stays a covariance, however much more is measured than was known.
+        let mut kept = Square::identity();
+        {
+            let mut columns = kept.fixed_columns_mut::<6>(0);
+            columns -= gain;
+        }
+        let left = kept * mode.covariance * kept.transpose() + gain * self.noise * gain.transpose();
+        mode.covariance = (left + left.transpose()) * 0.5;
+    }
+}
+
+/// The range from a station's outline less a filter's.
+struct RangeInnovation {
+    off_m: f64,
+    /// The range by the state.
+    by_state: State,
+    variance: f64,
+}
+
+impl RangeInnovation {
+    fn of(mode: &Mode, range: &OutlineRange) -> Self {
+        let mut by_state = State::zeros();
+        (by_state[2], by_state[SCALE]) = (1.0, range.range_m);
+        let variance = by_state.dot(&(mode.covariance * by_state)) + range.sigma_m * range.sigma_m;
+        Self { off_m: range.range_m - by_state.dot(&mode.state), by_state, variance }
+    }
+
+    fn square(&self) -> f64 {
+        self.off_m * self.off_m / self.variance
+    }
+
+    fn update(&self, mode: &mut Mode) {
+        let gain = mode.covariance * self.by_state / self.variance;
+        mode.state += gain * self.off_m;
+        mode.covariance -= gain * gain.transpose() * self.variance;
+    }
+}
