@@ -5,12 +5,12 @@ use contract::{AttitudeSource, CameraFrame, Icrs, PixelPoint, Rotation, Telemetr
 use super::lost_in_space;
 use super::mounting::AttitudeError;
 use super::photometry::{FittedSource, FrameLight, Source};
-use super::pipeline::{BestPipeline, ScaleKnowledge};
 use super::stars::{
     ExpectedStar, StarCandidate, StarMeasurement, are_confirmed, image_covariance, matches_at_positions,
     matches_by_offset, solve_attitude,
 };
 use super::start::AttitudeStart;
+use super::state::{BestPipeline, ScaleKnowledge};
 use crate::far_range::aberration::apparent_direction;
 use crate::far_range::config::AberrationConfig;
 use crate::far_range::overrides::{Identity, Overrides};

@@ -4,8 +4,8 @@ use contract::{Covariance2, Measurement, PixelPoint};
 use nalgebra::Matrix2;
 
 use super::frame_attitude::FrameAttitude;
-use super::pipeline::BestPipeline;
 use super::stars::image_covariance;
+use super::state::BestPipeline;
 use super::target::{CandidateImage, TargetContext};
 use crate::far_range::overrides::Overrides;
 

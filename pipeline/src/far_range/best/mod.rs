@@ -15,8 +15,9 @@ mod pipeline;
 mod point_image;
 mod stars;
 mod start;
+mod state;
 mod target;
 mod tracks;
 
 pub use config::{AttitudePrior, BestConfig};
-pub(super) use pipeline::BestPipeline;
+pub(super) use state::BestPipeline;

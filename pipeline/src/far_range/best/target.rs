@@ -5,7 +5,7 @@ use contract::{Direction, Icrs, PixelPoint};
 use super::faint_points::FaintPoint;
 use super::frame_attitude::FrameAttitude;
 use super::photometry::{FittedSource, FrameLight, KnownSource, Source, TargetStart};
-use super::pipeline::BestPipeline;
+use super::state::BestPipeline;
 use super::tracks::TargetCandidate;
 use crate::far_range::overrides::{Identity, Overrides};
 

@@ -1,0 +1,135 @@
+//! What the best mode keeps from frame to frame.
+
+use contract::{CameraFrame, Icrs, Readout, Rotation, Setup, TargetCalibration};
+use hifitime::Epoch;
+
+use super::config::AttitudePrior;
+use super::faint_points::FaintPoints;
+use super::hot_pixels::HotPixels;
+use super::lost_in_space::LostInSpace;
+use super::mounting::MountingFilter;
+use super::photometry::SourceFitter;
+use super::point_image::PointImageEstimate;
+use super::tracks::Tracks;
+use crate::far_range::background::BackgroundEstimator;
+use crate::far_range::config::FarRangeConfig;
+use crate::far_range::detect::Detector;
+use crate::far_range::identify::StarList;
+use crate::{CameraModel, PipelineError};
+
+/// The best mode on one sequence of frames.
+#[derive(Debug)]
+pub(in crate::far_range) struct BestPipeline {
+    pub(super) config: FarRangeConfig,
+    pub(super) model: CameraModel,
+    pub(super) stars: StarList,
+    pub(super) readout: Option<Readout>,
+    pub(super) light: Calibrated,
+    pub(super) mounting: MountingFilter,
+    /// With no prior attitude.
+    pub(super) lost_in_space: Option<LostInSpace>,
+    pub(super) psf: PointImageEstimate,
+    /// Natural logarithm of measured over expected flux of stars.
+    pub(super) brightness: Brightness,
+    pub(super) hot_pixels: HotPixels,
+    pub(super) tracks: Tracks,
+    pub(super) background: BackgroundEstimator,
+    pub(super) detector: Detector,
+    pub(super) faint_points: FaintPoints,
+    pub(super) fitter: SourceFitter,
+    pub(super) last: Option<LastFrame>,
+}
+
+/// Numbers of the calibration that photometry needs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Calibrated {
+    pub(super) response: f64,
+    pub(super) full_well_e: f64,
+    pub(super) may_spill: bool,
+    pub(super) zero_magnitude_e_per_s: Option<f64>,
+    pub(super) target: Option<TargetCalibration>,
+}
+
+/// Scale of the brightness of stars, estimated over frames.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Brightness {
+    /// Natural logarithm of measured flux over that of the calibration, or of [`UNKNOWN_ZERO_MAGNITUDE`].
+    pub(super) log_ratio: f64,
+    pub(super) knowledge: ScaleKnowledge,
+}
+
+/// Where a brightness scale comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ScaleKnowledge {
+    Nowhere,
+    Calibration,
+    Stars,
+}
+
+/// The frame before.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LastFrame {
+    pub(super) time: Epoch,
+    pub(super) camera_from_icrs: Option<Rotation<CameraFrame, Icrs>>,
+}
+
+/// Response of single pixels without a calibration, relative standard deviation.
+const UNKNOWN_RESPONSE: f64 = 0.01;
+
+/// Photoelectrons per second from a star of V = 0 without a calibration: an aperture of a square centimetre before silicon.
+const UNKNOWN_ZERO_MAGNITUDE: f64 = 1.5e6;
+
+impl BestPipeline {
+    /// A pipeline before its first frame.
+    ///
+    /// # Errors
+    /// Those of the checks of configuration, camera, calibration and readout.
+    pub(in crate::far_range) fn new(config: FarRangeConfig, setup: &Setup) -> Result<Self, PipelineError> {
+        config.check()?;
+        config.check_suppression(setup.zero_suppression_dn, setup.bit_depth)?;
+        setup.calibration.check().map_err(contract::ContractError::from)?;
+        if let Some(readout) = setup.readout {
+            readout.check().map_err(contract::ContractError::from)?;
+        }
+        let model = CameraModel::new(&setup.camera)?;
+        let calibration = &setup.calibration;
+        Ok(Self {
+            stars: StarList::new(&setup.stars, config.identification.max_magnitude, &model),
+            readout: setup.readout,
+            light: Calibrated {
+                response: calibration.response_sigma.unwrap_or(UNKNOWN_RESPONSE),
+                full_well_e: calibration.full_well_e.unwrap_or(f64::INFINITY),
+                may_spill: calibration.spill_fraction.is_none_or(|fraction| fraction > 0.0),
+                zero_magnitude_e_per_s: calibration.zero_magnitude_e_per_s,
+                target: calibration.target,
+            },
+            lost_in_space: (config.best.prior == AttitudePrior::None)
+                .then(|| LostInSpace::new(&setup.stars, &model, config.identification.max_magnitude)),
+            mounting: MountingFilter::new(setup.camera_from_body, calibration.attitude),
+            psf: PointImageEstimate::new(calibration, config.best.psf_width_error),
+            brightness: Brightness {
+                log_ratio: 0.0,
+                // Without a readout, fluxes are in digital numbers.
+                knowledge: match (setup.readout, calibration.zero_magnitude_e_per_s) {
+                    (Some(_), Some(_)) => ScaleKnowledge::Calibration,
+                    _ => ScaleKnowledge::Nowhere,
+                },
+            },
+            hot_pixels: HotPixels::default(),
+            tracks: Tracks::default(),
+            background: BackgroundEstimator::default(),
+            detector: Detector::default(),
+            faint_points: FaintPoints::default(),
+            fitter: SourceFitter::default(),
+            last: None,
+            model,
+            config,
+        })
+    }
+
+    /// Flux of a star by the calibration alone, electrons.
+    pub(super) fn unscaled_flux_e(&self, magnitude: f64, exposure_s: f64) -> f64 {
+        let scale = self.light.zero_magnitude_e_per_s.unwrap_or(UNKNOWN_ZERO_MAGNITUDE);
+        scale * exposure_s * libm::pow(10.0, -0.4 * magnitude)
+    }
+}
