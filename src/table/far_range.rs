@@ -413,6 +413,24 @@ mod tests {
     }
 
     #[test]
+    fn the_best_mode_stands_below_when_its_groups_are_the_same() {
+        let mut best = score(5, 300);
+        best.figures.insert(names::CORRECT_RATE.to_owned(), Figure::rate(&[vec![true; 300]]));
+        let style =
+            |best_mode| TableStyle { reference: Some(&ARGON_TABLE_2), best_mode, ..TableStyle::default() };
+        let text = far_range(&score(5, 300), style(Some(&best)));
+        let lines: Vec<&str> = text.lines().collect();
+        let correct = lines.iter().position(|line| line.starts_with("correct")).unwrap();
+        assert!(
+            lines[correct + 1].starts_with("  best mode") && lines[correct + 1].ends_with(" 100"),
+            "{text}"
+        );
+        let hit_rate = lines.iter().position(|line| line.starts_with("hit rate")).unwrap();
+        assert!(lines[hit_rate + 2].starts_with("  best mode"), "{text}");
+        assert!(!far_range(&score(4, 300), style(Some(&best))).contains("best mode"));
+    }
+
+    #[test]
     fn the_distance_from_the_published_cells_is_that_of_a_sum_by_hand() {
         let score = score(5, 3000);
         let style = TableStyle { reference: Some(&ARGON_TABLE_2), ..TableStyle::default() };

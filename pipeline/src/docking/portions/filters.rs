@@ -82,7 +82,7 @@ const CHANGE_S: f64 = 5.0;
 const OUTLINE_SCALE: f64 = 0.01;
 const OUTLINE_DRIFT: f64 = 2e-4;
 
-/// How far from the middle, as a part of the range, and how far turned, rad, a camera is thought that sees nothing but an outline.
+/// Standard deviations of the lateral offset, as a part of the range, and of the attitude, rad, before any pose is measured.
 const UNSEEN_OFFSET: f64 = 0.2;
 const UNSEEN_ANGLE_RAD: f64 = 0.2;
 

@@ -138,8 +138,8 @@ pub(super) fn matches_at_positions(
 /// Whether matched stars are more than a coincidence: of the listed stars that must have an image no more may lack one than are matched. A variable star or a
 /// stain on a lens leaves out one, a wrong offset nearly all. `is_in_image` tells whether the position of a star was transmitted.
 ///
-/// An image must be within `gate_px` of a star that is bright enough even if V shows it too bright; as long as the brightness scale is not known, of one that is
-/// half a magnitude brighter than half of the matched ones.
+/// A star must have an image within `gate_px` where its expected flux, less the largest error of V as a measure of it, is above the threshold; as long as the
+/// brightness scale is not known, where the star is half a magnitude brighter than the median of the matched ones.
 pub(super) fn are_confirmed(
     matched: &[(usize, usize)],
     candidates: &[StarCandidate],

@@ -189,8 +189,8 @@ impl BestPipeline {
         Some(attitude.camera_from_icrs?.inverse() * self.model.back_project(position)?)
     }
 
-    /// The target where the best track predicts it, when no candidate is there: too faint for a cluster, or merged with a star. What its light says for it
-    /// adds to the odds of the track, frame by frame: those of frames of which none would show the target alone are added up along the predicted motion.
+    /// The target where the best track predicts it, when no candidate is there: too faint for a cluster, or merged with a star. The evidence of its flux
+    /// adds to the odds of the track, so that frames in which the target is too faint to be detected are added up along the predicted motion.
     fn predicted_candidate(
         &mut self,
         of: TargetContext<'_>,

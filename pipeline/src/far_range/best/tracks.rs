@@ -73,7 +73,7 @@ const LARGEST_HIDDEN: f64 = 1.2;
 const DETECTED: f64 = 0.95;
 const DETECTED_FAINT: f64 = 0.6;
 
-/// The most that one frame says for a position or a flux, natural logarithm.
+/// Largest likelihood ratio of one frame, natural logarithm: its model of errors holds no further.
 const MOST_EVIDENCE: f64 = 8.0;
 
 /// Odds beyond these say nothing more: a track must be able to lose.
