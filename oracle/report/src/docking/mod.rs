@@ -61,7 +61,7 @@ pub fn docking_page(run: &DockingRun, sheet: &FieldSheet) -> Result<Page, Failur
         version: run.run_file.version.clone(),
         lead: vec![format!(
             "{} fields: the pose was measured in {} of those in which it can be asked for; of all fields {} were doubtful by the pipeline's own \
-             tests, and {} grossly wrong without being so.",
+             tests, and {} grossly wrong and not doubtful.",
             run.score.frames,
             figure("success_rate"),
             figure("doubtful_rate"),
@@ -98,7 +98,7 @@ fn figures_section(run: &DockingRun) -> Section {
     };
     let rms = ["range_rms_m", "lateral_rms_m", "attitude_rms_deg", "motion_range_rate_rms_m_s"];
     let mut accuracy =
-        DataTable::new(["range", "range, m", "across, m", "attitude, °", "range rate, m/s", "doubtful", "wrong"])
+        DataTable::new(["range", "range error, m", "across, m", "attitude, °", "range rate, m/s", "doubtful", "wrong"])
             .caption(
                 "Root mean squares of the errors of measured fields, and of the reported range rate; doubtful and grossly wrong in percent of the \
                  fields, with 95 % intervals; by true range and lens.",
