@@ -1,4 +1,4 @@
-// What the server tells, and how it is asked: everything by the number of a frame.
+// Requests and responses of the server, by frame number.
 
 export interface Camera {
   name: string;

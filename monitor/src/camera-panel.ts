@@ -1,4 +1,4 @@
-// The camera's picture with what was recognised drawn over it.
+// The camera image with the recognised features drawn over it.
 
 import type { Frame, Session, Shape } from "./api.js";
 import { context, element, fit } from "./canvas.js";
@@ -122,7 +122,7 @@ export class CameraPanel {
     if (this.session.world === "far_range") {
       this.magnify(scale);
     }
-    // For whoever reads the picture from the page: camera pixel (x, y) is at left + scale x, top + scale y.
+    // Published for tests and scripts: camera pixel (x, y) is at left + scale x, top + scale y.
     Object.assign(canvas.dataset, { frame: report.frame, scale, left, top });
   }
 

@@ -1,4 +1,4 @@
-// A canvas as large as its place on the page, in the screen's own pixels.
+// A canvas that fills its box on the page, in device pixels.
 
 /** Sizes on the page. Asked of the page at every picture, they would have it laid out again each time. */
 const sizes = new WeakMap<Element, { width: number; height: number }>();

@@ -52,7 +52,7 @@ export class DockingModel {
     }
     const { stage } = this;
     const view = model.measured;
-    // Without a pose there is nothing to place: the last one stays, faint.
+    // Without a pose the last one stays, drawn faintly.
     this.craft.visible = view !== null;
     if (view) {
       this.craft.matrix.copy(placed(view));

@@ -1,4 +1,5 @@
-// The far-range model: the chaser's orbit about the target, both above the Earth, and the camera's field of view.
+// The far-range model: the chaser's orbit about the target, both above the Earth, and the camera's field of
+// view.
 
 import {
   BufferGeometry,

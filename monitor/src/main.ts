@@ -193,7 +193,7 @@ async function start(): Promise<void> {
   };
   const repeat = () =>
     void refresh()
-      // The server has gone: what is there stays, and it is asked again.
+      // The server is gone: the page keeps its content and retries.
       .catch(() => undefined)
       .then(() => setTimeout(repeat, PROGRESS_MS));
   repeat();

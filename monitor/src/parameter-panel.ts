@@ -84,7 +84,7 @@ export class ParameterPanel {
     const text = (value: number | null, digits: number) => (value === null ? NONE : value.toFixed(digits));
     const set = (cell: HTMLElement, value: number | null, digits: number) => {
       cell.textContent = text(value, digits);
-      // The number itself, for whoever reads the page.
+      // The unrounded number, for tests and scripts.
       cell.dataset["value"] = value === null ? "" : String(value);
     };
     set(row.measured, measured, decimals);

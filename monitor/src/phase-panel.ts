@@ -11,7 +11,7 @@ type Point = readonly [number, number];
 const decades = (_chart: uPlot, _axis: number, least: number, greatest: number): number[] => {
   const ticks: number[] = [];
   for (let power = Math.floor(Math.log10(least)); power <= Math.log10(greatest); power++) {
-    // Of a text, so that 0.3 is 0.3 and not 3 × 0.1.
+    // Parsed from text, so that the value is 0.3 and not 3 × 0.1.
     ticks.push(...[1, 2, 3, 4, 5, 6, 7, 8, 9].map((digit) => Number(`${digit}e${power}`)));
   }
   return ticks.filter((tick) => tick >= least && tick <= greatest);

@@ -1,4 +1,4 @@
-// Lines in pieces: between one day of a schedule and the next nobody looked, and no line crosses that time.
+// Polylines in pieces: no line spans the gap between two days of a schedule, which has no frames.
 
 /** Points in the order of their frames, cut before each of `begins`. */
 export function pieces<P>(points: readonly P[], frame: (point: P) => number, begins: readonly number[]): P[][] {

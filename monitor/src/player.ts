@@ -91,7 +91,7 @@ export class Player {
       this.showIfThere(now);
       return;
     }
-    // A screen's refresh is some milliseconds wide: what is due within the next half of one is due.
+    // Frames due within the next half refresh interval of the screen are drawn now.
     if (!this.playing || now < this.due - 6) {
       return;
     }
@@ -160,7 +160,7 @@ export class Player {
         if (number === this.frame && error instanceof api.NotYet) {
           this.listener.wait(error.progress);
         }
-        // Asked again after a while, if it is wanted then; a lost server may come back.
+        // Retried after a pause if still needed; a lost server may come back.
         setTimeout(() => this.cache.get(number) === fetching && this.cache.delete(number), RETRY_MS);
       },
     );

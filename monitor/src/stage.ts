@@ -1,4 +1,5 @@
-// A three-dimensional stage: light, a viewer that turns about a point, and drawing when something has changed.
+// A three-dimensional stage: light, a viewer that turns about a point, and drawing when something has
+// changed.
 
 import {
   AmbientLight,
@@ -70,7 +71,7 @@ export class Stage {
       this.eye.aspect = this.canvas.width / this.canvas.height;
       this.eye.updateProjectionMatrix();
     }
-    // In a narrow place from farther away, so that as much is seen from left to right.
+    // A narrow view moves the viewpoint back, so that the horizontal extent stays the same.
     const away = this.distance * this.zoom * Math.max(1, 1.25 / this.eye.aspect);
     const [c, s] = [Math.cos(this.elevation), Math.sin(this.elevation)];
     this.eye.position
@@ -177,7 +178,7 @@ export function label(text: string, style: string): Sprite {
     transparent: true,
   });
   const sprite = new Sprite(material);
-  // From the place to the right of it.
+  // Seen from the right-hand side.
   sprite.center.set(0, 0.5);
   sprite.scale.set(0.24, 0.06, 1);
   return sprite;

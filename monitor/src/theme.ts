@@ -1,4 +1,4 @@
-// Colours of the style sheet, for what is drawn on canvases.
+// Colours of the style sheet, for drawings on canvases.
 
 export type Colour =
   | "panel" | "edge" | "text" | "dim" | "accent" | "good" | "fair" | "bad" | "truth" | "corridor" | "grid" | "sea" | "land"

@@ -39,6 +39,7 @@ mod mitsuba_live;
 mod monitor;
 mod named_suites;
 mod real_images;
+mod reference_pages;
 mod report;
 mod round_trip;
 mod run;

@@ -119,7 +119,8 @@ def wide_lines(path: Path, lines: list[str]) -> list[int]:
         if path.suffix == ".md":
             exempt = line.lstrip().startswith(("|", "<", "!", "[", "#")) or line.startswith("    ")
         else:
-            exempt = not re.match(r"\s*(//|#)", line) or re.match(r"\s*//[/!] *\|", line)
+            code = path.suffix == ".toml" and re.match(r"\s*# ?[\w.]+ = ", line)
+            exempt = code or not re.match(r"\s*(//|#)", line) or re.match(r"\s*//[/!] *\|", line)
         longest = max(len(word) for word in re.sub(r"\[[^\]]*\]\([^)]*\)", lambda m: m[0].replace(" ", "_"), line).split())
         if not exempt and longest < WIDTH // 2:
             wide.append(number)

@@ -1,0 +1,229 @@
+//! The pages `docs/command-line.md` and `docs/scenario-keys.md` are generated from the program.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+/// Compares a page with its generated text; with `REMAKE=1` in the environment, writes it.
+fn check_page(name: &str, new: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name);
+    if std::env::var_os("REMAKE").is_some() {
+        std::fs::write(&path, new).unwrap();
+        return;
+    }
+    let old = std::fs::read_to_string(&path).unwrap_or_default();
+    let other = old.lines().zip(new.lines()).find(|(old, new)| old != new);
+    assert!(old == new, "docs/{name} differs from the program; REMAKE=1 writes it: {other:#?}");
+}
+
+/// Standard output of the program.
+fn output(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_boresight")).args(arguments).output().unwrap();
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Names of the subcommands that a help text lists.
+fn subcommands(help: &str) -> Vec<&str> {
+    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    listed
+        .take_while(|line| !line.is_empty())
+        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
+        .filter(|name| !name.is_empty() && *name != "help")
+        .collect()
+}
+
+/// Appends the help of a command and of its subcommands.
+fn append_help(page: &mut String, command: &[&str]) {
+    let arguments: Vec<&str> = command.iter().copied().chain(["--help"]).collect();
+    let help = output(&arguments);
+    let title = ["boresight"].iter().chain(command).copied().collect::<Vec<&str>>().join(" ");
+    let level = "#".repeat(2 + command.len().saturating_sub(1));
+    let lines: Vec<&str> = help.lines().map(str::trim_end).collect();
+    write!(page, "\n{level} {title}\n\n```text\n{}\n```\n", lines.join("\n")).unwrap();
+    for name in subcommands(&help) {
+        append_help(page, &command.iter().copied().chain([name]).collect::<Vec<&str>>());
+    }
+}
+
+#[test]
+fn the_page_of_the_command_line_is_the_programs_help() {
+    let mut page = "# Command line\n\nThe help of every command, as the program prints it. `REMAKE=1 cargo test --test it \
+                    reference_pages::` writes this page.\n"
+        .to_owned();
+    append_help(&mut page, &[]);
+    check_page("command-line.md", &page);
+}
+
+/// A JSON Schema with its definitions, and those of them that the page has already.
+struct SchemaPage<'a> {
+    definitions: &'a serde_json::Map<String, Value>,
+    written: BTreeSet<&'a str>,
+    page: String,
+}
+
+/// A line of a table cell: no line breaks, no bar.
+fn cell(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<&str>>().join(" ").replace('|', "\\|")
+}
+
+fn text<'a>(schema: &'a Value, key: &str) -> &'a str {
+    schema.get(key).and_then(Value::as_str).unwrap_or_default()
+}
+
+impl<'a> SchemaPage<'a> {
+    /// The definition that a schema refers to, with its name, or the schema itself.
+    fn resolve(&self, schema: &'a Value) -> (Option<&'a str>, &'a Value) {
+        let refers = [schema.get("$ref"), schema.pointer("/anyOf/0/$ref")].into_iter().flatten().next();
+        match refers.and_then(Value::as_str).and_then(|path| path.strip_prefix("#/$defs/")) {
+            Some(name) => (Some(name), &self.definitions[name]),
+            None => (None, schema),
+        }
+    }
+
+    /// Type of a value, with the accepted words of an enumeration.
+    fn type_of(&self, schema: &'a Value) -> String {
+        let (_, resolved) = self.resolve(schema);
+        let null = schema.get("anyOf").is_some() || resolved.pointer("/type/1") == Some(&Value::from("null"));
+        let variants: Vec<String> = alternatives(resolved)
+            .iter()
+            .flat_map(|variant| match (variant.get("const"), variant.get("enum")) {
+                (Some(word), _) => vec![word.clone()],
+                (_, Some(Value::Array(words))) => words.clone(),
+                _ => Vec::new(),
+            })
+            .map(|word| format!("`{word}`"))
+            .collect();
+        let name = match resolved.get("type") {
+            Some(Value::String(name)) => name.as_str(),
+            Some(Value::Array(names)) => names.first().and_then(Value::as_str).unwrap_or_default(),
+            _ => "",
+        };
+        let described = match name {
+            _ if !variants.is_empty() => variants.join(", "),
+            "object" | "" => "table".to_owned(),
+            "array" => {
+                let items = resolved.get("items").map(|items| self.type_of(items)).unwrap_or_default();
+                match resolved.get("maxItems").and_then(Value::as_u64) {
+                    Some(count) if resolved.get("minItems").and_then(Value::as_u64) == Some(count) => {
+                        format!("{count} × {items}")
+                    }
+                    _ => format!("list of {items}"),
+                }
+            }
+            other => other.to_owned(),
+        };
+        if null { format!("{described} or absent") } else { described }
+    }
+
+    /// Range of a number, from the schema's bounds.
+    fn range(&self, schema: &'a Value) -> String {
+        let (_, resolved) = self.resolve(schema);
+        let bound = |key: &str| {
+            let found = [schema, resolved].into_iter().find_map(|schema| schema.get(key));
+            found.filter(|bound| bound.as_f64().is_some_and(|bound| bound.abs() < 4e9)).map(number)
+        };
+        let (low, open_low) = (bound("minimum"), bound("exclusiveMinimum"));
+        let (high, open_high) = (bound("maximum"), bound("exclusiveMaximum"));
+        let low = low.map(|low| format!("≥ {low}")).or(open_low.map(|low| format!("> {low}")));
+        let high = high.map(|high| format!("≤ {high}")).or(open_high.map(|high| format!("< {high}")));
+        [low, high].into_iter().flatten().collect::<Vec<String>>().join(", ")
+    }
+
+    /// Writes the table of an object, then those of the objects within it.
+    fn write_object(&mut self, title: &str, schema: &'a Value, defaults: Option<&'a Value>) {
+        let Some(Value::Object(properties)) = schema.get("properties") else { return };
+        let required: Vec<&str> = match schema.get("required") {
+            Some(Value::Array(names)) => names.iter().filter_map(Value::as_str).collect(),
+            _ => Vec::new(),
+        };
+        write!(self.page, "\n### {title}\n").unwrap();
+        let description = cell(text(schema, "description"));
+        if !description.is_empty() {
+            write!(self.page, "\n{description}\n").unwrap();
+        }
+        self.page.push_str("\n| key | type | range | default | meaning |\n| --- | --- | --- | --- | --- |\n");
+        for (key, property) in properties {
+            let (_, resolved) = self.resolve(property);
+            let default = defaults.and_then(|defaults| defaults.get(key)).or_else(|| property.get("default"));
+            let default = match default {
+                Some(Value::Null) | None if required.contains(&key.as_str()) => "required".to_owned(),
+                Some(Value::Null) | None => "absent".to_owned(),
+                Some(Value::Object(_)) => "see below".to_owned(),
+                Some(value) => format!("`{}`", cell(&value.to_string())),
+            };
+            let meaning = match text(property, "description") {
+                "" => text(resolved, "description"),
+                meaning => meaning,
+            };
+            let (type_of, range) = (self.type_of(property), self.range(property));
+            writeln!(self.page, "| `{key}` | {type_of} | {range} | {default} | {} |", cell(meaning)).unwrap();
+        }
+        for (key, property) in properties {
+            let default = defaults.and_then(|defaults| defaults.get(key)).or_else(|| property.get("default"));
+            self.write_nested(&format!("{}{key}", prefix(title)), property, default);
+        }
+    }
+
+    /// Writes the tables of a value that is a table, a choice of tables, or a list of either.
+    fn write_nested(&mut self, path: &str, schema: &'a Value, default: Option<&'a Value>) {
+        let (name, resolved) = self.resolve(schema);
+        if let Some(items) = resolved.get("items") {
+            return self.write_nested(&format!("{path}[]"), items, None);
+        }
+        if let Some(name) = name
+            && !self.written.insert(name)
+        {
+            return;
+        }
+        self.write_object(&format!("`{path}`"), resolved, default);
+        for variant in alternatives(resolved) {
+            let Some(Value::Object(properties)) = variant.get("properties") else { continue };
+            let tag = properties.iter().find_map(|(key, value)| Some((key, value.get("const")?)));
+            if let Some((key, word)) = tag {
+                let chosen = default.filter(|default| default.get(key) == Some(word));
+                self.write_object(&format!("`{path}`, {key} = {word}"), variant, chosen);
+            }
+        }
+    }
+}
+
+/// The variants of an enumeration.
+fn alternatives(schema: &Value) -> &[Value] {
+    let found = schema.get("oneOf").or_else(|| schema.get("anyOf"));
+    found.and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default()
+}
+
+/// A bound without trailing zeros.
+fn number(value: &Value) -> String {
+    let number = value.as_f64().unwrap_or_default();
+    if number != 0.0 && !(1e-3..1e5).contains(&number.abs()) { format!("{number:e}") } else { format!("{number}") }
+}
+
+/// Prefix of the keys within a titled table.
+fn prefix(title: &str) -> String {
+    match title.split('`').nth(1) {
+        Some(path) => format!("{path}."),
+        None => String::new(),
+    }
+}
+
+#[test]
+fn the_page_of_scenario_keys_is_the_schema() {
+    let mut page = "# Scenario keys\n\nEvery key of a scenario file with its type, range and default, from the JSON Schema \
+                    (`boresight scenario schema`). A key without a default is required or may be absent, as stated. \
+                    Unknown keys are refused. `REMAKE=1 cargo test --test it reference_pages::` writes this page.\n"
+        .to_owned();
+    for (world, title) in [("far_range", "Far range"), ("docking", "Docking")] {
+        let schema: Value =
+            serde_json::from_str(&output(&["scenario", "schema", "--world", world])).unwrap();
+        let Value::Object(definitions) = &schema["$defs"] else { panic!("no definitions") };
+        let mut section = SchemaPage { definitions, written: BTreeSet::new(), page: format!("\n## {title}\n") };
+        section.write_object("Top level", &schema, None);
+        page.push_str(&section.page);
+    }
+    check_page("scenario-keys.md", &page);
+}
