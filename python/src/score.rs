@@ -82,11 +82,11 @@ fn scored(
     };
     read_text(&run_file).map_err(unreadable)?;
     let world = world_of_run(&run_file)?;
-    let beside = || {
+    let neighbouring_file = || {
         let path = measurements.with_file_name(world.evidence_file()?);
         path.is_file().then_some(path)
     };
-    let json = world.score(directory, measurements, beside().as_deref(), attitude)?.json()?;
+    let json = world.score(directory, measurements, neighbouring_file().as_deref(), attitude)?.json()?;
     Checksums::check(directory, |_| true)?;
     Ok(json)
 }

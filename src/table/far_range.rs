@@ -356,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn what_ra_and_dec_rest_on_is_told() {
+    fn what_ra_and_dec_rest_on_is_reported() {
         let text = |attitude: Option<&str>| {
             let score = Score { attitude: attitude.map(str::to_owned), ..score(5, 3000) };
             far_range(&score, TableStyle { width: 100, ..TableStyle::default() })
@@ -460,7 +460,7 @@ mod tests {
     }
 
     #[test]
-    fn misses_are_counted_and_shared_by_cause_and_no_wrong_answer_is_said_so() {
+    fn misses_are_counted_and_shared_by_cause_and_no_wrong_answer_is_stated() {
         let text = far_range(&score(2, 300), TableStyle::default());
         let misses = line(&text, "merged with star");
         assert!(misses.contains("15 (5.0)") && misses.contains("30 (5.0)"), "{text}");

@@ -135,7 +135,7 @@ fn every_angle_is_within_ten_turns() {
 }
 
 #[test]
-fn the_schema_of_scenarios_tells_the_ranges() {
+fn the_schema_of_scenarios_has_the_ranges() {
     let schema = json_schema(Some(FIRST)).to_value();
     let gain = &schema["$defs"]["SensorConfig"]["properties"]["gain_e_per_dn"];
     assert_eq!((gain["minimum"].as_f64(), gain["maximum"].as_f64()), (Some(0.05), Some(1e5)));

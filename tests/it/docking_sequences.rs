@@ -142,7 +142,7 @@ fn a_target_upside_down_is_inconsistent() {
 
 /// The docking unit leaves the narrow lens's picture at 6 m: what was seen before holds.
 #[test]
-fn a_target_upside_down_is_inconsistent_where_only_the_fields_before_tell() {
+fn a_target_upside_down_is_inconsistent_where_only_the_earlier_fields_show_it() {
     let approach = flown(8.0, 10.0, 0.45);
     let told = upside_down(&Bench::new(), &approach, 23);
     assert!(told.iter().all(|status| status == "inconsistent"), "{told:?}");
@@ -173,7 +173,7 @@ fn double(path: &Path) {
 }
 
 #[test]
-fn two_targets_are_told_apart_from_one() {
+fn two_targets_are_distinguished_from_one() {
     let bench = Bench::new();
     bench.write("far.toml", held([0.0; 3], 20.0));
     bench.boresight("render far.toml --frames 0..6 --out set").done();

@@ -440,7 +440,7 @@ fn the_page_is_served_or_the_command_says_how_it_is_built() {
 }
 
 #[test]
-fn mistakes_are_told_before_anything_is_served() {
+fn mistakes_are_reported_before_anything_is_served() {
     let bench = Bench::new();
     bench.write("empty/nothing", "");
     for (words, expected) in [
@@ -472,7 +472,7 @@ fn a_built_in_scenario_is_itself_beside_a_folder_of_its_name() {
 }
 
 #[test]
-fn of_the_true_places_that_of_the_target_has_a_name() {
+fn of_the_true_positions_that_of_the_target_has_a_name() {
     let monitor = Monitor::of(|| live("argon", 145..146));
     let report = monitor.json("/api/frames/145.json");
     let labels = report["truth_overlay"].as_array().unwrap().iter();
@@ -481,7 +481,7 @@ fn of_the_true_places_that_of_the_target_has_a_name() {
 }
 
 #[test]
-fn the_page_is_told_where_a_day_begins() {
+fn the_page_knows_where_a_day_begins() {
     let monitor = Monitor::of(|| live("argon", 0..1));
     let session = monitor.json("/api/session.json");
     let begins: Vec<u64> =

@@ -32,9 +32,9 @@ fn drawn(bench: &Bench, words: &str) -> (RgbImage, Value) {
 }
 
 /// Where a panel or a close-up is in its picture.
-struct Place(Value);
+struct PanelLocation(Value);
 
-impl Place {
+impl PanelLocation {
     fn number(&self, name: &str) -> f64 {
         self.0[name].as_f64().unwrap()
     }
@@ -48,9 +48,9 @@ impl Place {
     /// A point of the frame in the picture; 0 is the edge of its first pixel.
     fn of(&self, at: PixelPoint) -> (f64, f64) {
         let zoom = self.number("zoom");
-        let place =
+        let panel =
             |edge: &str, at: f64, first: &str| self.number(edge) + (at - self.number(first) + 0.5) * zoom;
-        (place("left", at.x, "first_column"), place("top", at.y, "first_row"))
+        (panel("left", at.x, "first_column"), panel("top", at.y, "first_row"))
     }
 
     /// The middle of the pixels of a colour within so many pixels of a point, as a point of the picture.
@@ -105,14 +105,14 @@ fn truth_and_answer_are_drawn_where_the_files_have_them() {
     assert_eq!((&frame["pixels"], &frame["stretch"]), (&"drawn_again".into(), &"asinh".into()));
     assert_eq!((&frame["verdict"], &frame["cause"]), (&"correct".into(), &Value::Null));
     for name in ["panel", "close_up"] {
-        let place = Place(frame[name].clone());
-        let at = place.of(target.position);
-        check_at(place.centre(&image, ORANGE, at, 40.0), at, "target");
-        let at = place.of(answer);
-        check_at(place.centre(&image, GREEN, at, 14.0), at, "answer");
+        let panel = PanelLocation(frame[name].clone());
+        let at = panel.of(target.position);
+        check_at(panel.centre(&image, ORANGE, at, 40.0), at, "target");
+        let at = panel.of(answer);
+        check_at(panel.centre(&image, GREEN, at, 14.0), at, "answer");
     }
     // A star with nothing near it.
-    let panel = Place(frame["panel"].clone());
+    let panel = PanelLocation(frame["panel"].clone());
     let shown = |o: &&sim::truth::ObjectTruth| {
         o.frame == 10201 && o.cut < 0.99 && Visibility::of_snr(o.snr) == Visibility::Detectable
     };
@@ -159,7 +159,7 @@ fn regions_are_drawn_where_the_telemetry_has_them() {
     let bench = Bench::new();
     run_argon(&bench);
     let (image, document) = drawn(&bench, "show run 10200");
-    let place = Place(document["frames"][0]["panel"].clone());
+    let panel = PanelLocation(document["frames"][0]["panel"].clone());
     let telemetry = bench.csv("run/telemetry.csv");
     let windows: Vec<[f64; 4]> = telemetry[0]["windows"]
         .split(';')
@@ -170,7 +170,7 @@ fn regions_are_drawn_where_the_telemetry_has_them() {
         .collect();
     assert_eq!(document["frames"][0]["drawn"]["region"].as_u64().unwrap() as usize, windows.len());
     let is = |x: f64, y: f64, colour: [u8; 3]| {
-        let (x, y) = (place.number("left") + x, place.number("top") + y);
+        let (x, y) = (panel.number("left") + x, panel.number("top") + y);
         let pixel = (x >= 0.0 && y >= 0.0).then(|| image.get_pixel_checked(x as u32, y as u32)).flatten();
         pixel.is_some_and(|pixel| is_near(pixel.0, colour))
     };
@@ -197,8 +197,8 @@ fn the_stretch_rises_with_the_pixels() {
         let (image, document) = drawn(&bench, &format!("show data 200 --stretch {stretch}"));
         let frame = &document["frames"][0];
         assert_eq!((&frame["pixels"], &frame["stretch"]), (&"stored".into(), &stretch.into()));
-        let place = Place(frame["panel"].clone());
-        let (left, top) = (place.number("left") as u32, place.number("top") as u32);
+        let panel = PanelLocation(frame["panel"].clone());
+        let (left, top) = (panel.number("left") as u32, panel.number("top") as u32);
         let mut greys: Vec<(u16, u8)> = dn
             .enumerate_pixels()
             .map(|(x, y, pixel)| (pixel.0[0], image.get_pixel(left + x, top + y).0))
@@ -262,9 +262,9 @@ fn stored_frames_and_frames_drawn_again_are_the_same_picture_but_for_their_capti
     assert_eq!((&a["pixels"], &b["pixels"]), (&"stored".into(), &"drawn_again".into()));
     assert_eq!((&a["panel"], &a["drawn"]), (&b["panel"], &b["drawn"]));
     for part in ["panel", "close_up"] {
-        let place = Place(a[part].clone());
-        for y in place.side("top", "height") {
-            for x in place.side("left", "width") {
+        let panel = PanelLocation(a[part].clone());
+        for y in panel.side("top", "height") {
+            for x in panel.side("left", "width") {
                 assert_eq!(stored.get_pixel(x, y), again.get_pixel(x, y), "({x}, {y})");
             }
         }
@@ -278,19 +278,19 @@ fn docking_features_lie_where_the_table_has_them() {
     let (image, document) = drawn(&bench, "show run 21179");
     let frame = &document["frames"][0];
     assert_eq!((&frame["verdict"], &frame["stretch"]), (&"success".into(), &"full".into()));
-    let place = Place(frame["panel"].clone());
+    let panel = PanelLocation(frame["panel"].clone());
     let path = bench.path("run/features.parquet");
     let rows: Vec<files::docking::FeatureRow> =
         files::TableReader::open(&path).unwrap().flat_map(|rows| rows.unwrap().1).collect();
     let rows: Vec<_> = rows.into_iter().filter(|row| row.field == 21179).collect();
     let point = |row: &files::docking::FeatureRow| PixelPoint::new(row.position[0], row.position[1]);
     let cross = rows.iter().find(|row| row.kind == "cross").unwrap();
-    let at = place.of(point(cross));
-    check_at(place.centre(&image, ORANGE, at, 16.0), at, "cross");
+    let at = panel.of(point(cross));
+    check_at(panel.centre(&image, ORANGE, at, 16.0), at, "cross");
     let circle = rows.iter().find(|row| row.kind == "circle").unwrap();
     let radius = circle.radius_px.unwrap();
     // The circle, at the angles between its twelve marks.
-    let (x, y) = place.of(point(circle));
+    let (x, y) = panel.of(point(circle));
     let blue = (0..12).filter(|i| {
         let (sin, cos) = libm::sincos((15.0 + 30.0 * f64::from(*i)).to_radians());
         let (x, y) = ((x + radius * cos) as u32, (y + radius * sin) as u32);
@@ -302,9 +302,9 @@ fn docking_features_lie_where_the_table_has_them() {
 
     // Of a stored image, of a stored video and drawn again the pixels are the same.
     let pixels = |document: &Value, image: &RgbImage| -> Vec<u8> {
-        let place = Place(document["frames"][0]["panel"].clone());
-        let rows = place.side("top", "height").start..place.side("top", "height").start + 60;
-        rows.flat_map(|y| place.side("left", "width").map(move |x| (x, y)))
+        let panel = PanelLocation(document["frames"][0]["panel"].clone());
+        let rows = panel.side("top", "height").start..panel.side("top", "height").start + 60;
+        rows.flat_map(|y| panel.side("left", "width").map(move |x| (x, y)))
             .flat_map(|(x, y)| image.get_pixel(x, y).0)
             .collect()
     };

@@ -87,7 +87,7 @@ fn trials(
 }
 
 #[test]
-fn the_law_of_detection_is_that_of_simulated_frames_at_thresholds_in_digital_numbers() {
+fn the_detection_model_is_that_of_simulated_frames_at_thresholds_in_digital_numbers() {
     let rule = DetectionRule::Dn { low_dn: 46, high_dn: 67 };
     check_law(&trials(&camera(), rule, &MOTION, 0.25), 0.02, "smeared, 0.25 s");
     check_law(&trials(&camera(), rule, &STILL, 0.08), 0.02, "still, 0.08 s");
@@ -99,7 +99,7 @@ fn the_law_of_detection_is_that_of_simulated_frames_at_thresholds_in_digital_num
 /// A whole threshold of 53 DN stands for one of 53.0 to 54.0, to which the estimates of a frame's noise come by some hundredths: a
 /// camera whose threshold is not near a whole number agrees.
 #[test]
-fn the_law_of_detection_is_that_of_simulated_frames_at_thresholds_in_standard_deviations() {
+fn the_detection_model_is_that_of_simulated_frames_at_thresholds_in_standard_deviations() {
     let mut camera = camera();
     (camera.sensor.gain_e_per_dn, camera.background) = (2.0, Default::default());
     let rule = DetectionRule::Sigmas { low: 3.0, high: 6.0 };
@@ -112,7 +112,7 @@ fn the_law_of_detection_is_that_of_simulated_frames_at_thresholds_in_standard_de
 
 /// Rates of frames with enough stars, in the interval of a design's analytic probability.
 #[test]
-fn enough_stars_are_detected_as_often_as_the_law_says() {
+fn enough_stars_are_detected_as_often_as_the_model_predicts() {
     let requirements = requirements("");
     let design = Design::new(&requirements, &requirements.camera, 3000, 0.25).unwrap();
     for exposure_s in [0.07, 0.1] {
@@ -352,7 +352,7 @@ demand = { kind = "target_detected", from_km = 10.0, to_km = 60.0, phase_max_deg
 
 /// Simulated at a range where the target is often missed: the law's rate lies in the interval.
 #[test]
-fn the_target_is_detected_as_often_as_the_law_says() {
+fn the_target_is_detected_as_often_as_the_model_predicts() {
     let lines = r#"
 target = { body = { kind = "lambert_sphere", radius_m = 0.4, albedo = 0.3 }, light = { kind = "phases", phases_deg = [60.0] }, ranges_km = [1.0, 50.0] }
 "#;
@@ -375,7 +375,7 @@ target = { body = { kind = "lambert_sphere", radius_m = 0.4, albedo = 0.3 }, lig
 }
 
 #[test]
-fn the_built_in_example_tells_where_the_stars_are_lost_and_does_not_depend_on_threads() {
+fn the_built_in_example_shows_where_the_stars_are_lost_and_does_not_depend_on_threads() {
     let bench = Bench::new();
     let one = bench.boresight("visibility uasc-far-range --frames 10 --jobs 1 --json --out a");
     let two = bench.boresight("visibility uasc-far-range --frames 10 --jobs 2 --json --out b");
@@ -431,7 +431,7 @@ fn all_met_is_exit_status_0() {
 }
 
 #[test]
-fn mistakes_are_told_with_their_place() {
+fn mistakes_are_reported_with_their_position() {
     let bench = Bench::new();
     let refused = |text: String, parts: &[&str]| {
         bench.write("r.toml", text);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use files::Failure;
-use visibility::{Simulated, VisibilityReport, read_sky};
+use visibility::{SimulatedRate, VisibilityReport, read_sky};
 
 use crate::charts::chart::{
     BESIDE, Chart, MEASURED, Panel, REFERENCE, WRONG, axes, dashed, intervals, line, log_axis, rounded,
@@ -62,7 +62,7 @@ pub fn visibility_page(report: &VisibilityReport) -> Page {
     }
 }
 
-fn shown(simulated: Option<&Simulated>) -> String {
+fn rate_text(simulated: Option<&SimulatedRate>) -> String {
     simulated.map_or_else(
         || "–".to_owned(),
         |s| format!("{} of {} ({:.1}–{:.1}\u{a0}%)", s.count, s.of, 100.0 * s.low, 100.0 * s.high),
@@ -107,7 +107,7 @@ fn requirements(report: &VisibilityReport) -> Section {
             probability(verdict.asked),
             probability(verdict.reached),
             margin.unwrap_or_else(|| "–".to_owned()),
-            shown(verdict.simulated.as_ref()),
+            rate_text(verdict.simulated.as_ref()),
             evidence,
         ]);
         if let Some(f) = &verdict.found {
@@ -117,7 +117,7 @@ fn requirements(report: &VisibilityReport) -> Section {
                 f.parameter.to_string(),
                 unit(f.value),
                 probability(f.probability),
-                shown(f.simulated.as_ref()),
+                rate_text(f.simulated.as_ref()),
                 f.failing_value.map_or_else(|| "–".to_owned(), unit),
                 f.failing_probability.map_or_else(|| "–".to_owned(), probability),
             ]);

@@ -3,7 +3,7 @@
 use contract::{Cluster, Label, NoSolution, Outcome, Solution};
 use sim::truth::{FrameTruth, ObjectKind, ObjectTruth, Shadow, Visibility};
 
-use super::belonging::{covers, holds, merged_with, target};
+use super::cluster_members::{covers, holds, merged_with, target};
 
 /// Why the target was not taken. When several hold, the first in this order is the cause:
 ///
@@ -112,12 +112,12 @@ impl Cause {
     }
 
     /// Whether no pipeline could have found the target: it is outside the field, in eclipse, too faint or cut away.
-    pub fn is_beyond_help(self) -> bool {
+    pub fn is_undetectable(self) -> bool {
         matches!(self, Self::OutsideField | Self::InEclipse | Self::TooFaint | Self::CutByRoi)
     }
 
     /// Why the target was lost in an image that it shares with a brighter object of this kind.
-    pub(super) fn of_outshining(kind: ObjectKind) -> Self {
+    pub(super) fn from_brighter_object(kind: ObjectKind) -> Self {
         match kind {
             ObjectKind::Star => Self::MergedWithStar,
             ObjectKind::Planet => Self::MergedWithPlanet,
@@ -146,15 +146,15 @@ pub(super) fn cause(
     let Some(outcome) = outcome else { return Cause::NotReported };
     let target = target(objects);
     let neighbour = target.and_then(|target| merged_with(target, objects));
-    beyond_help(truth, target, detector)
-        .or_else(|| own_word(&outcome.solution))
-        .or_else(|| by_labels(target?, neighbour, &outcome.clusters))
-        .or_else(|| neighbour.map(|other| Cause::of_outshining(other.kind)))
+    undetectable_cause(truth, target, detector)
+        .or_else(|| pipeline_reason(&outcome.solution))
+        .or_else(|| cause_by_label(target?, neighbour, &outcome.clusters))
+        .or_else(|| neighbour.map(|other| Cause::from_brighter_object(other.kind)))
         .unwrap_or(Cause::Unexplained)
 }
 
 /// What no pipeline could have helped.
-fn beyond_help(truth: &FrameTruth, target: Option<&ObjectTruth>, detector: Detector) -> Option<Cause> {
+fn undetectable_cause(truth: &FrameTruth, target: Option<&ObjectTruth>, detector: Detector) -> Option<Cause> {
     let in_field = truth.target_position.is_some_and(|at| at.is_on_detector(detector.columns, detector.rows));
     if !in_field {
         Some(Cause::OutsideField)
@@ -168,7 +168,7 @@ fn beyond_help(truth: &FrameTruth, target: Option<&ObjectTruth>, detector: Detec
 }
 
 /// The reason that the pipeline gives, where it is a reason for the whole frame.
-fn own_word(solution: &Solution) -> Option<Cause> {
+fn pipeline_reason(solution: &Solution) -> Option<Cause> {
     match solution {
         Solution::NoSolution(NoSolution::Failed(_)) => Some(Cause::PipelineFailed),
         Solution::NoSolution(NoSolution::SaturatedFrame) => Some(Cause::SaturatedFrame),
@@ -179,7 +179,11 @@ fn own_word(solution: &Solution) -> Option<Cause> {
 }
 
 /// The label of the cluster at the target's place; `None` when the clusters are not told or say nothing.
-fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[Cluster]) -> Option<Cause> {
+fn cause_by_label(
+    target: &ObjectTruth,
+    neighbour: Option<&ObjectTruth>,
+    clusters: &[Cluster],
+) -> Option<Cause> {
     if clusters.is_empty() {
         return None;
     }
@@ -191,7 +195,7 @@ fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[
     match nearest.map(|cluster| cluster.label) {
         Some(Label::Star(_)) => Some(match neighbour {
             Some(other) if matches!(other.kind, ObjectKind::Star | ObjectKind::Planet | ObjectKind::Moon) => {
-                Cause::of_outshining(other.kind)
+                Cause::from_brighter_object(other.kind)
             }
             _ => Cause::TakenForStar,
         }),
@@ -204,7 +208,7 @@ fn by_labels(target: &ObjectTruth, neighbour: Option<&ObjectTruth>, clusters: &[
         None => Some(
             neighbour
                 .filter(|other| clusters.iter().any(|cluster| holds(cluster.position, other)))
-                .map_or(Cause::BelowThreshold, |other| Cause::of_outshining(other.kind)),
+                .map_or(Cause::BelowThreshold, |other| Cause::from_brighter_object(other.kind)),
         ),
     }
 }
@@ -281,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn the_pipelines_own_reason_is_heard() {
+    fn the_pipelines_reason_counts() {
         for (reason, expected) in [
             (NoSolution::Failed("out of memory".into()), Cause::PipelineFailed),
             (NoSolution::SaturatedFrame, Cause::SaturatedFrame),
@@ -294,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn the_label_of_the_targets_cluster_tells() {
+    fn the_label_of_the_targets_cluster_decides() {
         for (label, expected) in [
             (Label::Star(5), Cause::TakenForStar),
             (Label::Hotspot, Cause::TakenForHotspot),
@@ -330,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn without_clusters_the_truth_tells() {
+    fn without_clusters_the_truth_decides() {
         let star = star_at(5, right_of_target(2.0), 5000.0);
         let hot = hot_pixel_at(9, right_of_target(1.0), 400.0);
         assert_eq!(of(&no_target(), std::slice::from_ref(&star)), Cause::MergedWithStar);
@@ -361,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_pipeline_could_help_comes_before_its_own_reason() {
+    fn what_no_pipeline_could_help_comes_before_the_pipelines_reason() {
         let truth = FrameTruth { target_visibility: Visibility::Invisible, ..frame(0) };
         let failed = Outcome::none(NoSolution::Failed("no light".into()));
         assert_eq!(cause(&truth, &[target_with(1.0)], Some(&failed), DETECTOR), Cause::TooFaint);

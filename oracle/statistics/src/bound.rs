@@ -5,7 +5,7 @@
 
 use statrs::function::beta::beta_reg;
 
-use super::clusters::{ClusterSum, LEAST_CLUSTERS, Ratio, counted, independent_trials, t_quantile};
+use super::clusters::{ClusterSum, LEAST_CLUSTERS, Ratio, independent_trials, non_empty, t_quantile};
 use super::quantile::{Clustered, independent_values};
 
 /// Two one-sided bounds: the value is at least `low` with the confidence that was asked for, and at most `high` with the same.
@@ -21,7 +21,7 @@ pub struct Bounds {
 /// clusters do (Korn & Graubard 1998, Survey Methodology 24, 193–201). They hold with the confidence at least. `None` where nothing is
 /// counted.
 pub fn cluster_rate_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
-    let counted = counted(clusters);
+    let counted = non_empty(clusters);
     let ratio = Ratio::new(&counted)?;
     let n = independent_trials(&counted, &ratio) * size;
     let count = ratio.value * n;
@@ -32,7 +32,7 @@ pub fn cluster_rate_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) 
 
 /// Bounds of a mean over clusters, Σ sum / Σ of, by Student's t. `None` below [`LEAST_CLUSTERS`].
 pub fn cluster_mean_bounds(clusters: &[ClusterSum], confidence: f64, size: f64) -> Option<Bounds> {
-    let counted = counted(clusters);
+    let counted = non_empty(clusters);
     if counted.len() < LEAST_CLUSTERS {
         return None;
     }

@@ -3,7 +3,7 @@
 use statrs::function::beta::beta_reg;
 
 use super::Interval;
-use super::clusters::{ClusterSum, OUTSIDE, Ratio, counted, independent_trials};
+use super::clusters::{ClusterSum, OUTSIDE, Ratio, independent_trials, non_empty};
 
 /// A value and the number of the cluster that it belongs to.
 pub type Clustered = (usize, f64);
@@ -45,7 +45,7 @@ pub(super) fn independent_values(sorted: &[Clustered], p: f64) -> Option<f64> {
             sum.sum += f64::from(u8::from(*value <= limit));
         }
     }
-    let counted = counted(&sums);
+    let counted = non_empty(&sums);
     Some(independent_trials(&counted, &Ratio::new(&counted)?))
 }
 

@@ -126,7 +126,7 @@ pub enum Estimator {
 
 /// An approach, measured.
 #[derive(Debug, Clone)]
-pub struct Flown {
+pub struct MeasuredApproach {
     /// Lens of the camera.
     pub lens: Lens,
     /// Measured portions in order.
@@ -136,7 +136,7 @@ pub struct Flown {
 }
 
 /// Flies the approach of a number: even ones with the narrow lens, odd ones with the wide.
-pub fn fly(plan: &Plan, number: u64) -> Result<Flown, Box<dyn Error + Send + Sync>> {
+pub fn simulate(plan: &Plan, number: u64) -> Result<MeasuredApproach, Box<dyn Error + Send + Sync>> {
     let lens = Lens::ALL[(number % 2) as usize];
     let (approach, sun) = draw(plan, &lens, number)?;
     let simulation = DockingSimulation {
@@ -158,7 +158,7 @@ pub fn fly(plan: &Plan, number: u64) -> Result<Flown, Box<dyn Error + Send + Syn
     let mut workspace = simulator.workspace()?;
     let mut pipeline = DockingFactory::new(DockingConfig::default())?.build(&simulator.setup())?;
     let mut digitiser = Digitiser::default();
-    let mut flown = Flown { lens, portions: Vec::new(), fields: Vec::new() };
+    let mut flown = MeasuredApproach { lens, portions: Vec::new(), fields: Vec::new() };
     let mut last_s = 0.0;
     for field in 0..plan.fields() {
         let exposure = simulator.expose(&mut workspace, field)?;

@@ -1,12 +1,12 @@
 //! Errors against what their covariances say.
 
-use boresight::score::docking::Shown;
+use boresight::score::docking::ApproachParameters;
 use boresight::score::docking::consistency::{nees, within_3_sigma};
 use contract::docking::{Motion, PoseEstimate};
 use nalgebra::{Matrix6, Vector3, Vector6};
 use sim::truth::approach::ApproachState;
 
-use super::approaches::{Estimator, Flown};
+use super::approaches::{Estimator, MeasuredApproach};
 
 /// The parameters of a motion, in the order of [`Errors`].
 pub const NAMES: [&str; 16] =
@@ -30,10 +30,10 @@ pub struct Errors {
 impl Errors {
     /// `None` where ρ, α or β have no derivatives.
     pub fn of(motion: &Motion, truth: &ApproachState) -> Option<Self> {
-        let told = Shown::of(&motion.pose, &motion.velocity_m_s);
-        let true_values = Shown::of(&truth.pose, &truth.velocity_m_s);
-        let shown: [f64; 7] = told.minus(&true_values).into();
-        let shown_sigmas = Shown::sigmas(motion)?;
+        let reported = ApproachParameters::from_motion(&motion.pose, &motion.velocity_m_s);
+        let true_values = ApproachParameters::from_motion(&truth.pose, &truth.velocity_m_s);
+        let shown: [f64; 7] = reported.difference(&true_values).into();
+        let shown_sigmas = ApproachParameters::sigmas(motion)?;
         let d = motion.pose.position_m - truth.pose.position_m;
         let d_rate = motion.velocity_m_s - truth.velocity_m_s;
         let phi = motion.pose.phi_rad - truth.pose.phi_rad;
@@ -122,7 +122,7 @@ pub struct Tally {
 
 impl Tally {
     /// Statistics of one estimator over these approaches.
-    pub fn of(flown: &[Flown], estimator: Estimator) -> Self {
+    pub fn of(flown: &[MeasuredApproach], estimator: Estimator) -> Self {
         let errors: Vec<Vec<Errors>> = flown.iter().map(|flown| errors(flown, estimator)).collect();
         let mean = |of: &dyn Fn(&Errors) -> Option<f64>| {
             let sums: Vec<(f64, f64)> = errors
@@ -137,7 +137,7 @@ impl Tally {
         let fields: Vec<(f64, f64)> = flown
             .iter()
             .map(|flown| {
-                let values = flown.fields.iter().filter_map(|(truth, told)| field_nees(truth, told));
+                let values = flown.fields.iter().filter_map(|(truth, reported)| field_nees(truth, reported));
                 values.fold((0.0, 0.0), |(s, n), value| (s + value, n + 1.0))
             })
             .collect();
@@ -145,8 +145,8 @@ impl Tally {
             portions: errors.iter().map(Vec::len).sum(),
             within: std::array::from_fn(|i| mean(&|e| share(e.within[i]))),
             within_all: mean(&|e| {
-                let told: Vec<f64> = e.within.iter().filter_map(|within| share(*within)).collect();
-                (!told.is_empty()).then(|| told.iter().sum::<f64>() / told.len() as f64)
+                let reported: Vec<f64> = e.within.iter().filter_map(|within| share(*within)).collect();
+                (!reported.is_empty()).then(|| reported.iter().sum::<f64>() / reported.len() as f64)
             }),
             nees: std::array::from_fn(|i| mean(&|e| e.nees[i])),
             field_nees: Mean::of(&fields),
@@ -155,7 +155,7 @@ impl Tally {
 }
 
 /// Of the portions of an approach that are judged.
-pub fn errors(flown: &Flown, estimator: Estimator) -> Vec<Errors> {
+pub fn errors(flown: &MeasuredApproach, estimator: Estimator) -> Vec<Errors> {
     flown
         .portions
         .iter()
@@ -165,6 +165,6 @@ pub fn errors(flown: &Flown, estimator: Estimator) -> Vec<Errors> {
 }
 
 /// Longest time between two reports, s.
-pub fn longest_interval_s(flown: &[Flown]) -> f64 {
+pub fn longest_interval_s(flown: &[MeasuredApproach]) -> f64 {
     flown.iter().flat_map(|flown| &flown.portions).map(|portion| portion.interval_s).fold(0.0, f64::max)
 }

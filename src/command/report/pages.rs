@@ -11,7 +11,7 @@ use report::{
 use run::AnyJudgement;
 use visibility::VisibilityReport;
 
-use super::budget::fly_budget;
+use super::budget::run_budget;
 use crate::command::output::Output;
 
 /// The value of `--budget` that flies every stage.
@@ -29,7 +29,7 @@ pub(super) fn write_report(
 ) -> Result<u64, Failure> {
     let page = match budget {
         [] => report_of(directory)?,
-        [only] if only == Path::new(ALL) => report_with_budget(directory, &fly_budget(directory, output)?)?,
+        [only] if only == Path::new(ALL) => report_with_budget(directory, &run_budget(directory, output)?)?,
         several if several.iter().any(|path| path == Path::new(ALL)) => {
             return Err(Failure::Usage(
                 "--budget is `all` and a directory, expected `all` alone: it flies every stage".to_owned(),

@@ -24,13 +24,13 @@ use sim::docking::FieldTruth;
 
 use super::far_range::{Bounds, not_stored, time_words};
 use super::source::{Source, rows_of};
-use super::{PixelSource, Shown, spoken};
+use super::{AnnotatedFrame, PixelSource, display_name};
 
 /// Videos of a directory whose telemetry names no images.
 const VIDEOS: [&str; 2] = ["fields.avi", "fields.y4m"];
 
 /// What is known of a field.
-struct Known<'a> {
+struct FieldRecord<'a> {
     name: String,
     row: &'a FieldRow,
     setup: &'a DockingSetup,
@@ -46,7 +46,7 @@ struct Known<'a> {
 ///
 /// # Errors
 /// A [`Failure`] that names the field or the file which is missing or cannot be read.
-pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Failure> {
+pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<AnnotatedFrame>, Failure> {
     let telemetry = read_field_telemetry(&source.directory.join("telemetry.csv"))?;
     let rows = source.select("field", &telemetry, numbers, |row: &FieldRow| row.field)?;
     let setup = SetupFile::read(&source.directory.join("setup.toml"))?.setup();
@@ -82,7 +82,7 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<Shown>, Fai
             Some(((run_file, truth), answer)) => verdict(run_file, &setup, truth, answer.as_ref())?,
             None => None,
         };
-        let known = Known {
+        let known = FieldRecord {
             name: name.clone(),
             row,
             setup: &setup,
@@ -211,8 +211,14 @@ fn woven(field: &Field, before: Option<&Field>) -> Vec<u16> {
     dn
 }
 
-impl Known<'_> {
-    fn shown(&self, field: &Field, before: Option<&Field>, source: PixelSource, by_other: bool) -> Shown {
+impl FieldRecord<'_> {
+    fn shown(
+        &self,
+        field: &Field,
+        before: Option<&Field>,
+        source: PixelSource,
+        by_other: bool,
+    ) -> AnnotatedFrame {
         let number = field.number();
         let (columns, rows) = (field.image().columns(), field.camera_rows());
         let full_scale_dn = field.image().full_scale_dn();
@@ -240,7 +246,7 @@ impl Known<'_> {
             caption: self.caption(),
         };
         let utc = self.truth.as_ref().map(|truth| format_utc(truth.time));
-        Shown {
+        AnnotatedFrame {
             panel,
             frame: number,
             time: utc.unwrap_or_else(|| format!("{} s", self.row.telemetry.time_s)),
@@ -291,8 +297,9 @@ impl Known<'_> {
             "range_only" | "doubtful" => Tone::Partial,
             _ => Tone::Bad,
         };
-        let cause = unit.cause.as_ref().map_or_else(String::new, |cause| format!(": {}", spoken(cause)));
-        Some(Words { words: format!("{}{cause}", spoken(&unit.verdict)), tone })
+        let cause =
+            unit.cause.as_ref().map_or_else(String::new, |cause| format!(": {}", display_name(cause)));
+        Some(Words { words: format!("{}{cause}", display_name(&unit.verdict)), tone })
     }
 
     /// Why there is no pose in the answer.
@@ -300,7 +307,7 @@ impl Known<'_> {
         match self.answer.as_ref()? {
             None => Some("no row".to_owned()),
             Some(answer) => match &answer.solution {
-                DockingSolution::NoSolution(reason) => Some(spoken(&reason.to_string())),
+                DockingSolution::NoSolution(reason) => Some(display_name(&reason.to_string())),
                 _ => None,
             },
         }

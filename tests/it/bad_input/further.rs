@@ -150,8 +150,8 @@ fn words_of_the_command_line_and_of_studies() {
             &["sweep[0].values[1]", "not finite"],
         ),
         (
-            "[[vary]]\npath = \"target.albedo\"\nlaw = { kind = \"choice\", values = [nan] }\n",
-            &["vary[2].law.values[0]", "not finite"],
+            "[[vary]]\npath = \"target.albedo\"\ndistribution = { kind = \"choice\", values = [nan] }\n",
+            &["vary[2].distribution.values[0]", "not finite"],
         ),
         ("[[sweep]]\npath = \"schedule[99].count\"\nvalues = [1]\n", &["sweep[0].path", "which has"]),
     ] {

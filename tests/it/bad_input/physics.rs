@@ -104,7 +104,7 @@ fn check(bench: &Bench) -> (Answer, serde_json::Value) {
 }
 
 #[test]
-fn a_distortion_beyond_sip_is_told_and_its_fits_files_have_none() {
+fn a_distortion_beyond_sip_is_reported_and_its_fits_files_have_none() {
     for (k1, from_px, to_px) in [(-4e-7, 350.0, 491.0), (2e-6, 100.0, 491.0), (5e-6, 50.0, 491.0)] {
         let bench = changed("starting-point", |table| {
             set(table, "camera.radial", vec![Value::Float(k1), Value::Float(0.0), Value::Float(0.0)]);
@@ -130,7 +130,7 @@ fn a_distortion_beyond_sip_is_told_and_its_fits_files_have_none() {
 }
 
 #[test]
-fn a_slip_of_a_thousand_is_told() {
+fn a_slip_of_a_thousand_is_reported() {
     for (built_in, path, slip, told) in [
         ("starting-point", "camera.focal_length_mm", 0.020_187, "camera.focal_length_mm is 0.020187"),
         (

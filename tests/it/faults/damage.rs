@@ -109,7 +109,7 @@ fn damage_in_a_baseline_or_a_study_is_found_by_the_gate() {
     bench.write(
         "study.toml",
         "title = \"two frames\"\nscenario = \"small.toml\"\nseed = 5\nframes = \"20..22\"\n[stop]\ncases = 60\n\
-         [[vary]]\npath = \"psf.sigma_px\"\nlaw = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
+         [[vary]]\npath = \"psf.sigma_px\"\ndistribution = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
     );
     bench.boresight("study run study.toml --out study --shards 2").done();
     bench.boresight("gate baseline study --out base --reason test").done();
@@ -140,7 +140,7 @@ fn a_shard_with_any_bit_flipped_is_no_shard() {
         "study.toml",
         "title = \"a frame\"\nscenario = \"small.toml\"\nseed = 5\nframes = \"20..21\"\n[stop]\ncases = 2\n\
          [record]\nfigures = [\"hit_rate\"]\nworst_by = \"hit_rate\"\n\
-         [[vary]]\npath = \"psf.sigma_px\"\nlaw = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
+         [[vary]]\npath = \"psf.sigma_px\"\ndistribution = { kind = \"uniform\", min = 0.7, max = 0.9 }\n",
     );
     bench.boresight("study run study.toml --out study --shards 1 --no-report").done();
     let study = Study::read(&bench.path("study.toml")).unwrap();

@@ -2,7 +2,8 @@
 
 use boresight::gate::{Baseline, CompareOptions, Identity, Pairing, Sample, SourceKind, compare};
 use boresight::score::{
-    AnswerError, AttitudeUsed, Cause, FrameVerdict, LineOfSightError, Taken, UnitTable, Verdict, WithinLimits,
+    AnswerError, AttitudeUsed, Cause, FrameVerdict, LineOfSightError, MistakenObject, UnitTable, Verdict,
+    WithinLimits,
 };
 use contract::{Angle, AttitudeSource};
 use sim::randomness::{Effect, Seed, Stream, normal, uniform};
@@ -69,7 +70,7 @@ impl Fault {
                     Verdict::Missed { cause: Cause::NotLinked }
                 }
                 (Verdict::Correct { error }, Self::MoreWrong(share)) if u < share / correct => {
-                    Verdict::Wrong { error, taken: Taken::Nothing, cause: Cause::LostMotionTest }
+                    Verdict::Wrong { error, taken: MistakenObject::Nothing, cause: Cause::LostMotionTest }
                 }
                 (_, Self::Blackout(begin, end)) if (begin..end).contains(&place) => {
                     Verdict::Missed { cause: Cause::BelowThreshold }
@@ -186,9 +187,11 @@ impl Synthetic {
                 let (is_hit, is_wrong) = (next(&mut hit, 0.7) < 1.645, next(&mut right, 0.7) > 1.476);
                 let verdict = match (is_hit, is_wrong) {
                     (false, _) => Verdict::Missed { cause: Cause::BelowThreshold },
-                    (true, true) => {
-                        Verdict::Wrong { error, taken: Taken::HotPixel(3), cause: Cause::LostMotionTest }
-                    }
+                    (true, true) => Verdict::Wrong {
+                        error,
+                        taken: MistakenObject::HotPixel(3),
+                        cause: Cause::LostMotionTest,
+                    },
                     (true, false) => Verdict::Correct { error },
                 };
                 FrameVerdict {
@@ -209,7 +212,7 @@ impl Synthetic {
 pub(crate) fn sample_of(seed: u64, frames: &[FrameVerdict]) -> Sample {
     Sample::new(
         identity("far_range", seed),
-        UnitTable::of_frames(frames, &WithinLimits::of_degrees([PIXEL_DEG, 2.0 * PIXEL_DEG])),
+        UnitTable::of_frames(frames, &WithinLimits::from_degrees([PIXEL_DEG, 2.0 * PIXEL_DEG])),
     )
 }
 

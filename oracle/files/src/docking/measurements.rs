@@ -163,8 +163,8 @@ fn solution(row: &CsvRow<'_>) -> Result<DockingSolution, FileError> {
             if range_m <= 0.0 {
                 return Err(row.error(RANGE[0], "greater than 0"));
             }
-            let told = !row.text(RANGE[1]).trim().is_empty();
-            let sigma_m = if told { row.cell(RANGE[1])? } else { 0.0 };
+            let has_sigma = !row.text(RANGE[1]).trim().is_empty();
+            let sigma_m = if has_sigma { row.cell(RANGE[1])? } else { 0.0 };
             if sigma_m < 0.0 {
                 return Err(row.error(RANGE[1], "0 or greater"));
             }
@@ -199,7 +199,7 @@ fn measurement(row: &CsvRow<'_>) -> Result<Box<FieldMeasurement>, FileError> {
 /// nothing.
 fn covariance(row: &CsvRow<'_>, line: &FieldMeasurementLine) -> Result<Matrix6<f64>, FileError> {
     row.check_sigmas(SIGMA, line.sigma)?;
-    if let Some(covariance) = covariance::of_cells(row, COVARIANCE, line.covariance, &scale())? {
+    if let Some(covariance) = covariance::from_cells(row, COVARIANCE, line.covariance, &scale())? {
         return Ok(covariance);
     }
     let sigmas = Vector6::from(line.sigma.unwrap_or_default()).component_div(&scale());
@@ -282,7 +282,7 @@ mod tests {
     const HEADER: &str = "field,status,d1_m,d2_m,d3_m,phi1_deg,phi2_deg,phi3_deg";
 
     #[test]
-    fn eight_columns_are_enough_and_then_the_covariance_says_nothing() {
+    fn eight_columns_are_enough_and_then_the_covariance_is_zero() {
         let answers = read(&format!("{HEADER}\n3,measured,0.1,0,5,0,0,90\n9,no_target,,,,,,\n")).unwrap();
         let best = &answers[0].1.measurement().unwrap().best;
         assert_eq!(best.pose.phi_rad.z, std::f64::consts::FRAC_PI_2);
@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn a_far_range_table_is_told_by_its_columns() {
+    fn a_far_range_table_is_recognised_by_its_columns() {
         let message = read("frame,status,x_px,y_px\n1,no_target,,\n").unwrap_err().to_string();
         assert!(message.contains("unknown column `frame`"), "{message}");
     }

@@ -98,7 +98,7 @@ pub trait Value<const N: usize>: Sized {
     ///
     /// # Errors
     /// What was expected.
-    fn of_cells(cells: [Self::Cell<'_>; N]) -> Result<Self, String>;
+    fn from_cells(cells: [Self::Cell<'_>; N]) -> Result<Self, String>;
 }
 
 /// A field of a row: a value, or one that may be absent; then its cells are empty, or null.
@@ -153,7 +153,7 @@ macro_rules! value {
                 $to
             }
 
-            fn of_cells($cells: [Self::Cell<'_>; $n]) -> Result<Self, String> {
+            fn from_cells($cells: [Self::Cell<'_>; $n]) -> Result<Self, String> {
                 $of
             }
         }
@@ -209,7 +209,7 @@ impl<const N: usize> Value<N> for [f64; N] {
         *self
     }
 
-    fn of_cells(cells: Self) -> Result<Self, String> {
+    fn from_cells(cells: Self) -> Result<Self, String> {
         Ok(cells)
     }
 }

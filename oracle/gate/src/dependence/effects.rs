@@ -72,7 +72,7 @@ impl FigureEffect {
         let mut effects = vec![0.0; blocks.count()];
         let mut has_data = vec![false; blocks.count()];
         for (i, (of_a, of_b)) in a.units.iter().zip(&b.units).enumerate() {
-            let block = blocks.of(i);
+            let block = blocks.block_of(i);
             let difference = (of_b.0 - together * of_b.1) - (of_a.0 - together * of_a.1);
             effects[block] += scale * difference / count;
             has_data[block] |= of_a.1 + of_b.1 > 0.0;
@@ -178,7 +178,7 @@ impl Side {
         if reduction == Reduction::Median {
             let with_value = terms.iter().enumerate().filter(|(_, term)| term.of > 0);
             let mut sorted: Vec<(f64, u32)> =
-                with_value.map(|(unit, term)| (term.sum, blocks.of(unit) as u32)).collect();
+                with_value.map(|(unit, term)| (term.sum, blocks.block_of(unit) as u32)).collect();
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
             let mut counts = vec![0; blocks.count()];
             sorted.iter().for_each(|(_, block)| counts[*block as usize] += 1);
@@ -187,7 +187,7 @@ impl Side {
         }
         let mut sums = vec![(0.0, 0.0); blocks.count()];
         for (unit, (sum, of)) in Sums::of_terms(terms, reduction, 0.0).units.into_iter().enumerate() {
-            let block = &mut sums[blocks.of(unit)];
+            let block = &mut sums[blocks.block_of(unit)];
             *block = (block.0 + sum, block.1 + of);
         }
         Self::Ratio { blocks: sums, is_root: reduction == Reduction::Rms }
@@ -244,14 +244,14 @@ pub(crate) fn neighbour_correlation(effects: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::hand_made::figure as terms;
-    use run::figure_called;
+    use run::figure_by_name;
     use score::Kind;
     use statistics::Exchanges;
 
     fn effect(name: &str, reduction: Reduction, a: &[Option<f64>], b: &[Option<f64>]) -> FigureEffect {
         let blocks = Blocks::every(a.len(), 2);
         FigureEffect::of_runs(
-            figure_called(name).sense,
+            figure_by_name(name).sense,
             &terms(name, reduction, a),
             &terms(name, reduction, b),
             &blocks,
@@ -354,7 +354,7 @@ mod tests {
         let [a, b] = [[Some(1.0), Some(2.0), None, None], [Some(1.0), None, Some(3.0), None]]
             .map(|values| terms("ra_rms_deg", Reduction::Rms, &values));
         let effect =
-            FigureEffect::of_runs(figure_called("ra_rms_deg").sense, &a, &b, &Blocks::every(4, 1), 0.0);
+            FigureEffect::of_runs(figure_by_name("ra_rms_deg").sense, &a, &b, &Blocks::every(4, 1), 0.0);
         assert_eq!((effect.blocks, effect.baseline_of, effect.result_of), (3, 2, 2));
     }
 

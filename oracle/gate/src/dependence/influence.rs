@@ -60,7 +60,7 @@ mod tests {
         assert_eq!(of(Reduction::Mean, &[None; 2]), [0.0, 0.0]);
         // Three of four are held: 2 − 3 · 3/4, 1 − 1 · 3/4.
         let pooled = vec![Term { sum: 2.0, of: 3 }, Term { sum: 1.0, of: 1 }];
-        let pooled = FigureTerms::counted("held", Reduction::Rate, pooled);
+        let pooled = FigureTerms::from_terms("held", Reduction::Rate, pooled);
         assert_eq!(influence(&pooled), [-0.25, 0.25]);
     }
 }

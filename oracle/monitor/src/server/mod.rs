@@ -64,18 +64,18 @@ pub fn serve(
     stop: impl Future<Output = ()> + Send + 'static,
 ) -> Result<(), Failure> {
     let Feed { world, measurements } = monitored;
-    let surroundings = world.surroundings(measurements)?;
-    let overview = Overview::of(monitored, &surroundings)?;
-    let session = Arc::new(Session::new(surroundings.frames.clone()));
+    let context = world.context(measurements)?;
+    let overview = Overview::from_feed(monitored, &context)?;
+    let session = Arc::new(Session::new(context.frames.clone()));
     let shared = Arc::new(Shared {
         overview,
-        ground: surroundings.ground.clone(),
-        times: surroundings.frames.clone().filter_map(|frame| world.time(frame)).collect(),
-        first: surroundings.frames.start,
+        ground: context.ground.clone(),
+        times: context.frames.clone().filter_map(|frame| world.time(frame)).collect(),
+        first: context.frames.start,
         session: Arc::clone(&session),
     });
     // A thread that fails tells the page, unless it only was told to stop.
-    let tell = |result: Result<(), Failure>| {
+    let publish_failure = |result: Result<(), Failure>| {
         if let Err(failure) = result
             && !session.is_closed()
         {
@@ -83,9 +83,9 @@ pub fn serve(
         }
     };
     std::thread::scope(|scope| {
-        scope.spawn(|| tell(world.feed(measurements, &surroundings, &session)));
+        scope.spawn(|| publish_failure(world.feed(measurements, &context, &session)));
         for _ in 0..PAINTERS {
-            scope.spawn(|| tell(paint(monitored, &surroundings, &session)));
+            scope.spawn(|| publish_failure(paint(monitored, &context, &session)));
         }
         let served = answer_requests(&shared, bind, ready, stop);
         session.close();
@@ -265,7 +265,7 @@ async fn picture(session: &Session, frame: u64) -> Response {
 
 /// Waits for a frame, not for ever.
 async fn is_processed(session: &Session, frame: u64) -> bool {
-    session.want(frame);
+    session.request(frame);
     let mut processed = session.subscribe();
     let arrived = async {
         loop {

@@ -388,7 +388,7 @@ impl Axis {
     }
 
     /// Ticks at most.
-    pub(crate) fn most_ticks(self, count: u32) -> Self {
+    pub(crate) fn max_ticks(self, count: u32) -> Self {
         self.with("nticks", count)
     }
 

@@ -105,7 +105,7 @@ fn uploaded(scenario: &FarRangeScenario, simulator: &Simulator, epoch: Epoch) ->
     let limit = scenario.star_list.magnitude_limit;
     let list = || {
         let stars = star_list(simulator.catalog(), limit, epoch);
-        let listed = stars.iter().map(StarRow::listed).collect();
+        let listed = stars.iter().map(StarRow::to_listed_star).collect();
         (stars, listed)
     };
     match scenario.catalog.source {

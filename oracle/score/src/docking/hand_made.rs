@@ -7,7 +7,7 @@ use contract::docking::{
 };
 use nalgebra::{Matrix6, Vector3};
 
-use super::truth::{TrueField, View};
+use super::truth::{TargetVisibility, TrueField};
 
 /// 768 × 576 square pixels, without distortion.
 pub(crate) fn camera(focal_px: f64) -> Camera {
@@ -66,7 +66,7 @@ pub(crate) fn field(number: u64, range_m: f64) -> TrueField {
         pose: ahead(range_m),
         velocity_m_s: Vector3::new(0.0, 0.0, -0.2),
         phi_rate_rad_s: Vector3::zeros(),
-        view: View::Whole,
+        visibility: TargetVisibility::Full,
         lost_lines: 0.0,
         marks_in_shadow: 0.0,
     }

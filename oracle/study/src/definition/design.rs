@@ -25,7 +25,7 @@ pub enum DesignKind {
 }
 
 /// Most dimensions of a low-discrepancy design.
-const MOST_DIMENSIONS: usize = 100;
+const MAX_DIMENSIONS: usize = 100;
 
 /// A number of 53 bits as one of the open unit interval.
 const UNIT: f64 = 1.0 / 9_007_199_254_740_992.0;
@@ -53,9 +53,9 @@ impl Design {
             DesignKind::Sobol => dimensions,
             DesignKind::Saltelli => 2 * dimensions,
         };
-        if of_sequence > MOST_DIMENSIONS {
+        if of_sequence > MAX_DIMENSIONS {
             return Err(format!(
-                "a design of at most {MOST_DIMENSIONS} dimensions, and this one has {of_sequence}"
+                "a design of at most {MAX_DIMENSIONS} dimensions, and this one has {of_sequence}"
             ));
         }
         if kind == DesignKind::Saltelli && (dimensions == 0 || !points.is_multiple_of(dimensions as u64 + 2))

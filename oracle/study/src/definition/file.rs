@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::design::DesignKind;
-use super::law::Law;
+use super::distribution::Distribution;
 use crate::findings::requirement::StudyRequirement;
 
 /// A study, as a TOML file holds it. Unknown keys are errors.
@@ -66,7 +66,7 @@ pub struct Dispersion {
     /// Its path in the scenario, as in `psf.sigma_px`, `attitude.control.jitter_arcsec[2]` or `cameras[0].camera.focal_length_mm`.
     pub path: String,
     /// Its law.
-    pub law: Law,
+    pub distribution: Distribution,
 }
 
 /// A parameter that is swept.

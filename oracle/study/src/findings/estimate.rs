@@ -1,7 +1,7 @@
 //! Values of many cases together, with their intervals.
 
 use rand::Rng;
-use run::figure_called;
+use run::figure_by_name;
 use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed, Stream};
 use statistics::{
@@ -36,7 +36,7 @@ impl Estimate {
 ///
 /// [`CaseTable::draws`]: crate::CaseTable::draws
 pub fn overall(name: &str, cases: &[CaseFigure], draws: &[usize]) -> Option<Estimate> {
-    if figure_called(name).is_rate() {
+    if figure_by_name(name).is_rate() {
         return share(cases, draws);
     }
     let sums = sums(false, cases, draws);

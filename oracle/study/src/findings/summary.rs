@@ -3,7 +3,7 @@ use std::path::Path;
 
 use files::{Failure, FileError};
 use indexmap::IndexMap;
-use run::figure_called;
+use run::figure_by_name;
 use score::Better;
 use serde::{Deserialize, Serialize};
 use sim::randomness::{Effect, Seed};
@@ -14,12 +14,12 @@ use statistics::{
 use super::estimate::{Estimate, RESAMPLES, overall, pick, quantiles, share, sorted_quantile, stream, sums};
 use super::requirement::{RequirementResult, RequirementVerdict, decide};
 use super::sensitivity::{RankCorrelation, SobolIndex, sobol_index};
-use super::stopping::{Waited, waited};
+use super::stopping::{StoppingStatus, stopping_status};
 use crate::case_file::CaseFile;
 use crate::cases::CaseFigure;
 use crate::definition::Study;
 use crate::definition::design::DesignKind;
-use crate::evaluate::tried::StudyPipeline;
+use crate::evaluate::study_pipeline::StudyPipeline;
 
 /// How many of the worst cases are named.
 const WORST: usize = 10;
@@ -142,7 +142,7 @@ pub struct Summary {
     pub is_narrow_enough: bool,
     /// What is known of the figure of the stopping rule; absent without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub waited: Option<Waited>,
+    pub waited: Option<StoppingStatus>,
     /// What is required, with its verdicts: at each point of the sweep, point by point.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<RequirementResult>,
@@ -245,7 +245,7 @@ impl Summary {
                 }
             }
             if let Some(until) = study.file.stop.until.as_ref().filter(|until| until.figure == *name) {
-                waited_for = Some(waited(until, &values, &cases.draws));
+                waited_for = Some(stopping_status(until, &values, &cases.draws));
             }
             correlations.extend(correlations_of(name, &values, &parameters, &cases.draws));
             if study.file.design == DesignKind::Saltelli {
@@ -279,7 +279,7 @@ impl Summary {
             of: study.cases(),
             failed_cases: cases.failed_cases,
             draws: cases.draws.last().map_or(0, |last| *last as u64 + 1),
-            is_narrow_enough: waited_for == Some(Waited::NarrowEnough),
+            is_narrow_enough: waited_for == Some(StoppingStatus::NarrowEnough),
             waited: waited_for,
             error_cases: cases.has_error.iter().filter(|has_error| **has_error).count() as u64,
             errors: cases
@@ -370,7 +370,7 @@ impl Points {
 
 /// A figure at the second of two points less that at the first, over the draws that have it in both, and how many these are.
 fn difference(name: &str, points: [&(Vec<CaseFigure>, Vec<usize>); 2]) -> Option<(Estimate, u64)> {
-    let is_rate = figure_called(name).is_rate();
+    let is_rate = figure_by_name(name).is_rate();
     let [first, second] = points.map(|(cases, draws)| sums(is_rate, cases, draws));
     let pairs: Vec<(ClusterSum, ClusterSum)> =
         first.into_iter().zip(second).filter(|(first, second)| first.of > 0.0 && second.of > 0.0).collect();
@@ -471,7 +471,7 @@ fn worst(
     seed: u64,
     replay: impl Fn(u64) -> String,
 ) -> Result<(Vec<WorstCase>, u64), FileError> {
-    let badness = |value: f64| match figure_called(by).sense.better {
+    let badness = |value: f64| match figure_by_name(by).sense.better {
         Better::More => -value,
         Better::Less => value,
         Better::Near(best) => (value - best).abs(),

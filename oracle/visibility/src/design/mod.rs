@@ -13,12 +13,12 @@ use files::Failure;
 use sim::SimError;
 
 use crate::camera::{CameraConfig, CameraModel};
-use crate::law::detection::DetectionCurve;
+use crate::detection_model::detection::DetectionCurve;
 use crate::requirement::definition::Requirements;
 use crate::requirement::{Demand, DetectionRule, MotionGuidance, MotionTable, Over, Parameter, TargetLight};
 use crate::sky::Sky;
-use crate::sky::star_count::{Curves, Seen, over_sky, star_trail_px};
-use crate::target::{Aspect, TargetModel, Watch, longest_exposures_s, longest_with};
+use crate::sky::star_count::{Curves, StarCount, over_sky, star_trail_px};
+use crate::target::{Aspect, TargetModel, TargetObservation, longest_exposures_s, longest_with};
 
 /// Ranges that are looked at within an interval, both ends included.
 const RANGES: usize = 7;
@@ -45,7 +45,7 @@ pub struct Design<'a> {
 
 /// What a design reaches of a demand.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reached {
+pub struct DesignPerformance {
     /// Probability at the worst of what is demanded.
     pub probability: f64,
     /// Exposure at which it is reached, s.
@@ -159,10 +159,10 @@ impl<'a> Design<'a> {
     ///
     /// # Errors
     /// As [`Design::sky`].
-    pub fn stars(&self, exposure_s: f64, n_min: u32) -> Result<Vec<Seen>, SimError> {
+    pub fn stars(&self, exposure_s: f64, n_min: u32) -> Result<Vec<StarCount>, SimError> {
         let sky = self.sky()?;
         let curves = Curves::of_sky(&self.camera, &self.rule, &self.motion, exposure_s, sky);
-        Ok(curves.seen_over(sky, n_min as usize))
+        Ok(curves.count_stars_over_sky(sky, n_min as usize))
     }
 
     /// P(N ≥ n_min) over the sky.
@@ -179,8 +179,8 @@ impl<'a> Design<'a> {
     /// As [`Design::sky`].
     pub fn curve(&self, exposure_s: f64) -> Result<DetectionCurve, SimError> {
         let trail_px = star_trail_px(&self.camera, &self.motion, exposure_s);
-        let light_e_per_s = self.background_e_per_s()?;
-        Ok(DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, light_e_per_s))
+        let background_e_per_s = self.background_e_per_s()?;
+        Ok(DetectionCurve::new(&self.camera, &self.rule, trail_px, exposure_s, background_e_per_s))
     }
 
     /// V of a star of the mean colour, on the boresight, that is detected with a probability; `None` when none is.
@@ -236,11 +236,11 @@ impl<'a> Design<'a> {
         exposure_s: f64,
     ) -> Result<(f64, usize), SimError> {
         let Some(target) = &self.target else { return Ok((0.0, 0)) };
-        let watch = Watch {
+        let watch = TargetObservation {
             camera: &self.camera,
             rule: &self.rule,
             motion: &self.motion,
-            light_e_per_s: self.background_e_per_s()?,
+            background_e_per_s: self.background_e_per_s()?,
         };
         let chances = groups.iter().map(|group| watch.chance(target, &group.aspects, range_km, exposure_s));
         let least = chances.enumerate().map(|(i, chance)| (chance, i)).min_by(|a, b| a.0.total_cmp(&b.0));
@@ -263,49 +263,60 @@ impl<'a> Design<'a> {
     ///
     /// # Errors
     /// As [`Design::sky`].
-    pub fn reached(&self, demand: &Demand, exposure_s: Option<f64>) -> Result<Reached, SimError> {
+    pub fn reached(&self, demand: &Demand, exposure_s: Option<f64>) -> Result<DesignPerformance, SimError> {
         let file = &self.requirements.file;
         let exposure_of = |own: &Option<f64>| exposure_s.or(*own).unwrap_or(file.exposure.nominal_s);
         match demand {
             Demand::Stars { n_min, exposure_s: own, over, .. } => {
                 let exposure_s = exposure_of(own);
                 let probability = self.stars_chance(exposure_s, n_min.unwrap_or(file.n_min), *over)?;
-                Ok(Reached { probability, exposure_s, range_km: None })
+                Ok(DesignPerformance { probability, exposure_s, range_km: None })
             }
             Demand::LimitingMagnitude { magnitude, exposure_s: own, .. } => {
                 let exposure_s = exposure_of(own);
                 let electrons = self.camera.radiometry.star(*magnitude, None, None) * exposure_s;
-                Ok(Reached { probability: self.curve(exposure_s)?.at(electrons), exposure_s, range_km: None })
+                Ok(DesignPerformance {
+                    probability: self.curve(exposure_s)?.probability(electrons),
+                    exposure_s,
+                    range_km: None,
+                })
             }
             Demand::TargetDetected { from_km, to_km, phase_max_deg, exposure_s: own, .. } => {
                 let (exposure_s, groups) = (exposure_of(own), self.groups(*phase_max_deg));
-                let mut worst = Reached { probability: 2.0, exposure_s, range_km: None };
+                let mut worst = DesignPerformance { probability: 2.0, exposure_s, range_km: None };
                 for range_km in between(*from_km, *to_km, RANGES) {
                     let (probability, _) = self.target_chance(&groups, range_km, exposure_s)?;
                     if probability < worst.probability {
-                        worst = Reached { probability, exposure_s, range_km: Some(range_km) };
+                        worst = DesignPerformance { probability, exposure_s, range_km: Some(range_km) };
                     }
                 }
                 Ok(worst)
             }
             Demand::ExposureWindow { from_km, to_km, phase_max_deg, n_min, probability } => {
                 let groups = self.groups(*phase_max_deg);
-                let asked = probability.unwrap_or(file.probability);
+                let required = probability.unwrap_or(file.probability);
                 let ranges =
-                    between(*from_km, *to_km, RANGES).map(|r| (self.longest_s(&groups, r, asked), r));
+                    between(*from_km, *to_km, RANGES).map(|r| (self.longest_s(&groups, r, required), r));
                 let (longest_s, range_km) =
                     ranges.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, *from_km));
                 if longest_s < file.exposure.min_s {
-                    return Ok(Reached { probability: 0.0, exposure_s: longest_s, range_km: Some(range_km) });
+                    return Ok(DesignPerformance {
+                        probability: 0.0,
+                        exposure_s: longest_s,
+                        range_km: Some(range_km),
+                    });
                 }
                 // Longer is better for stars, unless smear takes what it gives: half and a quarter of it may do as well.
-                let mut best =
-                    Reached { probability: 0.0, exposure_s: file.exposure.min_s, range_km: Some(range_km) };
+                let mut best = DesignPerformance {
+                    probability: 0.0,
+                    exposure_s: file.exposure.min_s,
+                    range_km: Some(range_km),
+                };
                 for part in [1.0, 0.5, 0.25] {
                     let exposure_s = (part * longest_s.min(file.exposure.max_s)).max(file.exposure.min_s);
                     let chance = self.stars_chance(exposure_s, n_min.unwrap_or(file.n_min), Over::Sky)?;
                     if chance > best.probability {
-                        best = Reached { probability: chance, exposure_s, ..best };
+                        best = DesignPerformance { probability: chance, exposure_s, ..best };
                     }
                     if self.motion.guidance == MotionGuidance::Inertial {
                         break;

@@ -75,7 +75,7 @@ pub enum Status {
     /// The analytic law says so, and the lower bound of the simulated rate too.
     MetSimulated,
     /// The analytic law says so alone: nothing was simulated, or too few frames to show it even if all of them met it.
-    MetLaw,
+    MetModel,
     /// The law or the upper bound of the simulated rate says that it is not.
     NotMet,
     /// The law says so, and the bounds of the simulated rate are on either side of what is asked for.
@@ -87,14 +87,14 @@ pub enum Status {
 impl Status {
     /// Whether it is met, by the law at least.
     pub fn is_met(self) -> bool {
-        matches!(self, Self::MetSimulated | Self::MetLaw)
+        matches!(self, Self::MetSimulated | Self::MetModel)
     }
 
     /// In words.
     pub fn words(self) -> &'static str {
         match self {
             Self::MetSimulated => "met (simulated)",
-            Self::MetLaw => "met (law)",
+            Self::MetModel => "met (law)",
             Self::NotMet => "not met",
             Self::NotDecided => "not decided",
             Self::Impossible => "impossible",
@@ -122,16 +122,16 @@ pub struct Verdict {
     /// In words: what was looked at, and what was simulated.
     pub evidence: String,
     /// What was simulated.
-    pub simulated: Option<Simulated>,
+    pub simulated: Option<SimulatedRate>,
     /// What was looked for, and found.
-    pub found: Option<Found>,
+    pub found: Option<SearchResult>,
     /// What binds, where it is not met.
     pub binds: Option<String>,
 }
 
 /// A simulated rate with the one-sided bounds of Clopper & Pearson.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Simulated {
+pub struct SimulatedRate {
     /// Frames of which it is true.
     pub count: u64,
     /// Frames.
@@ -146,7 +146,7 @@ pub struct Simulated {
 
 /// A value that meets a requirement, and one that does not.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct SearchResult {
     /// Name of the parameter.
     pub parameter: Cow<'static, str>,
     /// Its unit.
@@ -160,13 +160,13 @@ pub struct Found {
     /// Where the analytic probability is just what is asked for.
     pub threshold_value: f64,
     /// What was simulated at the value.
-    pub simulated: Option<Simulated>,
+    pub simulated: Option<SimulatedRate>,
     /// The value a step beyond the threshold; `None` when all that was looked at meets the requirement.
     pub failing_value: Option<f64>,
     /// Probability by the analytic law there.
     pub failing_probability: Option<f64>,
     /// What was simulated there.
-    pub failing_simulated: Option<Simulated>,
+    pub failing_simulated: Option<SimulatedRate>,
     /// Whether all values beyond the found one, to the other end, meet the requirement.
     pub is_monotone: bool,
 }

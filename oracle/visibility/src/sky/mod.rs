@@ -28,7 +28,7 @@ const SQRT_3: f64 = 0.732_050_807_568_877_2;
 
 /// Why a pointing does not count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Excluded {
+pub enum Exclusion {
     /// The Sun is too near.
     Sun,
     /// The Moon is too near.
@@ -37,7 +37,7 @@ pub enum Excluded {
     Earth,
 }
 
-impl Excluded {
+impl Exclusion {
     /// The word used in files.
     pub fn code(self) -> &'static str {
         match self {
@@ -60,7 +60,7 @@ pub struct Pointing {
     /// Where the camera is, from the centre of the Earth.
     pub position_km: Vector3<f64>,
     /// Why it does not count; `None` when it does.
-    pub excluded: Option<Excluded>,
+    pub excluded: Option<Exclusion>,
 }
 
 impl Pointing {
@@ -130,20 +130,20 @@ impl Pointing {
         Observer::new(self.time, self.position_km, along * speed_km_s)
     }
 
-    fn exclusion(&self, observer: &Observer, sky: &SkyTable) -> Option<Excluded> {
+    fn exclusion(&self, observer: &Observer, sky: &SkyTable) -> Option<Exclusion> {
         let degrees_from = |other: &Vector3<f64>| {
             let boresight = self.boresight.vector();
             libm::atan2(boresight.cross(other).norm(), boresight.dot(other)).to_degrees()
         };
         if degrees_from(observer.sun().vector()) < sky.sun_exclusion_deg {
-            return Some(Excluded::Sun);
+            return Some(Exclusion::Sun);
         }
         let moon_km = moon::moon_position_km(clock::tdb_j2000_s(self.time)) - self.position_km;
         if degrees_from(&moon_km) < sky.moon_exclusion_deg {
-            return Some(Excluded::Moon);
+            return Some(Exclusion::Moon);
         }
         let limb_deg = libm::asin((EARTH_RADIUS_KM / self.position_km.norm()).min(1.0)).to_degrees();
-        (degrees_from(&-self.position_km) - limb_deg < sky.earth_exclusion_deg).then_some(Excluded::Earth)
+        (degrees_from(&-self.position_km) - limb_deg < sky.earth_exclusion_deg).then_some(Exclusion::Earth)
     }
 
     /// The mean of the background's light over the detector, electrons a second and pixel.
@@ -292,7 +292,7 @@ mod tests {
         let when = SkyTime::Epoch { utc: "2012-04-26T12:00:00Z".to_owned() };
         for when in [when, SkyTime::Year { year: 2012 }] {
             let sky = SkyTable { sun_exclusion_deg: 40.0, when, ..SkyTable::default() };
-            let out = lattice(4000, &sky).iter().filter(|p| p.excluded == Some(Excluded::Sun)).count();
+            let out = lattice(4000, &sky).iter().filter(|p| p.excluded == Some(Exclusion::Sun)).count();
             assert!((out as f64 / 4000.0 - 0.11698).abs() < 0.004, "{out}");
         }
     }
@@ -301,7 +301,7 @@ mod tests {
     #[test]
     fn the_earth_excludes_a_camera_along_the_orbit_by_its_limb() {
         let motion = MotionTable { guidance: MotionGuidance::LocalOrbital, ..MOTION };
-        for (earth_exclusion_deg, excluded) in [(26.5, None), (26.6, Some(Excluded::Earth))] {
+        for (earth_exclusion_deg, excluded) in [(26.5, None), (26.6, Some(Exclusion::Earth))] {
             let sky = SkyTable { earth_exclusion_deg, ..SkyTable::default() };
             assert_eq!(Pointing::of_lattice(17, 1000, &motion, &sky).unwrap().excluded, excluded);
         }

@@ -183,7 +183,7 @@ fn report(time_s: f64, range_m: f64) -> MotionReport {
 /// Fields 0.1 s apart, all measured, a report at 0.9 s and then none: from 1.1 s on it is asked for, until 1.9 s it is a
 /// second old at most.
 #[test]
-fn silence_after_a_report_is_told() {
+fn silence_after_a_report_is_reported() {
     let mut fields: Vec<_> = (0..40)
         .map(|i| (TrueField { time_s: 0.1 * i as f64, ..field(i, 10.0) }, at([0.0, 0.0, 10.0], [0.0; 3])))
         .collect();
@@ -195,12 +195,12 @@ fn silence_after_a_report_is_told() {
 
 /// Ranges and their rates are in metres, angles in degrees.
 #[test]
-fn a_motion_to_the_side_is_told_in_degrees() {
+fn a_motion_to_the_side_is_reported_in_degrees() {
     let mut outcome = at([0.0, 0.0, 10.0], [0.0; 3]);
     let truth = field(0, 10.0);
-    let mut told = report(truth.time_s, 10.0);
-    told.best.as_mut().unwrap().pose.position_m = Vector3::new(0.0, 0.1, 10.0);
-    outcome.as_mut().unwrap().motion = Some(told);
+    let mut reported = report(truth.time_s, 10.0);
+    reported.best.as_mut().unwrap().pose.position_m = Vector3::new(0.0, 0.1, 10.0);
+    outcome.as_mut().unwrap().motion = Some(reported);
     let score = score(&[(truth, outcome)]);
     assert!((value(&score, "motion_alpha_rms_deg") - 0.572_938_7).abs() < 1e-6);
     assert!(
@@ -224,7 +224,7 @@ fn the_latency_is_from_the_first_clear_field_to_the_first_success() {
     let missed = |number| (field(number, 10.0), None);
     let right = |number| (field(number, 10.0), at([0.0, 0.0, 10.0], [0.0; 3]));
     let of = |fields: &[_]| score(fields).figures[names::LATENCY_FIELDS].value;
-    let hidden = (TrueField { view: View::Part, ..field(0, 10.0) }, None);
+    let hidden = (TrueField { visibility: TargetVisibility::Partial, ..field(0, 10.0) }, None);
     assert_eq!(of(&[hidden, missed(1), missed(2), missed(3), right(4)]), Some(3.0));
     assert_eq!(of(&[right(0), missed(1)]), Some(0.0));
     assert_eq!(of(&[missed(0), missed(1)]), None);
@@ -233,10 +233,15 @@ fn the_latency_is_from_the_first_clear_field_to_the_first_success() {
 /// A bar of 3 cm is resolved at 10 m, and not at 300 m.
 #[test]
 fn a_field_is_clear_when_the_target_is_whole_and_resolved() {
-    let fields = [(View::Whole, 10.0), (View::Part, 10.0), (View::Whole, 300.0), (View::Outside, 300.0)];
+    let fields = [
+        (TargetVisibility::Full, 10.0),
+        (TargetVisibility::Partial, 10.0),
+        (TargetVisibility::Full, 300.0),
+        (TargetVisibility::Outside, 300.0),
+    ];
     let fields: Vec<_> = (0..)
         .zip(fields)
-        .map(|(number, (view, range_m))| (TrueField { view, ..field(number, range_m) }, None))
+        .map(|(number, (visibility, range_m))| (TrueField { visibility, ..field(number, range_m) }, None))
         .collect();
     assert_eq!(score(&fields).figures[names::CLEAR_SUCCESS_RATE].of, 1);
 }
@@ -244,10 +249,10 @@ fn a_field_is_clear_when_the_target_is_whole_and_resolved() {
 #[test]
 fn units_are_the_fields_with_their_verdicts_and_causes() {
     let table = scored(&mixed()).units();
-    let told: Vec<_> =
+    let reported: Vec<_> =
         table.units.iter().map(|unit| (unit.verdict.as_str(), unit.cause.as_deref())).collect();
-    assert_eq!(told[..2], [("missed", Some("no_target")), ("success", None)]);
-    assert_eq!(told[4..7], [("wrong", Some("range")), ("wrong", Some("roll")), ("range_only", None)]);
+    assert_eq!(reported[..2], [("missed", Some("no_target")), ("success", None)]);
+    assert_eq!(reported[4..7], [("wrong", Some("range")), ("wrong", Some("roll")), ("range_only", None)]);
     assert!(table.units.iter().map(|unit| unit.number).eq(0..10));
     assert!(table.units.iter().all(|unit| unit.group == "10–5 m, 15.0°"), "{:?}", table.units[0].group);
     let names: Vec<_> = table.figures.iter().map(|figure| figure.name.clone()).collect();
@@ -338,7 +343,7 @@ fn a_report_of_the_papers_motion_alone_counts_as_the_papers() {
 
 /// A saboteur among pipelines: the same errors, and a covariance that claims ten times as little.
 #[test]
-fn a_pipeline_that_claims_too_much_is_told_by_its_consistency() {
+fn a_pipeline_that_claims_too_much_is_refused_by_its_consistency() {
     let fields: Vec<_> = (0..50)
         .map(|i| {
             let error = if i % 2 == 0 { 0.008 } else { -0.008 };

@@ -162,7 +162,7 @@ impl DetectionCurve {
 
     /// The chance that a star of exp(`ln_electrons`) electrons is detected.
     #[inline]
-    pub fn at_ln(&self, ln_electrons: f64) -> f64 {
+    pub fn probability_at_ln(&self, ln_electrons: f64) -> f64 {
         let at = ln_electrons * NODES_PER_E;
         if at.is_nan() || at <= 0.0 {
             return self.chances.first().copied().unwrap_or(0.0);
@@ -175,8 +175,8 @@ impl DetectionCurve {
     }
 
     /// The chance that a star of `electrons` is detected.
-    pub fn at(&self, electrons: f64) -> f64 {
-        self.at_ln(libm::log(electrons.max(1e-30)))
+    pub fn probability(&self, electrons: f64) -> f64 {
+        self.probability_at_ln(libm::log(electrons.max(1e-30)))
     }
 
     /// The electrons from which on a star is detected with `probability`; `None` when none is.
@@ -189,6 +189,6 @@ impl DetectionCurve {
 }
 
 /// Electrons of the background in a pixel: light, the flat sky of the detector's description, dark current.
-pub fn background_e(camera: &CameraModel, exposure_s: f64, light_e_per_s: f64) -> f64 {
-    (light_e_per_s + camera.config.sensor.background_e_per_s + camera.dark_e_per_s) * exposure_s
+pub fn background_e(camera: &CameraModel, exposure_s: f64, background_e_per_s: f64) -> f64 {
+    (background_e_per_s + camera.config.sensor.background_e_per_s + camera.dark_e_per_s) * exposure_s
 }
