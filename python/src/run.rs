@@ -79,7 +79,7 @@ impl Run {
         }
         let source = ScenarioSource::read(&file.to_string_lossy()).map_err(raised)?;
         Checksums::check(&directory, |_| true).map_err(file_error)?;
-        let is_docking = source.world().is_of::<DockingScenario>();
+        let is_docking = source.world().has_scenario::<DockingScenario>();
         Ok(Self { path: directory, is_docking, first_failure: None, _temporary: None })
     }
 
@@ -211,7 +211,7 @@ pub(crate) fn run(
         return Err(interrupt);
     }
     let (directory, temporary, first_failure) = ran.map_err(raised)?;
-    let is_docking = prepared.source.world().is_of::<DockingScenario>();
+    let is_docking = prepared.source.world().has_scenario::<DockingScenario>();
     Ok(Run { path: directory.path().to_owned(), is_docking, first_failure, _temporary: temporary })
 }
 

@@ -39,7 +39,7 @@ impl PythonStudyPipeline {
     }
 
     /// The pipeline of a case, whose setup is what a greeting of the protocol says.
-    fn of_case(
+    fn build_for_case(
         &self,
         greeting: impl FnOnce() -> Result<Vec<u8>, String>,
     ) -> Result<PythonPipeline, ContractError> {
@@ -94,7 +94,7 @@ impl<I: PythonInterface> PipelineFactory<I> for PythonStudyPipeline {
     }
 
     fn build(&self, setup: &I::Setup) -> Result<Box<dyn Pipeline<I>>, ContractError> {
-        let callable = self.of_case(|| I::greeting(setup))?;
+        let callable = self.build_for_case(|| I::greeting(setup))?;
         Ok(Box::new(RunningPipeline::<I> { callable, setup: setup.clone() }))
     }
 }

@@ -108,7 +108,7 @@ pub(super) fn process(arguments: &ProcessArguments, output: &Output) -> Result<A
     }
     let sequence = &arguments.sequence;
     let dataset = worlds().into_iter().find(|world| !is_stream && path.join(world.setup_file()).exists());
-    let is_docking = dataset.is_none_or(|world| world.is_of::<DockingScenario>());
+    let is_docking = dataset.is_none_or(|world| world.has_scenario::<DockingScenario>());
     let is_plain = sequence.given().is_none() && arguments.out.as_deref() != Some(Path::new("-"));
     match dataset {
         Some(world) if is_plain => process_dataset(world, arguments, output),

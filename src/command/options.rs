@@ -198,7 +198,7 @@ impl RendererOptions {
 
 impl Selection {
     /// A whole scenario as it is.
-    pub(super) fn of(scenario: &str) -> Self {
+    pub(super) fn for_scenario(scenario: &str) -> Self {
         Self { scenario: scenario.to_owned(), frames: None, seed: None, jobs: None }
     }
 

@@ -43,7 +43,7 @@ impl RunArguments {
     /// What the bare command means: `run argon`.
     pub(super) fn argon() -> Self {
         Self {
-            selection: Selection::of("argon"),
+            selection: Selection::for_scenario("argon"),
             out: None,
             pipeline: PipelineOptions::default(),
             attitude: AttitudeOption::default(),

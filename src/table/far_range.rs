@@ -145,7 +145,7 @@ fn rows(columns: &[Column<'_>], reference: Option<&Table2>, best_mode: Option<&[
             add(label, name, format, None);
         }
     }
-    add("start-up", names::FRAMES_UNTIL_SETTLED, whole, None);
+    add("start-up", names::FRAMES_UNTIL_SETTLED, integer_text, None);
     rows
 }
 
@@ -200,7 +200,7 @@ fn number(value: f64) -> String {
 }
 
 /// A count. The interval of a mean count may begin below 0, where no count is.
-fn whole(count: f64) -> String {
+fn integer_text(count: f64) -> String {
     format!("{:.0}", count.max(0.0))
 }
 

@@ -37,7 +37,7 @@ fn figures(scored: &dyn AnyJudgement, styled: bool) -> String {
             false => format!("{value:.4}"),
         });
         table.add_row([
-            Cell::new(spec.beside_percent()),
+            Cell::new(spec.label_without_percent()),
             Cell::new(value.unwrap_or_else(|| "–".to_owned())),
             Cell::new(figure.count),
             Cell::new(figure.of),

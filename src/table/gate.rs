@@ -25,7 +25,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
         let verdict = Cell::new(figure.verdict.words());
         let is_plain = matches!(figure.verdict, FigureVerdict::NoWorse | FigureVerdict::TooLittleData);
         table.add_row([
-            Cell::new(figure_by_name(name).beside_percent()),
+            Cell::new(figure_by_name(name).label_without_percent()),
             Cell::new(value(figure.baseline)),
             Cell::new(value(figure.result)),
             Cell::new(difference(name, figure)),
@@ -77,7 +77,7 @@ pub fn gate_table(report: &GateReport, styled: bool) -> String {
             text.push('\n');
         } else {
             text.push_str(if flips.units.len() > SHOWN { ", the first ten:\n" } else { ":\n" });
-            text.push_str(&changed(&flips.units, styled));
+            text.push_str(&flipped_units(&flips.units, styled));
         }
     }
     text
@@ -101,7 +101,7 @@ fn rows(report: &GateReport) -> Vec<(&String, &FigureReport)> {
     by_rank
 }
 
-fn changed(flips: &[Flip], styled: bool) -> String {
+fn flipped_units(flips: &[Flip], styled: bool) -> String {
     let mut table = plain_table(styled);
     let bold = |text: &str| Cell::new(text).add_attribute(Attribute::Bold);
     table.set_header(["number", "group", "baseline", "result"].map(bold));

@@ -164,11 +164,11 @@ fn requirements(summary: &Summary, styled: bool) -> String {
 /// How the figures go with what was drawn.
 fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String {
     let (varied, constant): (Vec<&String>, Vec<&String>) =
-        figures.iter().copied().partition(|name| of_figure(summary, name).next().is_some());
+        figures.iter().copied().partition(|name| correlations_with(summary, name).next().is_some());
     let mut text = String::new();
     if !varied.is_empty() {
         let mut parameters: Vec<&String> = Vec::new();
-        for correlation in varied.iter().flat_map(|name| of_figure(summary, name)) {
+        for correlation in varied.iter().flat_map(|name| correlations_with(summary, name)) {
             if parameters.len() < SHOWN && !parameters.contains(&&correlation.parameter) {
                 parameters.push(&correlation.parameter);
             }
@@ -179,7 +179,7 @@ fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String 
         table.set_header(header.map(|text| Cell::new(text).add_attribute(Attribute::Bold)));
         for parameter in parameters {
             let cell = |name: &&String| {
-                of_figure(summary, name).find(|c| &c.parameter == parameter).map_or_else(
+                correlations_with(summary, name).find(|c| &c.parameter == parameter).map_or_else(
                     || "–".to_owned(),
                     |c| {
                         let interval = c.low.zip(c.high);
@@ -210,7 +210,7 @@ fn correlations(summary: &Summary, figures: &[&String], styled: bool) -> String 
     text
 }
 
-fn of_figure<'a>(summary: &'a Summary, figure: &'a str) -> impl Iterator<Item = &'a RankCorrelation> {
+fn correlations_with<'a>(summary: &'a Summary, figure: &'a str) -> impl Iterator<Item = &'a RankCorrelation> {
     summary.correlations.iter().filter(move |correlation| correlation.figure == figure)
 }
 
@@ -330,7 +330,7 @@ impl LiveFigure {
 
 /// What a figure is called beside its values.
 fn label(key: &str) -> String {
-    figure_by_name(key).beside_percent()
+    figure_by_name(key).label_without_percent()
 }
 
 fn estimate_text(name: &str, estimate: Option<&Estimate>) -> String {

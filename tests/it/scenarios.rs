@@ -126,11 +126,11 @@ struct Schema(Value);
 
 impl Schema {
     fn read() -> Self {
-        Self::of("far_range")
+        Self::for_world("far_range")
     }
 
     /// Of one world.
-    fn of(world: &str) -> Self {
+    fn for_world(world: &str) -> Self {
         Self(Bench::new().boresight(&format!("scenario schema --world {world}")).done().json())
     }
 
@@ -184,7 +184,7 @@ impl Schema {
 #[test]
 fn every_key_of_the_built_in_scenarios_is_in_the_schema() {
     for scenario in BUILT_IN {
-        let schema = Schema::of(if scenario.name == "docking" { "docking" } else { "far_range" });
+        let schema = Schema::for_world(if scenario.name == "docking" { "docking" } else { "far_range" });
         let keys = schema.check_keys(
             scenario.name,
             &scenario.text.parse::<toml::Table>().unwrap().into(),

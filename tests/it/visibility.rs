@@ -52,7 +52,7 @@ fn camera() -> CameraConfig {
 /// Boresights that the Sun leaves free: nearer to it the background is not even over the field, as the law takes it to be.
 fn pointings(count: usize, motion: &MotionTable) -> Vec<Pointing> {
     let sky = SkyTable { sun_exclusion_deg: 40.0, ..SkyTable::default() };
-    let all = (0..count).map(|i| Pointing::of_lattice(i, count, motion, &sky).unwrap());
+    let all = (0..count).map(|i| Pointing::from_lattice(i, count, motion, &sky).unwrap());
     all.filter(|pointing| pointing.excluded.is_none()).collect()
 }
 

@@ -13,7 +13,7 @@ use crate::figures::{cell, significant};
 use crate::page::data_table::DataTable;
 use crate::page::picture::Picture;
 use crate::page::{Page, Section};
-use crate::worlds::report_of_world;
+use crate::worlds::world_report;
 
 /// Flipped frames that are shown as pictures, at most.
 const MAX_PICTURES: usize = 12;
@@ -40,7 +40,7 @@ impl FlippedFrames {
         if report.units == "cases" || flips.units.is_empty() {
             return Ok(none);
         }
-        let Some(world) = report_of_world(&report.world) else { return Ok(none) };
+        let Some(world) = world_report(&report.world) else { return Ok(none) };
         let chosen = first_flip_of_each_kind(&flips.units);
         let numbers: Vec<u64> = chosen.iter().map(|flip| flip.number).collect();
         let (mut pictures, reason) = (world.pictures)(result, &numbers)?;
@@ -123,7 +123,7 @@ pub fn gate_page(report: &GateReport, frames: FlippedFrames) -> Page {
             ("Seeds", format!("{} and {}", report.baseline_seed, report.result_seed)),
             ("Versions", format!("{} and {}", report.baseline_version, report.result_version)),
         ],
-        sections: vec![effects(report), changed(report, frames)],
+        sections: vec![effects(report), flipped_units(report, frames)],
         data: data(report),
     }
 }
@@ -244,7 +244,7 @@ fn differences(shown: &[Compared<'_>], unit: fn(&FigureReport) -> f64, axis: &st
 }
 
 /// Units that flipped.
-fn changed(report: &GateReport, frames: FlippedFrames) -> Section {
+fn flipped_units(report: &GateReport, frames: FlippedFrames) -> Section {
     let section = Section::new("flips", format!("{} that flipped", capital(&report.units)));
     let Some(flips) = &report.flips else {
         return section.text("The frames are not the same: only blocks of them are compared, and none can be said to have flipped.");

@@ -6,7 +6,7 @@
 //!
 //! - [`far_range_page`], [`docking_page`]: a run; [`study_page`]: a study; [`visibility_page`]: the answer to requirements; [`gate_page`]: what a
 //!   gate found.
-//! - [`report_of`]: whatever a directory holds; [`write_page`] puts it into a file.
+//! - [`read_report`]: whatever a directory holds; [`write_page`] puts it into a file.
 
 #![cfg_attr(
     not(test),
@@ -48,7 +48,7 @@ pub use visibility::{read_visibility, visibility_page};
 
 use self::figures::run_page::run_page;
 use self::read::is_far_range_run;
-use self::worlds::report_of_world;
+use self::worlds::world_report;
 use files::{AtomicFile, Checksums, Failure, ReplaceableFile, refuse_unfinished};
 use run::{AnyJudgement, IncompleteRun, world_of_run};
 
@@ -56,7 +56,7 @@ use run::{AnyJudgement, IncompleteRun, world_of_run};
 ///
 /// # Errors
 /// A [`Failure`] that names the file which is missing or cannot be read.
-pub fn report_of(directory: &Path) -> Result<Page, Failure> {
+pub fn read_report(directory: &Path) -> Result<Page, Failure> {
     let page = match ResultKind::from_directory(directory)? {
         ResultKind::Run => return page_of_run(directory, None),
         ResultKind::Study => study_page(&StudyResult::read(directory)?),
@@ -70,7 +70,7 @@ pub fn report_of(directory: &Path) -> Result<Page, Failure> {
 fn page_of_run(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> Result<Page, Failure> {
     refuse_unfinished(directory)?;
     let world = world_of_run(&directory.join("run.toml"))?;
-    let mut page = match report_of_world(world.code()) {
+    let mut page = match world_report(world.code()) {
         Some(of_world) => (of_world.page)(directory, scored)?,
         None => run_page(directory)?,
     };
@@ -98,7 +98,7 @@ pub fn check_budget(directory: &Path) -> Result<(), Failure> {
 /// place of one stage's result.
 ///
 /// # Errors
-/// As [`report_of`]; a [`Failure`] for a directory that is not of the same frames, or is an honest run.
+/// As [`read_report`]; a [`Failure`] for a directory that is not of the same frames, or is an honest run.
 pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, Failure> {
     check_budget(directory)?;
     let mut run = FarRangeRun::read(directory)?;
@@ -110,8 +110,8 @@ pub fn report_with_budget(directory: &Path, budget: &[PathBuf]) -> Result<Page, 
 /// out of `scored`.
 ///
 /// # Errors
-/// As [`report_of`].
-pub fn report_of_run(directory: &Path, scored: &mut dyn AnyJudgement) -> Result<Page, Failure> {
+/// As [`read_report`].
+pub fn read_run_report(directory: &Path, scored: &mut dyn AnyJudgement) -> Result<Page, Failure> {
     page_of_run(directory, Some(scored))
 }
 

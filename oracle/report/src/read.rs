@@ -55,7 +55,7 @@ impl ResultKind {
 /// Whether a directory is that of a run of the far range.
 pub(super) fn is_far_range_run(directory: &Path) -> Result<bool, Failure> {
     Ok(ResultKind::from_directory(directory)? == ResultKind::Run
-        && world_of_run(&directory.join("run.toml"))?.is_of::<FarRangeScenario>())
+        && world_of_run(&directory.join("run.toml"))?.has_scenario::<FarRangeScenario>())
 }
 
 /// A file of a run that is not there.

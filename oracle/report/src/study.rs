@@ -155,7 +155,7 @@ fn estimate_text(name: &str, estimate: &Estimate) -> String {
 
 /// What a figure is called beside its values.
 fn label(key: &str) -> String {
-    figure_by_name(key).beside_percent()
+    figure_by_name(key).label_without_percent()
 }
 
 /// Every figure: over all cases, and its quantiles over them.

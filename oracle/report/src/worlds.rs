@@ -25,6 +25,6 @@ const WORLDS: [WorldReport; 2] = [
 ];
 
 /// What the report of a world has of its own, by the world's word; `None` for a world that has nothing.
-pub(crate) fn report_of_world(code: &str) -> Option<WorldReport> {
+pub(crate) fn world_report(code: &str) -> Option<WorldReport> {
     WORLDS.into_iter().find(|world| world.code == code)
 }

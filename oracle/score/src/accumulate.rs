@@ -398,7 +398,7 @@ fn definitions(limits: &WithinLimits) -> Vec<Definition<'static, FrameVerdict>> 
 impl UnitTable {
     /// The frames of a far-range run, from their verdicts, with what each adds to every figure but the frames until settled, which only
     /// a whole sequence has.
-    pub fn of_frames(frames: &[FrameVerdict], limits: &WithinLimits) -> Self {
+    pub fn from_frames(frames: &[FrameVerdict], limits: &WithinLimits) -> Self {
         let unit = |frame: &FrameVerdict| {
             let row = frame.row();
             UnitVerdict {

@@ -224,7 +224,7 @@ mod tests {
     const DETECTOR: Detector = Detector { columns: COLUMNS, rows: ROWS };
 
     /// The cause for a detectable target in sunlight, alone but for `others`.
-    fn of(outcome: &Outcome, others: &[ObjectTruth]) -> Cause {
+    fn cause_with(outcome: &Outcome, others: &[ObjectTruth]) -> Cause {
         let objects: Vec<_> = [target_with(1000.0)].into_iter().chain(others.iter().cloned()).collect();
         cause(&frame(0), &objects, Some(outcome), DETECTOR)
     }
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn a_hot_pixel_beside_it_does_not_excuse_a_target_that_is_called_a_star() {
         let hot_pixel = hot_pixel_at(3, right_of_target(1.0), 5000.0);
-        assert_eq!(of(&labelled(Label::Star(7)), &[hot_pixel]), Cause::TakenForStar);
+        assert_eq!(cause_with(&labelled(Label::Star(7)), &[hot_pixel]), Cause::TakenForStar);
     }
 
     #[test]
@@ -293,7 +293,7 @@ mod tests {
             (NoSolution::EmptyFrame, Cause::BelowThreshold),
             (NoSolution::NoTarget, Cause::Unexplained),
         ] {
-            assert_eq!(of(&Outcome::none(reason), &[]), expected);
+            assert_eq!(cause_with(&Outcome::none(reason), &[]), expected);
         }
     }
 
@@ -306,7 +306,7 @@ mod tests {
             (Label::Unlinked, Cause::NotLinked),
             (Label::Target, Cause::Unexplained),
         ] {
-            assert_eq!(of(&labelled(label), &[]), expected, "{label:?}");
+            assert_eq!(cause_with(&labelled(label), &[]), expected, "{label:?}");
         }
     }
 
@@ -315,33 +315,33 @@ mod tests {
         let near = star_at(5, right_of_target(2.5), 800.0);
         let invisible = ObjectTruth { snr: 0.5, ..near.clone() };
         let apart = star_at(5, right_of_target(3.5), 800.0);
-        assert_eq!(of(&labelled(Label::Star(5)), &[near]), Cause::MergedWithStar);
-        assert_eq!(of(&labelled(Label::Star(5)), &[invisible]), Cause::TakenForStar);
-        assert_eq!(of(&labelled(Label::Star(5)), &[apart]), Cause::TakenForStar);
+        assert_eq!(cause_with(&labelled(Label::Star(5)), &[near]), Cause::MergedWithStar);
+        assert_eq!(cause_with(&labelled(Label::Star(5)), &[invisible]), Cause::TakenForStar);
+        assert_eq!(cause_with(&labelled(Label::Star(5)), &[apart]), Cause::TakenForStar);
     }
 
     #[test]
     fn a_common_cluster_drawn_to_a_brighter_star_is_still_a_merger() {
         let star = star_at(5, right_of_target(2.5), 50_000.0);
         let clusters = vec![cluster(right_of_target(2.4), Label::Star(5))];
-        assert_eq!(of(&Outcome { clusters, ..no_target() }, &[star]), Cause::MergedWithStar);
+        assert_eq!(cause_with(&Outcome { clusters, ..no_target() }, &[star]), Cause::MergedWithStar);
     }
 
     #[test]
     fn no_cluster_at_a_detectable_target_is_the_pipelines_threshold() {
         let clusters = vec![cluster(right_of_target(40.0), Label::Candidate)];
-        assert_eq!(of(&Outcome { clusters, ..no_target() }, &[]), Cause::BelowThreshold);
+        assert_eq!(cause_with(&Outcome { clusters, ..no_target() }, &[]), Cause::BelowThreshold);
     }
 
     #[test]
     fn without_clusters_the_truth_decides() {
         let star = star_at(5, right_of_target(2.0), 5000.0);
         let hot = hot_pixel_at(9, right_of_target(1.0), 400.0);
-        assert_eq!(of(&no_target(), std::slice::from_ref(&star)), Cause::MergedWithStar);
-        assert_eq!(of(&no_target(), std::slice::from_ref(&hot)), Cause::TakenForHotspot);
-        assert_eq!(of(&no_target(), &[hot, star]), Cause::MergedWithStar);
+        assert_eq!(cause_with(&no_target(), std::slice::from_ref(&star)), Cause::MergedWithStar);
+        assert_eq!(cause_with(&no_target(), std::slice::from_ref(&hot)), Cause::TakenForHotspot);
+        assert_eq!(cause_with(&no_target(), &[hot, star]), Cause::MergedWithStar);
         let track = cosmic_ray_at(0, right_of_target(1.0), 900.0);
-        assert_eq!(of(&no_target(), &[track]), Cause::MergedWithCosmicRay);
+        assert_eq!(cause_with(&no_target(), &[track]), Cause::MergedWithCosmicRay);
     }
 
     #[test]
@@ -350,8 +350,8 @@ mod tests {
             [(ObjectKind::Planet, Cause::MergedWithPlanet), (ObjectKind::Moon, Cause::MergedWithMoon)]
         {
             let other = ObjectTruth { kind, ..star_at(5, right_of_target(2.0), 5000.0) };
-            assert_eq!(of(&no_target(), std::slice::from_ref(&other)), cause);
-            assert_eq!(of(&labelled(Label::Star(5)), &[other]), cause);
+            assert_eq!(cause_with(&no_target(), std::slice::from_ref(&other)), cause);
+            assert_eq!(cause_with(&labelled(Label::Star(5)), &[other]), cause);
         }
     }
 
@@ -360,8 +360,8 @@ mod tests {
         let elsewhere = right_of_target(40.0);
         let clusters = vec![cluster(elsewhere, Label::Target), cluster(CENTRE, Label::Candidate)];
         let outcome = Outcome { clusters, ..detected_at(elsewhere) };
-        assert_eq!(of(&outcome, &[]), Cause::LostMotionTest);
-        assert_eq!(of(&detected_at(elsewhere), &[]), Cause::Unexplained);
+        assert_eq!(cause_with(&outcome, &[]), Cause::LostMotionTest);
+        assert_eq!(cause_with(&detected_at(elsewhere), &[]), Cause::Unexplained);
     }
 
     #[test]

@@ -95,7 +95,7 @@ impl CaseFile {
     }
 
     /// Names of what was drawn.
-    pub(crate) fn drawn(&self) -> impl Iterator<Item = &String> {
+    pub(crate) fn drawn_columns(&self) -> impl Iterator<Item = &String> {
         self.empty.drawn.keys()
     }
 
@@ -148,7 +148,7 @@ impl CaseFile {
 
     /// What was drawn for some cases, as a person reads it.
     #[expect(clippy::indexing_slicing, reason = "a row has a value for every column of its table")]
-    pub(crate) fn shown(&self, cases: &[usize]) -> Result<Vec<Vec<String>>, FileError> {
+    pub(crate) fn drawn_texts(&self, cases: &[usize]) -> Result<Vec<Vec<String>>, FileError> {
         let mut table =
             CaseTable { figures: Vec::new(), causes: Vec::new(), ..self.empty.with_rows(Vec::new()) };
         let names: Vec<String> = table.columns().iter().map(|column| column.name().to_owned()).collect();

@@ -386,7 +386,8 @@ impl<'a> Assessment<'a> {
             return Ok(Rc::clone(known));
         }
         let count = self.requirements.file.confirm.frames as usize;
-        let counted: Vec<&Pointing> = self.design.sky()?.counted().map(|field| &field.pointing).collect();
+        let counted: Vec<&Pointing> =
+            self.design.sky()?.usable_fields().map(|field| &field.pointing).collect();
         let places = if counted.is_empty() { 0..0 } else { 0..count };
         let pointings: Vec<Pointing> =
             places.map(|k| counted[(2 * k + 1) * counted.len() / (2 * count)].clone()).collect();
@@ -398,7 +399,7 @@ impl<'a> Assessment<'a> {
     /// Frames of stars, all at the pointing with the least chance of enough of them.
     fn frames_of_the_worst(&self, exposure_s: f64, n_min: u32) -> Result<Vec<StarFrame>, Failure> {
         let seen = self.design.stars(exposure_s, n_min)?;
-        let counted = self.design.sky()?.counted().zip(&seen);
+        let counted = self.design.sky()?.usable_fields().zip(&seen);
         let worst = counted.min_by(|(_, a), (_, b)| a.chance.total_cmp(&b.chance));
         let Some((field, _)) = worst else { return Ok(Vec::new()) };
         let pointings = vec![field.pointing.clone(); self.requirements.file.confirm.frames as usize];

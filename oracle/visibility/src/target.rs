@@ -171,7 +171,7 @@ impl Aspect {
                 ImagePoint { position, share: point.share * along.share }
             }));
         }
-        ImageShares::of_points(camera, &points).chance(&threshold, electrons, background_e)
+        ImageShares::from_points(camera, &points).chance(&threshold, electrons, background_e)
     }
 }
 

@@ -29,7 +29,7 @@ pub struct Errors {
 
 impl Errors {
     /// `None` where ρ, α or β have no derivatives.
-    pub fn of(motion: &Motion, truth: &ApproachState) -> Option<Self> {
+    pub fn from_motion(motion: &Motion, truth: &ApproachState) -> Option<Self> {
         let reported = ApproachParameters::from_motion(&motion.pose, &motion.velocity_m_s);
         let true_values = ApproachParameters::from_motion(&truth.pose, &truth.velocity_m_s);
         let shown: [f64; 7] = reported.difference(&true_values).into();
@@ -94,7 +94,7 @@ pub struct Mean {
 
 impl Mean {
     /// Of sums and numbers, one pair an approach; `None` of nothing.
-    fn of(approaches: &[(f64, f64)]) -> Option<Self> {
+    fn from_values(approaches: &[(f64, f64)]) -> Option<Self> {
         let (sum, count) = approaches.iter().fold((0.0, 0.0), |(s, n), (a, b)| (s + a, n + b));
         if count <= 0.0 {
             return None;
@@ -122,8 +122,9 @@ pub struct Tally {
 
 impl Tally {
     /// Statistics of one estimator over these approaches.
-    pub fn of(flown: &[MeasuredApproach], estimator: Estimator) -> Self {
-        let errors: Vec<Vec<Errors>> = flown.iter().map(|flown| errors(flown, estimator)).collect();
+    pub fn from_approaches(approaches: &[MeasuredApproach], estimator: Estimator) -> Self {
+        let errors: Vec<Vec<Errors>> =
+            approaches.iter().map(|approaches| errors(approaches, estimator)).collect();
         let mean = |of: &dyn Fn(&Errors) -> Option<f64>| {
             let sums: Vec<(f64, f64)> = errors
                 .iter()
@@ -131,13 +132,14 @@ impl Tally {
                     portions.iter().filter_map(of).fold((0.0, 0.0), |(s, n), value| (s + value, n + 1.0))
                 })
                 .collect();
-            Mean::of(&sums)
+            Mean::from_values(&sums)
         };
         let share = |within: Option<bool>| within.map(|within| f64::from(u8::from(within)));
-        let fields: Vec<(f64, f64)> = flown
+        let fields: Vec<(f64, f64)> = approaches
             .iter()
-            .map(|flown| {
-                let values = flown.fields.iter().filter_map(|(truth, reported)| field_nees(truth, reported));
+            .map(|approaches| {
+                let values =
+                    approaches.fields.iter().filter_map(|(truth, reported)| field_nees(truth, reported));
                 values.fold((0.0, 0.0), |(s, n), value| (s + value, n + 1.0))
             })
             .collect();
@@ -149,22 +151,26 @@ impl Tally {
                 (!reported.is_empty()).then(|| reported.iter().sum::<f64>() / reported.len() as f64)
             }),
             nees: std::array::from_fn(|i| mean(&|e| e.nees[i])),
-            field_nees: Mean::of(&fields),
+            field_nees: Mean::from_values(&fields),
         }
     }
 }
 
 /// Of the portions of an approach that are judged.
-pub fn errors(flown: &MeasuredApproach, estimator: Estimator) -> Vec<Errors> {
-    flown
+pub fn errors(approaches: &MeasuredApproach, estimator: Estimator) -> Vec<Errors> {
+    approaches
         .portions
         .iter()
         .filter(|portion| portion.number >= FIRST_PORTION)
-        .filter_map(|portion| Errors::of(portion.of(estimator)?, &portion.truth))
+        .filter_map(|portion| Errors::from_motion(portion.motion(estimator)?, &portion.truth))
         .collect()
 }
 
 /// Longest time between two reports, s.
-pub fn longest_interval_s(flown: &[MeasuredApproach]) -> f64 {
-    flown.iter().flat_map(|flown| &flown.portions).map(|portion| portion.interval_s).fold(0.0, f64::max)
+pub fn longest_interval_s(approaches: &[MeasuredApproach]) -> f64 {
+    approaches
+        .iter()
+        .flat_map(|approaches| &approaches.portions)
+        .map(|portion| portion.interval_s)
+        .fold(0.0, f64::max)
 }

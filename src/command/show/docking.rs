@@ -94,7 +94,12 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<AnnotatedFr
         };
         let by_other = pixels == PixelSource::DrawnAgain
             && run_file.as_ref().is_some_and(|run_file| run_file.mitsuba.is_some());
-        shown.push(known.shown(field, partner.and_then(|row| fields.get(&row.field)), pixels, by_other));
+        shown.push(known.annotated_frame(
+            field,
+            partner.and_then(|row| fields.get(&row.field)),
+            pixels,
+            by_other,
+        ));
     }
     Ok(shown)
 }
@@ -212,7 +217,7 @@ fn woven(field: &Field, before: Option<&Field>) -> Vec<u16> {
 }
 
 impl FieldRecord<'_> {
-    fn shown(
+    fn annotated_frame(
         &self,
         field: &Field,
         before: Option<&Field>,
@@ -228,7 +233,7 @@ impl FieldRecord<'_> {
         let range_m = true_range_m.or_else(|| self.estimate().map(|best| best.pose.position_m.norm()));
         let lens = self.lens.as_ref().map_or_else(String::new, |lens| format!(", lens {lens}"));
         let panel = Panel {
-            view: pixels.whole(),
+            view: pixels.full_window(),
             close_up: self.close_up(columns, rows),
             pixels,
             regions: None,
@@ -284,7 +289,7 @@ impl FieldRecord<'_> {
         let (centre, radius_px) =
             recognised.or_else(of_truth).filter(|(at, _)| at.is_on_detector(columns, rows))?;
         let reach = 1.8 * radius_px.filter(|radius| radius.is_finite()).unwrap_or(0.0).max(10.0);
-        let mut bounds = Bounds::of(centre);
+        let mut bounds = Bounds::from_point(centre);
         bounds.add(PixelPoint::new(centre.x - reach, centre.y - reach));
         bounds.add(PixelPoint::new(centre.x + reach, centre.y + reach));
         Some(bounds.window(columns, rows))
@@ -337,10 +342,10 @@ impl FieldRecord<'_> {
             table.push("answer", reason);
         }
         let mut tables = vec![table];
-        let truth = self.truth.as_ref().map(|truth| Parameters::of(&truth.pose));
+        let truth = self.truth.as_ref().map(|truth| Parameters::from_pose(&truth.pose));
         let mut pose = Table::default();
         if let Some(best) = self.estimate() {
-            let (measured, sigmas) = (Parameters::of(&best.pose), Parameters::sigmas(best));
+            let (measured, sigmas) = (Parameters::from_pose(&best.pose), Parameters::sigmas(best));
             for (i, (name, value)) in NAMES.into_iter().zip(measured.0).enumerate() {
                 let sigma = sigmas.0.get(i).copied().unwrap_or(0.0);
                 let digits = decimals(sigma);
@@ -369,7 +374,7 @@ impl FieldRecord<'_> {
     }
 
     fn caption(&self) -> Vec<String> {
-        let truth = self.truth.as_ref().map(|truth| Parameters::of(&truth.pose).0);
+        let truth = self.truth.as_ref().map(|truth| Parameters::from_pose(&truth.pose).0);
         let Some(best) = self.estimate() else {
             return match (self.range_alone(), self.reason(), truth) {
                 (Some(range), _, Some(truth)) => {
@@ -384,7 +389,7 @@ impl FieldRecord<'_> {
                 (None, reason, None) => reason.into_iter().collect(),
             };
         };
-        let [range, .., pitch, yaw, roll] = Parameters::of(&best.pose).0;
+        let [range, .., pitch, yaw, roll] = Parameters::from_pose(&best.pose).0;
         let [range_sigma, .., pitch_sigma, yaw_sigma, roll_sigma] = Parameters::sigmas(best).0;
         let angle_sigma = pitch_sigma.max(yaw_sigma).max(roll_sigma);
         let digits = decimals(angle_sigma);
@@ -423,7 +428,7 @@ const D3: usize = 3;
 struct Parameters([f64; 7]);
 
 impl Parameters {
-    fn of(pose: &Pose) -> Self {
+    fn from_pose(pose: &Pose) -> Self {
         let (d, phi) = (&pose.position_m, &pose.phi_rad);
         let [pitch, yaw, roll] = [phi.x, phi.y, phi.z].map(f64::to_degrees);
         Self([d.norm(), d.x, d.y, d.z, pitch, yaw, roll])

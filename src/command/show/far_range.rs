@@ -76,7 +76,7 @@ pub(super) fn panels(source: &Source, numbers: &[u64]) -> Result<Vec<AnnotatedFr
             answer,
             verdict,
         };
-        shown.push(known.shown(&camera.camera, frame, pixels));
+        shown.push(known.annotated_frame(&camera.camera, frame, pixels));
     }
     Ok(shown)
 }
@@ -163,7 +163,7 @@ fn verdict(
 }
 
 impl FrameRecord {
-    fn shown(&self, camera: &Camera, frame: Frame, source: PixelSource) -> AnnotatedFrame {
+    fn annotated_frame(&self, camera: &Camera, frame: Frame, source: PixelSource) -> AnnotatedFrame {
         let number = frame.number();
         let regions = frame.windows().map(<[Window]>::to_vec);
         let (columns, rows) = (frame.columns(), frame.rows());
@@ -178,7 +178,7 @@ impl FrameRecord {
             Some(Verdict::Missed { cause }) => (Some("missed"), Some(cause.code())),
         };
         let panel = Panel {
-            view: pixels.whole(),
+            view: pixels.full_window(),
             close_up: self.close_up(regions.as_deref(), columns, rows),
             pixels,
             regions,
@@ -255,7 +255,7 @@ impl FrameRecord {
         let on_detector = |at: &PixelPoint| at.is_on_detector(columns, rows);
         let answer = self.answer_position().filter(on_detector);
         let centre = self.target_position().filter(on_detector).or(answer)?;
-        let mut bounds = Bounds::of(centre);
+        let mut bounds = Bounds::from_point(centre);
         let is_near = |at: &PixelPoint| at.distance(centre) < NEAR_PX;
         answer.filter(is_near).into_iter().for_each(|at| bounds.add(at));
         for region in regions.unwrap_or_default() {
@@ -392,7 +392,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    pub(super) fn of(point: PixelPoint) -> Self {
+    pub(super) fn from_point(point: PixelPoint) -> Self {
         Self { low: point, high: point }
     }
 
@@ -427,7 +427,7 @@ mod tests {
             for (x, y) in [(0.0, 0.0), (0.4, 0.6), (columns as f64 - 1.0, rows as f64 - 1.0), (300.0, 200.0)]
             {
                 let point = PixelPoint::new(x.min(columns as f64 - 1.0), y.min(rows as f64 - 1.0));
-                let window = Bounds::of(point).window(columns, rows);
+                let window = Bounds::from_point(point).window(columns, rows);
                 assert!(window.x + window.columns <= columns && window.y + window.rows <= rows, "{window:?}");
                 assert!(window.contains(point.x.round() as usize, point.y.round() as usize), "{window:?}");
             }

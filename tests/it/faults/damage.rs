@@ -10,7 +10,7 @@ use super::small;
 use crate::support::{Bench, check_same_files};
 
 /// Every place of a file that is tried: the ends, where formats have their marks, lengths and checksums, and places all over.
-fn places(length: usize, step: usize) -> Vec<usize> {
+fn byte_positions(length: usize, step: usize) -> Vec<usize> {
     let end = length.saturating_sub(16);
     (0..length.min(16)).chain((16..end).step_by(step)).chain(end.max(16)..length).collect()
 }
@@ -23,7 +23,7 @@ fn damaged(bench: &Bench, name: &str, step: usize, mut check: impl FnMut(&str)) 
         fs::write(&path, &bytes[..length]).unwrap();
         check(&format!("{name} cut to {length} of {} bytes", bytes.len()));
     }
-    for (i, place) in places(bytes.len(), step).into_iter().enumerate() {
+    for (i, place) in byte_positions(bytes.len(), step).into_iter().enumerate() {
         let mut flipped = bytes.clone();
         // Of a text, a low bit makes a digit another digit, the most dangerous damage there is.
         flipped[place] ^= 1 << (i % 8);

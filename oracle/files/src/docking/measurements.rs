@@ -225,7 +225,7 @@ mod tests {
         DockingOutcome { solution, features: Features::default(), motion: None, digitiser: None }
     }
 
-    fn measured() -> DockingOutcome {
+    fn measured_outcome() -> DockingOutcome {
         let pose = Pose {
             position_m: Vector3::new(0.1, -0.2, 7.0),
             phi_rad: Vector3::new(0.011, -0.013, 1.0 / 7.0),
@@ -236,8 +236,8 @@ mod tests {
         outcome(DockingSolution::Measured(Box::new(FieldMeasurement { best, paper })))
     }
 
-    fn doubtful(doubt: Doubt) -> DockingOutcome {
-        let DockingSolution::Measured(measurement) = measured().solution else {
+    fn doubtful_outcome(doubt: Doubt) -> DockingOutcome {
+        let DockingSolution::Measured(measurement) = measured_outcome().solution else {
             unreachable!("it is measured")
         };
         outcome(DockingSolution::Doubtful { measurement, doubt })
@@ -252,11 +252,11 @@ mod tests {
     #[test]
     fn every_status_comes_back_as_filed() {
         let answers: Vec<(u64, DockingOutcome)> = [
-            measured(),
+            measured_outcome(),
             outcome(DockingSolution::RangeOnly { range_m: 312.5, sigma_m: 2.0 }),
             DockingOutcome::none(NoPose::TooFewFeatures),
-            doubtful(Doubt::Residuals),
-            doubtful(Doubt::Repeated),
+            doubtful_outcome(Doubt::Residuals),
+            doubtful_outcome(Doubt::Repeated),
             DockingOutcome::none(NoPose::Failed("out of film, twice".to_owned())),
         ]
         .into_iter()
@@ -271,7 +271,7 @@ mod tests {
         for ((_, read), (_, written)) in read.iter().zip(&answers) {
             assert_eq!(*read, outcome_as_filed(written));
         }
-        let (met, meant) = (read[0].1.measurement().unwrap(), measured());
+        let (met, meant) = (read[0].1.measurement().unwrap(), measured_outcome());
         let meant = meant.measurement().unwrap();
         assert_eq!(met.best.pose.position_m, meant.best.pose.position_m);
         assert!((met.best.pose.phi_rad - meant.best.pose.phi_rad).norm() < 1e-16);

@@ -28,7 +28,7 @@ const MAX_HEADER_BLOCKS: usize = 1024;
 /// Writes a frame as unsigned 16-bit FITS. The first row of the frame is the first of the file, as in every
 /// array: viewers that put it at the bottom show the image upside down, and the world coordinates with it.
 pub(crate) fn write(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<(), FileError> {
-    let cards = fits_cards::of_frame(path, frame, header)?;
+    let cards = fits_cards::frame_cards(path, frame, header)?;
     let error = |error: fitsio_pure::Error| match error {
         fitsio_pure::Error::Io(source) => FileError::io(path, "write", source),
         other => FileError::format(path, "FITS", other),

@@ -63,7 +63,7 @@ impl Cards<'_> {
 }
 
 /// Every card of a frame but the mandatory ones.
-pub(crate) fn of_frame(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<Vec<Card>, FileError> {
+pub(crate) fn frame_cards(path: &Path, frame: &Frame, header: &FrameHeader) -> Result<Vec<Card>, FileError> {
     let mut cards = Cards { path, cards: Vec::new() };
     cards.number("BSCALE", 1.0, "DN = BZERO + BSCALE * stored")?;
     cards.number("BZERO", 32768.0, "unsigned 16 bit")?;

@@ -166,7 +166,7 @@ impl Batches {
             Column::from_values(
                 wanted.name.clone(),
                 wanted.is_nullable,
-                ColumnValues::none_of(wanted.column_type),
+                ColumnValues::empty(wanted.column_type),
             )
         };
         self.wanted.iter().map(column).collect()

@@ -102,7 +102,7 @@ impl ColumnValues {
     }
 
     /// No values of a type.
-    pub fn none_of(column_type: ColumnType) -> Self {
+    pub fn empty(column_type: ColumnType) -> Self {
         match column_type {
             ColumnType::Boolean => Self::Boolean(Cells::default()),
             ColumnType::UInt32 => Self::UInt32(Cells::default()),

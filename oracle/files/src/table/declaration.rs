@@ -88,7 +88,7 @@ impl<const N: usize> ColumnNames<N> {
             };
             let missing =
                 || columns.error(row, self.name(null.unwrap_or_default()), "null", "a value in every row");
-            fields.push(F::of(value).ok_or_else(missing)?);
+            fields.push(F::from_value(value).ok_or_else(missing)?);
         }
         Ok(fields)
     }
@@ -113,7 +113,7 @@ impl<const N: usize> ColumnNames<N> {
         }
         let value = (!is_absent).then(|| F::Value::from_cells(cells)).transpose();
         let value = value.map_err(|expected| row.error(self.name(0), expected))?;
-        F::of(value).ok_or_else(|| row.error(self.name(0), "a value"))
+        F::from_value(value).ok_or_else(|| row.error(self.name(0), "a value"))
     }
 
     /// The name of a column; errors of the whole field name the first.

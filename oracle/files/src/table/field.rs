@@ -110,7 +110,7 @@ pub trait Field<const N: usize>: Sized {
     /// The value, if there is one.
     fn value(&self) -> Option<&Self::Value>;
     /// The field that has the value; `None` where it must have one.
-    fn of(value: Option<Self::Value>) -> Option<Self>;
+    fn from_value(value: Option<Self::Value>) -> Option<Self>;
 }
 
 impl<V: Value<N>, const N: usize> Field<N> for V {
@@ -121,7 +121,7 @@ impl<V: Value<N>, const N: usize> Field<N> for V {
         Some(self)
     }
 
-    fn of(value: Option<V>) -> Option<Self> {
+    fn from_value(value: Option<V>) -> Option<Self> {
         value
     }
 }
@@ -134,7 +134,7 @@ impl<V: Value<N>, const N: usize> Field<N> for Option<V> {
         self.as_ref()
     }
 
-    fn of(value: Self) -> Option<Self> {
+    fn from_value(value: Self) -> Option<Self> {
         Some(value)
     }
 }

@@ -116,7 +116,7 @@ impl FieldSource {
             let images = folder::by_name(path)?;
             let frames =
                 iter::zip(images, 0..).map(move |(path, index)| folder::read_frame(&path, index, &format));
-            return Ok(Self::of_frames(path, format, frames));
+            return Ok(Self::from_frames(path, format, frames));
         }
         let standard_input = path == Path::new("-");
         let open = || if standard_input { Ok(Input::standard_input()) } else { Input::file(path) };
@@ -162,7 +162,7 @@ impl FieldSource {
         let path = input.path().to_owned();
         let reader = AviReader::open(input, size(&path, setup, options)?)?;
         let format = format(&path, setup, options, 8, reader.rate_hz())?;
-        Ok(Self::of_frames(&path, format, reader))
+        Ok(Self::from_frames(&path, format, reader))
     }
 
     pub(super) fn y4m(
@@ -173,7 +173,7 @@ impl FieldSource {
         let path = input.path().to_owned();
         let reader = StreamReader::y4m(input, size(&path, setup, options)?)?;
         let format = format(&path, setup, options, 8, reader.rate_hz())?;
-        Ok(Self::of_frames(&path, format, reader))
+        Ok(Self::from_frames(&path, format, reader))
     }
 
     pub(super) fn raw(
@@ -189,10 +189,10 @@ impl FieldSource {
             let expected = format!("{columns} × {rows}, those of the camera");
             return Err(FileError::value(&path, FileLocation::Whole, "size of raw frames", size, expected));
         }
-        Ok(Self::of_frames(&path, format, StreamReader::raw(input, (columns, rows))))
+        Ok(Self::from_frames(&path, format, StreamReader::raw(input, (columns, rows))))
     }
 
-    fn of_frames(
+    fn from_frames(
         path: &Path,
         format: Format,
         frames: impl Iterator<Item = Result<VideoFrame, FileError>> + Send + 'static,

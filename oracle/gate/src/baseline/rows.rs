@@ -57,14 +57,14 @@ pub(crate) fn write(
         // Amounts seldom repeat, and the last of their bytes are nought: byte by byte they are short.
         columns.push(if figure.reduction == Reduction::Rate { sums } else { sums.byte_stream_split() });
         if figure.terms.iter().any(|term| term.of > 1) {
-            columns.push(Column::new(of_name(&figure.name), figure.terms.iter().map(|term| term.of)));
+            columns.push(Column::new(count_column(&figure.name), figure.terms.iter().map(|term| term.of)));
         }
     }
     write_table(file, path, &columns, TableOptions { has_statistics: false, ..TableOptions::default() })
 }
 
 /// The column that says of how many values each amount of a figure is.
-fn of_name(figure: &str) -> String {
+fn count_column(figure: &str) -> String {
     format!("{figure}{OF}")
 }
 
@@ -122,7 +122,7 @@ pub(crate) fn read(
 
 /// The columns of a table of these figures.
 fn names(figures: &[(String, Reduction)]) -> impl Iterator<Item = String> {
-    let ofs = figures.iter().flat_map(|(name, _)| [name.clone(), of_name(name)]);
+    let ofs = figures.iter().flat_map(|(name, _)| [name.clone(), count_column(name)]);
     ["number", "block", "group", "verdict", "cause"].map(str::to_owned).into_iter().chain(ofs)
 }
 
@@ -154,7 +154,7 @@ fn add(
     }
     for figure in &mut table.figures {
         let sums: &Cells<f32> = cells(path, find(&figure.name), &figure.name)?;
-        let of = of_name(&figure.name);
+        let of = count_column(&figure.name);
         let ofs: Option<&Cells<u32>> = find(&of).map(|found| cells(path, Some(found), &of)).transpose()?;
         for (row, sum) in sums.iter().enumerate() {
             let Some(sum) = sum.map(f64::from) else {

@@ -52,7 +52,7 @@ pub fn compare(
                 baseline.header.figures.get(&before.name).map_or(0.0, |figure| figure.tolerance);
             let tolerance = options.tolerances.get(&before.name).copied().unwrap_or(of_baseline);
             let sense = figure_by_name(&before.name).sense;
-            let effect = FigureEffect::of_runs(sense, before, after, blocks, tolerance);
+            let effect = FigureEffect::from_runs(sense, before, after, blocks, tolerance);
             // On the same frames what slowly varies is in both runs; with others it is in the difference.
             match pairing {
                 Pairing::Frames => effect,

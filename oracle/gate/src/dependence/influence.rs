@@ -12,7 +12,7 @@ pub(crate) struct Sums {
 }
 
 impl Sums {
-    pub(crate) fn of_terms(terms: &[Term], reduction: Reduction, centre: f64) -> Self {
+    pub(crate) fn from_terms(terms: &[Term], reduction: Reduction, centre: f64) -> Self {
         let linear = |term: &Term| match reduction {
             Reduction::Rate | Reduction::Mean => term.sum,
             Reduction::Rms => term.sum * term.sum,
@@ -38,7 +38,7 @@ pub(crate) fn values(terms: &[Term]) -> Vec<f64> {
 pub(crate) fn influence(figure: &FigureTerms) -> Vec<f64> {
     let own = values(&figure.terms);
     let centre = if figure.reduction == Reduction::Median { median(&[own]).unwrap_or(0.0) } else { 0.0 };
-    let sums = Sums::of_terms(&figure.terms, figure.reduction, centre);
+    let sums = Sums::from_terms(&figure.terms, figure.reduction, centre);
     let ratio = sums.ratio().unwrap_or(0.0);
     sums.units.iter().map(|(sum, of)| sum - ratio * of).collect()
 }

@@ -31,7 +31,7 @@ impl MonitoredWorld for FarRangeMission {
         let scenario = self.scenario();
         Ok(MonitorContext {
             ground: Some(GroundTrack::Chaser(Box::new(Trajectory::new(&scenario.orbit)?))),
-            stretch: Stretch::of_sensor(&scenario.sensor),
+            stretch: Stretch::from_sensor(&scenario.sensor),
             frames: frames::<FrameTruth>(measurements, Self::TRUTH_FILE)?,
         })
     }

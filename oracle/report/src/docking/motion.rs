@@ -44,7 +44,7 @@ struct MotionEstimate {
 
 impl MotionEstimate {
     /// All that `pick` takes of the reports of a run.
-    fn all(run: &DockingRun, pick: fn(&PortionReport) -> &Option<Motion>) -> Vec<Self> {
+    fn from_reports(run: &DockingRun, pick: fn(&PortionReport) -> &Option<Motion>) -> Vec<Self> {
         let estimate = |report: &PortionReport| {
             let (motion, truth) = (pick(report).as_ref()?, &run.truths[report.row]);
             let values = approach_parameters(&motion.pose, &motion.velocity_m_s);
@@ -74,12 +74,12 @@ fn approach_parameters(pose: &Pose, velocity_m_s: &Vector3<f64>) -> [f64; 7] {
 pub(super) fn sections(run: &DockingRun) -> [Section; 2] {
     let five = Section::new("fig-5", "Fig. 5: parameters of the motion");
     let six = Section::new("fig-6", "Fig. 6: accuracy of the motion");
-    let best = MotionEstimate::all(run, |report| &report.best);
+    let best = MotionEstimate::from_reports(run, |report| &report.best);
     if best.is_empty() {
         let none = "No portion of fields ended in this run with a motion.";
         return [five.text(none), six.text(none)];
     }
-    let paper = MotionEstimate::all(run, |report| &report.paper);
+    let paper = MotionEstimate::from_reports(run, |report| &report.paper);
     let about = "Errors of the best estimate";
     let six = six.chart(sigmas(&best)).chart(errors(&best, about, "best estimate", MEASURED));
     // On axes of their own: they scatter ten times as far, and not about nothing.

@@ -65,7 +65,7 @@ impl FrameDetail {
     ///
     /// # Errors
     /// As [`FrameDetail::pictures`].
-    pub fn whole(&self, run: &FarRangeRun, row: usize) -> Result<Option<Picture>, Failure> {
+    pub fn full_frame(&self, run: &FarRangeRun, row: usize) -> Result<Option<Picture>, Failure> {
         let Ok(simulator) = &self.simulator else { return Ok(None) };
         let exposure = simulator.camera()?.expose(run.truths[row].frame)?;
         let clusters = self.clusters_of(run, &[row])?.remove(0);

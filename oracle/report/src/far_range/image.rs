@@ -38,7 +38,7 @@ pub(super) fn sample(run: &FarRangeRun, sheet: &FrameDetail) -> Result<Section, 
     let Some(row) = right.or_else(|| nearest(&mut (0..run.verdicts.len()))) else { return Ok(section) };
     let orbit = one_orbit(run, row);
     let overlaid: Vec<usize> = bins(orbit.len(), OVERLAID).map(|bin| orbit.start + bin.start).collect();
-    let pictures = [sheet.whole(run, row)?, sheet.overlaid(run, &overlaid)?];
+    let pictures = [sheet.full_frame(run, row)?, sheet.overlaid(run, &overlaid)?];
     Ok(section
         .text(format!(
             "The frame nearest to the paper's 16 km, with everything in it that can be detected, and frames of the orbit around it, of which every \

@@ -114,7 +114,7 @@ impl<W: World> AnyWorld for ErasedWorld<W> {
         W::causes()
     }
 
-    fn has_scenarios_of(&self, type_id: TypeId) -> bool {
+    fn has_scenario_type(&self, type_id: TypeId) -> bool {
         type_id == TypeId::of::<W::Scenario>()
     }
 

@@ -72,7 +72,7 @@ pub trait AnyWorld: Sync {
     fn causes(&self) -> Vec<(&'static str, &'static str)>;
 
     /// Whether its scenarios are of the type `type_id`.
-    fn has_scenarios_of(&self, type_id: TypeId) -> bool;
+    fn has_scenario_type(&self, type_id: TypeId) -> bool;
 
     /// The JSON Schema of its scenario files.
     fn schema(&self, generator: SchemaGenerator) -> Schema;
@@ -161,8 +161,8 @@ impl dyn AnyWorld {
     }
 
     /// Whether its scenarios have the type `S`.
-    pub fn is_of<S: 'static>(&self) -> bool {
-        self.has_scenarios_of(TypeId::of::<S>())
+    pub fn has_scenario<S: 'static>(&self) -> bool {
+        self.has_scenario_type(TypeId::of::<S>())
     }
 }
 

@@ -426,7 +426,7 @@ impl world::Judgement for FarRangeJudgement {
     }
 
     fn units(&self) -> UnitTable {
-        UnitTable::of_frames(&self.verdicts, &self.limits)
+        UnitTable::from_frames(&self.verdicts, &self.limits)
     }
 
     fn show_comparison(&mut self, other: Self) {

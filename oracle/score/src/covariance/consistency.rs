@@ -21,12 +21,12 @@ const UNSTATED: &str = "unstated";
 pub(crate) fn definitions() -> Vec<Definition<'static, FrameVerdict>> {
     let centroid = |frame: &FrameVerdict| right(frame)?.centroid_normalised;
     let line_of_sight = |frame: &FrameVerdict| right(frame)?.line_of_sight_normalised;
-    let mut list = of_errors(names::CENTROID, "centroid", centroid);
-    list.extend(of_errors(names::LINE_OF_SIGHT, "line of sight", line_of_sight));
+    let mut list = error_figures(names::CENTROID, "centroid", centroid);
+    list.extend(error_figures(names::LINE_OF_SIGHT, "line of sight", line_of_sight));
     list
 }
 
-fn of_errors(
+fn error_figures(
     key: &str,
     words: &str,
     pick: fn(&FrameVerdict) -> Option<NormalisedError>,

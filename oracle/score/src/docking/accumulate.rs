@@ -181,7 +181,7 @@ impl DockingScorer {
             };
             UnitVerdict {
                 number: field.field,
-                group: name_of(field.group, &lenses),
+                group: group_key(field.group, &lenses),
                 verdict: verdict.to_owned(),
                 cause: cause.map(str::to_owned),
             }
@@ -223,7 +223,7 @@ impl DockingScorer {
             figures: all.figures,
             groups: groups
                 .iter()
-                .map(|(group, fields)| (name_of(*group, &lenses), group_score(&[fields])))
+                .map(|(group, fields)| (group_key(*group, &lenses), group_score(&[fields])))
                 .collect(),
             misses: all.misses,
             wrong: all.wrong,
@@ -232,7 +232,7 @@ impl DockingScorer {
     }
 }
 
-fn name_of(group: Option<(usize, usize)>, lenses: &[String]) -> String {
+fn group_key(group: Option<(usize, usize)>, lenses: &[String]) -> String {
     let Some((bin, camera)) = group else { return WARM_UP.to_owned() };
     let lens = lenses.get(camera).cloned().unwrap_or_else(|| format!("camera {camera}"));
     group_name(bin, &lens)

@@ -180,7 +180,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::docking::hand_made::{ahead, doubtful, field, measured, range_only, setup};
+    use crate::docking::hand_made::{ahead, doubtful_outcome, field, measured_outcome, range_only, setup};
 
     fn verdict(range_m: f64, outcome: &DockingOutcome) -> Verdict {
         Verdict::from_outcome(&ImagingGeometry::new(&setup()), &field(0, range_m), Some(outcome))
@@ -189,7 +189,7 @@ mod tests {
     fn gross_of(range_m: f64, change: impl FnOnce(&mut Pose)) -> Option<GrossError> {
         let mut pose = ahead(range_m);
         change(&mut pose);
-        match verdict(range_m, &measured(pose)) {
+        match verdict(range_m, &measured_outcome(pose)) {
             Verdict::Wrong { gross } => Some(gross),
             Verdict::Success { .. } => None,
             other => panic!("{other:?}"),
@@ -234,7 +234,7 @@ mod tests {
     /// A doubtful pose is neither success nor wrong, and its error is looked at all the same.
     #[test]
     fn a_doubtful_pose_is_doubtful_whatever_its_error() {
-        let at = |d3_m| verdict(10.0, &doubtful(ahead(d3_m), Doubt::Motion));
+        let at = |d3_m| verdict(10.0, &doubtful_outcome(ahead(d3_m), Doubt::Motion));
         assert_eq!(at(10.0), Verdict::Doubtful { doubt: Doubt::Motion, gross: None });
         assert_eq!(at(11.0), Verdict::Doubtful { doubt: Doubt::Motion, gross: Some(GrossError::Range) });
     }

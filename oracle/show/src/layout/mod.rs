@@ -380,7 +380,7 @@ mod tests {
         let mark =
             |class, x: f64, y: f64, shape| Mark { at: PixelPoint::new(x, y), shape, class, label: None };
         Panel {
-            view: pixels.whole(),
+            view: pixels.full_window(),
             regions: None,
             close_up: None,
             stretch: Stretch::Asinh,

@@ -58,12 +58,12 @@ impl Shades {
     }
 
     /// The grey of a pixel, counted within the window.
-    fn at(&self, x: usize, y: usize) -> Option<u8> {
+    fn grey_at(&self, x: usize, y: usize) -> Option<u8> {
         self.greys.get(y * self.columns + x).copied().flatten()
     }
 
     fn brightest(&self, columns: &Span, rows: &Span) -> Rgb {
-        let of_row = |(y, _)| columns.cells().filter_map(move |(x, _)| self.at(x, y));
+        let of_row = |(y, _)| columns.cells().filter_map(move |(x, _)| self.grey_at(x, y));
         rows.cells().flat_map(of_row).max().map_or(NO_DATA, |grey| [grey; 3])
     }
 
@@ -71,7 +71,7 @@ impl Shades {
         let (mut sum, mut weights) = (0.0, 0.0);
         for (y, high) in rows.cells() {
             for (x, wide) in columns.cells() {
-                if let Some(grey) = self.at(x, y) {
+                if let Some(grey) = self.grey_at(x, y) {
                     sum += high * wide * f64::from(grey);
                     weights += high * wide;
                 }
@@ -122,7 +122,7 @@ mod tests {
     fn panel(columns: usize, rows: usize, dn: Vec<u16>, reduction: Reduction) -> Panel {
         let pixels = Pixels { columns, rows, dn, full_scale_dn: 255 };
         Panel {
-            view: pixels.whole(),
+            view: pixels.full_window(),
             pixels,
             regions: None,
             close_up: None,

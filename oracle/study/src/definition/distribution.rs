@@ -154,7 +154,7 @@ impl PreparedDistribution {
     pub(crate) fn value(&self, u: f64) -> Value {
         let number = |value: f64| serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number);
         match self {
-            Self::Column(values) => values.get(place(u, values.len())).map_or(Value::Null, |v| number(*v)),
+            Self::Column(values) => values.get(index_at(u, values.len())).map_or(Value::Null, |v| number(*v)),
             Self::Distribution(distribution) => match distribution {
                 Distribution::Normal { mean, sigma, min, max } => {
                     let at = |limit: Option<f64>, else_p: f64| {
@@ -184,8 +184,8 @@ impl PreparedDistribution {
                 }
                 Distribution::Choice { values, weights } => {
                     let index = match weights {
-                        None => place(u, values.len()),
-                        Some(weights) => weighted_place(u, weights),
+                        None => index_at(u, values.len()),
+                        Some(weights) => weighted_index_at(u, weights),
                     };
                     values.get(index).cloned().unwrap_or(Value::Null)
                 }
@@ -196,11 +196,11 @@ impl PreparedDistribution {
 }
 
 /// Which of `count` equal parts of the unit interval a number lies in.
-fn place(u: f64, count: usize) -> usize {
+fn index_at(u: f64, count: usize) -> usize {
     ((u * count as f64) as usize).min(count.saturating_sub(1))
 }
 
-fn weighted_place(u: f64, weights: &[f64]) -> usize {
+fn weighted_index_at(u: f64, weights: &[f64]) -> usize {
     let mut left = u * weights.iter().sum::<f64>();
     for (index, weight) in weights.iter().enumerate() {
         if left < *weight {

@@ -30,7 +30,7 @@ pub struct StudyFile {
     pub design: DesignKind,
     /// Of a Latin hypercube or of Sobol's sequence: independent replications of a smaller design, which the cases are cut into. Their scatter
     /// gives the intervals; five are the fewest of a mean. One has no scatter, and intervals as wide as those of independent draws.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[serde(default = "default_replications", skip_serializing_if = "is_default")]
     #[schemars(range(min = 1, max = 10_000))]
     pub replications: u64,
     /// Parameters that vary by a law.
@@ -50,12 +50,12 @@ pub struct StudyFile {
     pub require: Vec<StudyRequirement>,
 }
 
-const fn one() -> u64 {
+const fn default_replications() -> u64 {
     1
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
-const fn is_one(replications: &u64) -> bool {
+const fn is_default(replications: &u64) -> bool {
     *replications == 1
 }
 

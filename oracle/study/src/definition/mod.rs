@@ -458,14 +458,14 @@ impl Study {
     /// # Errors
     /// A [`Failure`] when the values drawn make no scenario; the place is that of the value in the case's scenario.
     pub fn case(&self, number: u64) -> Result<Case, Failure> {
-        self.case_of(self.draw(number)?)
+        self.prepare_case(self.draw(number)?)
     }
 
     /// The scenario of a case.
     ///
     /// # Errors
     /// As [`Study::case`].
-    pub(crate) fn case_of(
+    pub(crate) fn prepare_case(
         &self,
         DrawnCase { number, seed, drawn, values }: DrawnCase,
     ) -> Result<Case, Failure> {

@@ -49,7 +49,7 @@ pub fn evaluate(
         causes: vec![0; table.causes.len()],
     };
     let RunResult { scored, first_failure, incomplete } =
-        match study.case_of(case).and_then(|case| run(study, &case, pipeline, scratch)) {
+        match study.prepare_case(case).and_then(|case| run(study, &case, pipeline, scratch)) {
             Ok(result) => result,
             Err(failure @ (Failure::Toml(_) | Failure::Simulation(_) | Failure::Contract(_))) => {
                 row.error = Some(failure.to_string());

@@ -205,7 +205,7 @@ impl Summary {
         let (mut figures, mut waited_for) = (IndexMap::new(), None);
         let (mut correlations, mut indices) = (Vec::new(), Vec::new());
         let mut parameters = Vec::new();
-        for name in cases.drawn() {
+        for name in cases.drawn_columns() {
             parameters.extend(cases.numbers(name)?.map(|numbers| (name, numbers)));
         }
         for (place, name) in cases.figures().iter().enumerate() {
@@ -334,12 +334,12 @@ impl Points {
         let mut points: IndexMap<Vec<String>, Vec<usize>> = IndexMap::new();
         if swept > 0 {
             let first: Vec<usize> = rows.iter().copied().take(together).collect();
-            for (place, drawn) in cases.shown(&first)?.into_iter().enumerate() {
+            for (place, drawn) in cases.drawn_texts(&first)?.into_iter().enumerate() {
                 points.entry(drawn.into_iter().take(swept).collect()).or_default().push(place);
             }
         }
         let (at, of_draw): (Vec<Vec<String>>, _) = points.into_iter().unzip();
-        let at = at.into_iter().map(|at| cases.drawn().cloned().zip(at).collect()).collect();
+        let at = at.into_iter().map(|at| cases.drawn_columns().cloned().zip(at).collect()).collect();
         Ok(Self { at, of_draw, together, rows })
     }
 
@@ -418,7 +418,7 @@ fn indices_of(
     cases: &CaseFile,
     seed: u64,
 ) -> Vec<SobolIndex> {
-    let parameters: Vec<&String> = cases.drawn().collect();
+    let parameters: Vec<&String> = cases.drawn_columns().collect();
     let blocks: Vec<Vec<f64>> = values
         .chunks_exact(parameters.len() + 2)
         .filter_map(|cases| cases.iter().map(|case| case.value).collect())
@@ -489,8 +489,8 @@ fn worst(
     let named = |((case, value), shown): ((usize, f64), Vec<String>)| WorstCase {
         case: case as u64,
         value,
-        drawn: cases.drawn().cloned().zip(shown).collect(),
+        drawn: cases.drawn_columns().cloned().zip(shown).collect(),
         replay: replay(case as u64),
     };
-    Ok((bad.into_iter().zip(cases.shown(&numbers)?).map(named).collect(), count as u64))
+    Ok((bad.into_iter().zip(cases.drawn_texts(&numbers)?).map(named).collect(), count as u64))
 }

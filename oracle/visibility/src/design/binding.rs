@@ -69,7 +69,7 @@ pub fn binding_of(
     let n_min = n_min.unwrap_or(file.n_min) as usize;
     let every = crate::sky::Sky::new(&design.camera, &file.motion, &file.sky, POINTINGS, 1e-9)?;
     let (mut counted, mut enough) = (0, 0);
-    for field in every.counted() {
+    for field in every.usable_fields() {
         counted += 1;
         enough += usize::from(field.stars.len() >= n_min);
     }

@@ -150,7 +150,7 @@ impl<'a> Design<'a> {
         if let Some(known) = self.background_e_per_s.get() {
             return Ok(*known);
         }
-        let mut all: Vec<f64> = self.sky()?.counted().map(|field| field.background_e_per_s).collect();
+        let mut all: Vec<f64> = self.sky()?.usable_fields().map(|field| field.background_e_per_s).collect();
         all.sort_by(f64::total_cmp);
         Ok(*self.background_e_per_s.get_or_init(|| all.get(all.len() / 2).copied().unwrap_or(0.0)))
     }
@@ -161,7 +161,7 @@ impl<'a> Design<'a> {
     /// As [`Design::sky`].
     pub fn stars(&self, exposure_s: f64, n_min: u32) -> Result<Vec<StarCount>, SimError> {
         let sky = self.sky()?;
-        let curves = Curves::of_sky(&self.camera, &self.rule, &self.motion, exposure_s, sky);
+        let curves = Curves::from_sky(&self.camera, &self.rule, &self.motion, exposure_s, sky);
         Ok(curves.count_stars_over_sky(sky, n_min as usize))
     }
 

@@ -88,7 +88,7 @@ impl PixelModel<'_> {
     }
 
     /// P(above) of a pixel that holds exactly so many electrons.
-    fn above_of(&self, electrons: f64) -> f64 {
+    fn probability_above(&self, electrons: f64) -> f64 {
         let distance_e = self.limit_e - self.collected_e(electrons);
         if self.sigma_e == 0.0 {
             return if distance_e <= 0.0 { 1.0 } else { 0.0 };
@@ -99,7 +99,7 @@ impl PixelModel<'_> {
     fn ln_below(&self, mean_e: f64) -> f64 {
         let (mut above, mut below) = (0.0, 0.0);
         if self.sensor.noise.shot == Switch::Off || mean_e == 0.0 {
-            above = self.above_of(mean_e);
+            above = self.probability_above(mean_e);
             below = 1.0 - above;
         } else {
             // The terms of the Poisson law; of a wide one only every so many, for it is smooth.
@@ -115,7 +115,7 @@ impl PixelModel<'_> {
                     continue;
                 }
                 let share = libm::exp(electrons * ln_mean - mean_e - libm::lgamma(electrons + 1.0));
-                let over = self.above_of(electrons);
+                let over = self.probability_above(electrons);
                 all += share;
                 above += share * over;
                 below += share * (1.0 - over);

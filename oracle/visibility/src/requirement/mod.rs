@@ -111,12 +111,12 @@ pub struct ExposureTable {
     #[schemars(range(min = 1e-6, max = 1000))]
     pub max_s: f64,
     /// Level that the target's brightest pixel may expect, as a fraction of saturation, above 0, at most 1000: 1 is just not over-exposed.
-    #[serde(default = "one")]
+    #[serde(default = "default_level")]
     #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1000))]
     pub target_level: f64,
 }
 
-fn one() -> f64 {
+fn default_level() -> f64 {
     1.0
 }
 

@@ -66,7 +66,7 @@ pub struct Pointing {
 impl Pointing {
     /// Number `index` of `count` boresights of a spherical Fibonacci lattice, each of which stands for an equal area (Swinbank &
     /// Purser 2006, Q. J. R. Meteorol. Soc. 132, 1769): z = 1 − (2 i + 1)/n, right ascension i golden turns.
-    pub fn of_lattice(
+    pub fn from_lattice(
         index: usize,
         count: usize,
         motion: &MotionTable,
@@ -81,7 +81,7 @@ impl Pointing {
         let (sin_roll, cos_roll) = libm::sincos(std::f64::consts::TAU * (i * SQRT_3).fract());
         // Across the boresight, at any roll; columns of the image run along it.
         let x = east * cos_roll + boresight.cross(&east) * sin_roll;
-        let time = moment(&sky.when, (i * SQRT_2).fract())?;
+        let time = observation_time(&sky.when, (i * SQRT_2).fract())?;
         Self::new(boresight, x, time, motion, sky)
     }
 
@@ -156,7 +156,7 @@ impl Pointing {
 }
 
 /// A moment of the time that is looked at, `share` of the way through it.
-fn moment(when: &SkyTime, share: f64) -> Result<Epoch, OutOfRange> {
+fn observation_time(when: &SkyTime, share: f64) -> Result<Epoch, OutOfRange> {
     match when {
         SkyTime::Epoch { utc } => clock::parse_utc(utc),
         SkyTime::Year { year } => {
@@ -210,7 +210,7 @@ impl Sky {
         let fields = (0..count)
             .into_par_iter()
             .map(|index| {
-                let pointing = Pointing::of_lattice(index, count, motion, sky)?;
+                let pointing = Pointing::from_lattice(index, count, motion, sky)?;
                 if pointing.excluded.is_some() {
                     return Ok(Field { pointing, background_e_per_s: 0.0, stars: Vec::new() });
                 }
@@ -235,7 +235,7 @@ impl Sky {
     }
 
     /// The boresights that count.
-    pub fn counted(&self) -> impl Iterator<Item = &Field> {
+    pub fn usable_fields(&self) -> impl Iterator<Item = &Field> {
         self.fields.iter().filter(|field| field.pointing.excluded.is_none())
     }
 }
@@ -266,7 +266,7 @@ mod tests {
         MotionTable { guidance: MotionGuidance::Inertial, semi_major_axis_km: 7130.0 };
 
     fn lattice(count: usize, sky: &SkyTable) -> Vec<Pointing> {
-        (0..count).map(|i| Pointing::of_lattice(i, count, &MOTION, sky).unwrap()).collect()
+        (0..count).map(|i| Pointing::from_lattice(i, count, &MOTION, sky).unwrap()).collect()
     }
 
     /// A cap of radius r holds (1 − cos r)/2 of an equal-area lattice, wherever it is.
@@ -303,7 +303,7 @@ mod tests {
         let motion = MotionTable { guidance: MotionGuidance::LocalOrbital, ..MOTION };
         for (earth_exclusion_deg, excluded) in [(26.5, None), (26.6, Some(Exclusion::Earth))] {
             let sky = SkyTable { earth_exclusion_deg, ..SkyTable::default() };
-            assert_eq!(Pointing::of_lattice(17, 1000, &motion, &sky).unwrap().excluded, excluded);
+            assert_eq!(Pointing::from_lattice(17, 1000, &motion, &sky).unwrap().excluded, excluded);
         }
     }
 }

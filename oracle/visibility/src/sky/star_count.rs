@@ -62,7 +62,7 @@ impl Curves {
     }
 
     /// Those of a sky's boresights that count.
-    pub fn of_sky(
+    pub fn from_sky(
         camera: &CameraModel,
         rule: &DetectionRule,
         motion: &MotionTable,
@@ -70,7 +70,7 @@ impl Curves {
         sky: &Sky,
     ) -> Self {
         let nothing = [f64::INFINITY, 0.0_f64];
-        let [low, high] = sky.counted().fold(nothing, |[low, high], field| {
+        let [low, high] = sky.usable_fields().fold(nothing, |[low, high], field| {
             [low.min(field.background_e_per_s), high.max(field.background_e_per_s)]
         });
         Self::new(camera, rule, motion, exposure_s, [low.min(high), high])
@@ -95,7 +95,7 @@ impl Curves {
 
     /// What is detected at each boresight of the sky that counts, in their order.
     pub fn count_stars_over_sky(&self, sky: &Sky, n_min: usize) -> Vec<StarCount> {
-        let counted: Vec<&Field> = sky.counted().collect();
+        let counted: Vec<&Field> = sky.usable_fields().collect();
         counted
             .par_iter()
             .map_init(Vec::new, |distribution, field| self.count_stars(field, n_min, distribution))

@@ -128,9 +128,9 @@ fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>
         &measured_bounds(&measured),
     )?;
     let mut lines = vec![
-        Line::of_answers(row.name, "best", &best),
-        Line::of_answers(row.name, "near", &near),
-        Line::of_answers(row.name, "paper", &poses(measured.iter().map(|m| m.paper).collect())),
+        Line::from_answers(row.name, "best", &best),
+        Line::from_answers(row.name, "near", &near),
+        Line::from_answers(row.name, "paper", &poses(measured.iter().map(|m| m.paper).collect())),
     ];
     if let Some(python) = &arguments.python {
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/python/docking_pnp.py");
@@ -139,11 +139,11 @@ fn run_row(row: &Row, arguments: &Arguments) -> Result<Vec<Line>, Box<dyn Error>
             return Err(format!("{python}: docking_pnp.py failed: {status}").into());
         }
         let opencv = table::read_poses(&folder.join("opencv.csv"), measured.len())?;
-        lines.push(Line::of_answers(row.name, "OpenCV", &poses(opencv)));
+        lines.push(Line::from_answers(row.name, "OpenCV", &poses(opencv)));
     }
     for (i, name) in ["bound 1", "bound 2", "bound 3"].into_iter().enumerate() {
         let bounds: Vec<Bound> = measured.iter().map(|m| m.bounds[i]).collect();
-        lines.push(Line::of_bounds(row.name, name, &bounds));
+        lines.push(Line::from_bounds(row.name, name, &bounds));
     }
     lines.extend(lines.last().map(|bound| lines[0].over(bound)));
     Ok(lines)

@@ -59,10 +59,10 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let is_asked = |name: &str| arguments.only.as_ref().is_none_or(|only| only == name);
     let plan = Plan::noise_only(arguments.seed, arguments.portions, NOISE_DN);
     if is_asked("steady") {
-        let flown = simulate_approaches(&plan, arguments.approaches)?;
-        consistency("Constant velocity", &flown);
-        println!("longest time between reports: {:.2} s\n", tally::longest_interval_s(&flown));
-        sigma_by_range(&flown);
+        let approaches = simulate_approaches(&plan, arguments.approaches)?;
+        consistency("Constant velocity", &approaches);
+        println!("longest time between reports: {:.2} s\n", tally::longest_interval_s(&approaches));
+        sigma_by_range(&approaches);
     }
     if is_asked("doubled") {
         doubled_noise(&arguments)?;
@@ -79,10 +79,11 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
 }
 
 /// Shares within 3σ and NEES of both estimators.
-fn consistency(title: &str, flown: &[MeasuredApproach]) {
-    let fields: usize = flown.iter().map(|flown| flown.fields.len()).sum();
-    println!("{title}: {} approaches, {fields} fields measured", flown.len());
-    let tallies = [Estimator::Exact, Estimator::Paper].map(|estimator| Tally::of(flown, estimator));
+fn consistency(title: &str, approaches: &[MeasuredApproach]) {
+    let fields: usize = approaches.iter().map(|approaches| approaches.fields.len()).sum();
+    println!("{title}: {} approaches, {fields} fields measured", approaches.len());
+    let tallies =
+        [Estimator::Exact, Estimator::Paper].map(|estimator| Tally::from_approaches(approaches, estimator));
     println!("{:<20} {:>16} {:>16}", "", "exact geometry", "paper");
     println!("{:<20} {:>16} {:>16}", "portions judged", tallies[0].portions, tallies[1].portions);
     let line = |name: &str, scale: f64, of: &dyn Fn(&Tally) -> Option<Mean>| {
@@ -99,8 +100,8 @@ fn consistency(title: &str, flown: &[MeasuredApproach]) {
     println!("{:<20} {:>16}", "NEES/6, one field", cell(tallies[0].field_nees, 1.0));
     for lens in Lens::ALL {
         let of_lens: Vec<MeasuredApproach> =
-            flown.iter().filter(|flown| flown.lens == lens).cloned().collect();
-        let tally = Tally::of(&of_lens, Estimator::Exact);
+            approaches.iter().filter(|approaches| approaches.lens == lens).cloned().collect();
+        let tally = Tally::from_approaches(&of_lens, Estimator::Exact);
         let [position, attitude, joint] = tally.nees.map(|nees| cell(nees, 1.0));
         println!(
             "{:<8} exact NEES/6: {position}, {attitude}, {joint}; of a field {}",
@@ -116,7 +117,7 @@ fn cell(mean: Option<Mean>, scale: f64) -> String {
 }
 
 /// Medians of σ of ρ, u, α, β in bins of range.
-fn sigma_by_range(flown: &[MeasuredApproach]) {
+fn sigma_by_range(approaches: &[MeasuredApproach]) {
     println!("σ by range, medians, exact geometry (paper)");
     println!(
         "{:<7} {:>11} {:>6} {:>18} {:>18} {:>20} {:>20}",
@@ -125,13 +126,17 @@ fn sigma_by_range(flown: &[MeasuredApproach]) {
     for lens in Lens::ALL {
         for bin in RANGES_M.windows(2) {
             let sigmas = |estimator: Estimator| -> Vec<[f64; 16]> {
-                let portions =
-                    flown.iter().filter(|flown| flown.lens == lens).flat_map(|flown| &flown.portions);
+                let portions = approaches
+                    .iter()
+                    .filter(|approaches| approaches.lens == lens)
+                    .flat_map(|approaches| &approaches.portions);
                 portions
                     .filter(|portion| {
                         portion.number > 0 && (bin[0]..bin[1]).contains(&portion.truth.range_m())
                     })
-                    .filter_map(|portion| tally::Errors::of(portion.of(estimator)?, &portion.truth))
+                    .filter_map(|portion| {
+                        tally::Errors::from_motion(portion.motion(estimator)?, &portion.truth)
+                    })
                     .map(|errors| errors.sigmas)
                     .collect()
             };
