@@ -133,20 +133,20 @@ fn detection(report: &VisibilityReport) -> Section {
     if report.detection.is_empty() {
         return section.text("No star is detected with half of the chances at the nominal exposure.");
     }
-    let law = &report.detection;
+    let model = &report.detection;
     let seen = &report.detection_simulated;
-    let magnitudes: Vec<f64> = law.iter().map(|p| p.magnitude).collect();
+    let magnitudes: Vec<f64> = model.iter().map(|p| p.magnitude).collect();
     let mut traces = vec![dashed(
         "law, a star of mean colour",
         magnitudes,
-        law.iter().map(|p| rounded(p.probability, 6)).collect(),
+        model.iter().map(|p| rounded(p.probability, 6)).collect(),
         REFERENCE,
     )];
     if !seen.is_empty() {
         let x: Vec<f64> = seen.iter().map(|p| p.magnitude).collect();
         let expected = seen.iter().map(|p| rounded(p.analytic, 6)).collect();
-        let law = line("law, mean over the simulated stars", x.clone(), expected, MEASURED);
-        traces.push(law.mode(Mode::LinesAndMarkers).marker(Marker::new().size(13).symbol(Symbol::Square)));
+        let model = line("law, mean over the simulated stars", x.clone(), expected, MEASURED);
+        traces.push(model.mode(Mode::LinesAndMarkers).marker(Marker::new().size(13).symbol(Symbol::Square)));
         let low: Vec<f64> = seen.iter().map(|p| p.low).collect();
         let high: Vec<f64> = seen.iter().map(|p| p.high).collect();
         let rate = seen.iter().map(|p| rounded(p.count as f64 / p.of.max(1) as f64, 6)).collect();
@@ -154,7 +154,7 @@ fn detection(report: &VisibilityReport) -> Section {
     }
     let mut data =
         DataTable::new(["V", "electrons", "probability", "detected", "of", "low", "high", "law over them"]);
-    for point in law {
+    for point in model {
         let simulated = seen.iter().find(|s| s.magnitude == point.magnitude);
         let number = |pick: fn(&visibility::SimulatedPoint) -> f64| cell(simulated.map(pick));
         let count = |pick: fn(&visibility::SimulatedPoint) -> u64| {

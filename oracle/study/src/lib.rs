@@ -1,6 +1,6 @@
 //! Studies: a pipeline over everything that can vary (Monte Carlo, sweeps, designs of experiments).
 //!
-//! A study is a scenario and the laws of some of its parameters ([`StudyFile`]). Case k is a scenario of its own: its values are
+//! A study is a scenario and the distributions of some of its parameters ([`StudyFile`]). Case k is a scenario of its own: its values are
 //! drawn from the address (seed of the study, k), so that any shard, in any order, on any machine, gives the same rows. What
 //! is made of a case is one row of a table ([`CaseRow`]): the values drawn, and every figure of its score.
 //!

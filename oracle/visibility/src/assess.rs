@@ -1,4 +1,4 @@
-//! The verification of requirements: each by the analytic law, and by simulated frames.
+//! The verification of requirements: each by the analytic detection model, and by simulated frames.
 use std::cell::RefCell;
 use std::path::Path;
 use std::rc::Rc;
@@ -82,7 +82,7 @@ struct Assessment<'a> {
     frames: RefCell<Vec<(f64, Rc<Vec<StarFrame>>)>>,
 }
 
-/// A rate as far from the law's as chance brings it in one of five hundred results is not of that law.
+/// A rate as far from the detection model's as chance brings it in one of five hundred results disagrees with it.
 const DISAGREEMENT: f64 = 0.999;
 
 /// What was simulated where the detection model gives the probability `model`, in words; whether the two disagree, too.
@@ -99,12 +99,12 @@ fn simulation_text(simulated: Option<&SimulatedRate>, model: f64) -> String {
     )
 }
 
-/// What binds where the law says met and the frames do not.
+/// What binds where the detection model says met and the frames do not.
 const REFUTED: &str = "simulation: fewer frames meet it than the analytic law says";
 /// Frames at which it is given up to say how many would decide.
 const MAX_FRAMES: u64 = 10_000;
 
-/// What law and simulation say together: simulation may refute or confirm the law within its confidence.
+/// What detection model and simulation say together: simulation may refute or confirm the detection model within its confidence.
 fn status(asked: f64, reached: f64, simulated: Option<&SimulatedRate>) -> Status {
     match simulated {
         _ if reached < asked => Status::NotMet,
@@ -280,7 +280,7 @@ impl<'a> Assessment<'a> {
         })
     }
 
-    /// A value that the search found from some boresights, moved until all of them agree that the law is met; a few steps at most.
+    /// A value that the search found from some boresights, moved until all of them agree that the detection model is met; a few steps at most.
     fn polished(&self, demand: &Demand, find: &FindTable, found: f64, asked: f64) -> Result<f64, Failure> {
         let inwards = if find.want == Extreme::Largest { 1.0 / POLISH } else { POLISH };
         let mut value = found;
@@ -293,7 +293,7 @@ impl<'a> Assessment<'a> {
         Ok(value)
     }
 
-    /// What a value of a parameter reaches by the law.
+    /// What a value of a parameter reaches by the detection model.
     fn model_at(
         &self,
         demand: &Demand,
@@ -308,7 +308,7 @@ impl<'a> Assessment<'a> {
         Ok(design.reached(demand, exposure_s)?)
     }
 
-    /// What a value of a parameter reaches, by the law and by simulation.
+    /// What a value of a parameter reaches, by the detection model and by simulation.
     fn at_value(
         &self,
         demand: &Demand,

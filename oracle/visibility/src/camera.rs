@@ -119,7 +119,7 @@ impl CameraModel {
         })
     }
 
-    /// The law of its pixels against a threshold, DN, whole and not negative.
+    /// The detection model of its pixels against a threshold, DN, whole and not negative.
     pub fn threshold(&self, threshold_dn: f64) -> Arc<PixelThreshold> {
         // Whoever panicked while making a law has left the others whole.
         let mut known = self.thresholds.lock().unwrap_or_else(PoisonError::into_inner);

@@ -49,7 +49,7 @@ pub struct Bench<'a> {
 pub struct StarTrial {
     /// Johnson V.
     pub magnitude: f64,
-    /// The chance that the analytic law gives it.
+    /// The chance that the analytic detection model gives it.
     pub chance: f64,
     /// Whether the detector found it.
     pub is_detected: bool,

@@ -1,13 +1,13 @@
 //! Requirements: which camera sees enough stars, and the target.
 //!
 //! A file of requirements ([`RequirementFile`]) names a camera and what is demanded of it. The answer ([`VisibilityReport`]) is
-//! computed from the simulator's models of light by an analytic law of detection, and confirmed by frames of the simulator that the detector of the
-//! far-range method has looked at: so a mistake of the law is seen by the simulation, and what no number of frames could search is
-//! found by the law.
+//! computed from the simulator's models of light by an analytic detection model, and confirmed by frames of the simulator that the detector of the
+//! far-range method has looked at: so a mistake of the detection model is seen by the simulation, and what no number of frames could search is
+//! found by the detection model.
 //!
 //! - [`RequirementFile`], [`Requirements`]: what is asked; read and checked.
 //! - [`CameraModel`]: the camera, prepared by the simulator's models.
-//! - [`PixelThreshold`], [`ImageShares`], [`DetectionCurve`]: the law of detection: of a pixel, of an image, of stars.
+//! - [`PixelThreshold`], [`ImageShares`], [`DetectionCurve`]: the detection model: of a pixel, of an image, of stars.
 //! - [`Sky`], [`Curves`], [`at_least`]: stars in the field at every boresight, and how many of them are detected.
 //! - [`TargetModel`], [`TargetObservation`]: the target by range, phase angle and attitude.
 //! - [`Design`]: one camera and what it reaches of a demand; [`search`]: the parameter that reaches it; [`binding`]: why none does.

@@ -353,7 +353,7 @@ impl Axis {
     }
 
     /// An axis of time; values are milliseconds of UTC since 1970-01-01.
-    pub(crate) fn as_time_axis(self) -> Self {
+    pub(crate) fn with_time_axis(self) -> Self {
         self.with("type", "date")
     }
 

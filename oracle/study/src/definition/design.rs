@@ -6,14 +6,14 @@ use sim::randomness::{Effect, Seed, uniform};
 use sobol::Sobol;
 use sobol::params::JoeKuoD6;
 
-/// How the dispersed parameters are spread over their laws.
+/// How the dispersed parameters are spread over their distributions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DesignKind {
     /// Every case is drawn by itself: the plain Monte Carlo method, whose intervals are those of independent draws.
     #[default]
     Random,
-    /// Latin hypercube (McKay, Beckman & Conover 1979): each parameter's law is cut into as many equally likely parts as there
+    /// Latin hypercube (McKay, Beckman & Conover 1979): each parameter's distribution is cut into as many equally likely parts as there
     /// are cases, and each part has one case.
     LatinHypercube,
     /// Sobol's sequence with the direction numbers of Joe & Kuo (2008), shifted digitally by the seed; best with a power of two

@@ -1,4 +1,4 @@
-//! Laws of dispersed parameters.
+//! Distributions of dispersed parameters.
 use std::path::Path;
 
 use contract::{OutOfRange, bounds};
@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use statistics::normal_quantile;
 
-/// The law of a parameter. Every law is drawn by its quantile function from numbers of the unit interval, so that a design (Sobol,
+/// The distribution of a parameter. Every distribution is drawn by its quantile function from numbers of the unit interval, so that a design (Sobol,
 /// Latin hypercube) spreads any of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Distribution {
-    /// Normal, cut off where limits are given (what is beyond is drawn again, in law).
+    /// Normal, truncated where limits are given.
     Normal {
         /// Mean, before any cutting.
         #[schemars(range(min = -1e18, max = 1e18))]
@@ -37,7 +37,7 @@ pub enum Distribution {
         #[schemars(range(min = -1e18, max = 1e18))]
         max: f64,
     },
-    /// Uniform over the whole numbers from `min` to `max`, both included: for counts and seeds.
+    /// Uniform over the integers from `min` to `max`, both included: for counts and seeds.
     Integer {
         /// Smallest number, from 0.
         #[schemars(range(max = 1_u64 << 53))]
@@ -89,10 +89,10 @@ pub enum Distribution {
     },
 }
 
-/// A law that is ready to be drawn from.
+/// A distribution that is ready to be drawn from.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum PreparedDistribution {
-    /// A law with its parameters.
+    /// A distribution with its parameters.
     Distribution(Distribution),
     /// The column of a table.
     Column(Vec<f64>),
@@ -137,7 +137,7 @@ impl Distribution {
         if matches!(self, Self::IsotropicAttitude) { 3 } else { 1 }
     }
 
-    /// Reads what the law needs from files; paths start from `folder`.
+    /// Reads what the distribution needs from files; paths start from `folder`.
     pub(crate) fn load(&self, folder: &Path) -> Result<PreparedDistribution, files::FileError> {
         match self {
             Self::Table { path, column } => {
@@ -149,7 +149,7 @@ impl Distribution {
 }
 
 impl PreparedDistribution {
-    /// The value at numbers of the open unit interval, as many as the law has dimensions. Attitudes are not drawn here
+    /// The value at numbers of the open unit interval, as many as the distribution has dimensions. Attitudes are not drawn here
     /// ([`euler_123`], [`boresight`]): null.
     pub(crate) fn value(&self, u: f64) -> Value {
         let number = |value: f64| serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number);
@@ -245,7 +245,7 @@ mod tests {
         (mean, (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n).sqrt())
     }
 
-    /// Mean and standard deviation of each law in closed form; the sum over 100,000 middles is good to a few parts in 10⁵.
+    /// Mean and standard deviation of each distribution in closed form; the sum over 100,000 middles is good to a few parts in 10⁵.
     #[test]
     fn the_moments_are_those_of_the_distributions() {
         let near = |distribution: Distribution, mean: f64, sigma: f64| {
@@ -254,7 +254,7 @@ mod tests {
             assert!((got_sigma / sigma - 1.0).abs() < 1e-3, "{distribution:?}: sigma {got_sigma}, {sigma}");
         };
         near(Distribution::Normal { mean: 3.0, sigma: 2.0, min: None, max: None }, 3.0, 2.0);
-        // Half a normal law: mean σ√(2/π), variance σ²(1 − 2/π).
+        // Half a normal distribution: mean σ√(2/π), variance σ²(1 − 2/π).
         let two_over_pi = 2.0 / std::f64::consts::PI;
         near(
             Distribution::Normal { mean: 0.0, sigma: 1.0, min: Some(0.0), max: None },

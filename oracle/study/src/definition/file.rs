@@ -25,7 +25,7 @@ pub struct StudyFile {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1_u64 << 40))]
     pub warm_up_frames: Option<u64>,
-    /// How the dispersed parameters are spread over their laws.
+    /// How the dispersed parameters are spread over their distributions.
     #[serde(default)]
     pub design: DesignKind,
     /// Of a Latin hypercube or of Sobol's sequence: independent replications of a smaller design, which the cases are cut into. Their scatter
@@ -33,7 +33,7 @@ pub struct StudyFile {
     #[serde(default = "default_replications", skip_serializing_if = "is_default")]
     #[schemars(range(min = 1, max = 10_000))]
     pub replications: u64,
-    /// Parameters that vary by a law.
+    /// Parameters that vary by a distribution.
     #[serde(default)]
     pub vary: Vec<Dispersion>,
     /// Parameters that take each of some values; of several, every combination is run, and each with the same draws of all other
@@ -65,7 +65,7 @@ const fn is_default(replications: &u64) -> bool {
 pub struct Dispersion {
     /// Its path in the scenario, as in `psf.sigma_px`, `attitude.control.jitter_arcsec[2]` or `cameras[0].camera.focal_length_mm`.
     pub path: String,
-    /// Its law.
+    /// Its distribution.
     pub distribution: Distribution,
 }
 

@@ -50,7 +50,7 @@ pub struct Study {
     hash: String,
 }
 
-/// A parameter with its law, ready to be drawn.
+/// A parameter with its distribution, ready to be drawn.
 struct VariedParameter {
     path: ValuePath,
     distribution: PreparedDistribution,
@@ -313,7 +313,7 @@ impl Study {
             ends.resize(unit.len(), None);
             for (end, &u) in ends.iter_mut().zip(&unit) {
                 let [low, high] = end.get_or_insert([(u, draw); 2]);
-                // Values grow with the place in their law, or fall with it: the ends are the same.
+                // Values increase or decrease with the quantile: the ends are the same.
                 *low = if u < low.0 { (u, draw) } else { *low };
                 *high = if u > high.0 { (u, draw) } else { *high };
             }

@@ -103,7 +103,7 @@ pub fn search(
         grid.reverse();
     }
     if grid.iter().all(|(_, probability)| *probability < goal) {
-        // What the frames could show is nowhere reached: then what is asked for, by the law alone.
+        // What the frames could show is nowhere reached: then what is asked for, by the detection model alone.
         goal = required;
     }
     let Some(met) = grid.iter().position(|(_, probability)| *probability >= goal) else {
@@ -167,7 +167,7 @@ impl Curve<'_> {
 mod tests {
     use super::*;
 
-    /// 300 frames, 0.9, 95 %: 279 and more have a lower bound above it, 260 and fewer an upper bound below; binomial laws
+    /// 300 frames, 0.9, 95 %: 279 and more have a lower bound above it, 260 and fewer an upper bound below; binomial distributions
     /// of 0.9507 and 0.8371 have these with 95 % (scipy.stats.binom, brentq).
     #[test]
     fn what_frames_can_resolve_follows_the_binomial_distribution() {

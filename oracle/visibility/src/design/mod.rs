@@ -1,4 +1,4 @@
-//! One camera design, and the probability with which it meets a demand, by the analytic law.
+//! One camera design, and the probability with which it meets a demand, by the analytic detection model.
 
 pub(crate) mod binding;
 #[allow(

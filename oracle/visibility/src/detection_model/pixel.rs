@@ -1,11 +1,11 @@
 //! The chance that a pixel rises above a threshold, as a function of the electrons it expects.
 //!
-//! The digital number of a pixel is floor((e (1 − β e/w) + n)/g + b + ½), with e electrons of a Poisson law cut at the full well w,
-//! n of a normal law, the gain g and the bias b. It is above the threshold T when e (1 − β e/w) + n ≥ L = (T + ½ − b) g, so that
+//! The digital number of a pixel is floor((e (1 − β e/w) + n)/g + b + ½), with e electrons of a Poisson distribution cut at the full well w,
+//! n of a normal distribution, the gain g and the bias b. It is above the threshold T when e (1 − β e/w) + n ≥ L = (T + ½ − b) g, so that
 //!
 //! P(DN > T | μ) = Σ_k Pois(k; μ) Q((L − k (1 − β k/w))/σ),
 //!
-//! Q the upper tail of the normal law (a sum over k as in Janesick, *Photon Transfer*, 2007, chapter 3, without its normal approximation). The simulator *draws* from this law;
+//! Q the upper tail of the normal distribution (a sum over k as in Janesick, *Photon Transfer*, 2007, chapter 3, without its normal approximation). The simulator *draws* from this law;
 //! here it is added up, because nothing in the simulator tells a probability.
 
 use sim::sensor::{SensorConfig, Switch};
@@ -19,7 +19,7 @@ const MAX_NODES: usize = 1 << 15;
 /// The logarithm of a probability that no draw will ever meet.
 const NEVER: f64 = -700.0;
 
-/// The law of one pixel against one threshold, tabulated.
+/// The detection model of one pixel against one threshold, tabulated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PixelThreshold {
     /// ln P(DN ≤ T) at equal steps of μ from 0.
@@ -28,7 +28,7 @@ pub struct PixelThreshold {
 }
 
 impl PixelThreshold {
-    /// The law of a pixel of `sensor` against the digital number `threshold_dn`.
+    /// The detection model of a pixel of `sensor` against the digital number `threshold_dn`.
     pub fn new(sensor: &SensorConfig, threshold_dn: f64) -> Self {
         let limit_e = (threshold_dn.floor() + 0.5 - sensor.bias_dn) * sensor.gain_e_per_dn;
         let model = PixelModel { sensor, limit_e, sigma_e: readout_e(sensor) };
@@ -102,7 +102,7 @@ impl PixelModel<'_> {
             above = self.probability_above(mean_e);
             below = 1.0 - above;
         } else {
-            // The terms of the Poisson law; of a wide one only every so many, for it is smooth.
+            // The terms of the Poisson distribution; of a wide one only every so many, for it is smooth.
             let width_e = mean_e.sqrt();
             let stride = (width_e / 20.0).floor().max(1.0);
             let reach = ((9.0 * width_e + 20.0) / stride).ceil() as i64;

@@ -1,6 +1,6 @@
-//! How many of several independent events come true, each with a probability of its own: the Poisson-binomial law.
+//! How many of several independent events come true, each with a probability of its own: the Poisson-binomial distribution.
 
-/// P(N ≥ `n_min`), exact: the law of N, cut at `n_min`, event by event (Chen & Liu 1997, Statistica Sinica 7, 875, Sec. 2, the
+/// P(N ≥ `n_min`), exact: the distribution of N, cut at `n_min`, event by event (Chen & Liu 1997, Statistica Sinica 7, 875, Sec. 2, the
 /// direct recursion). `distribution` is a buffer that can be used again.
 pub fn at_least(
     n_min: usize,
@@ -31,7 +31,7 @@ mod tests {
         at_least(n_min, probabilities.iter().copied(), &mut Vec::new())
     }
 
-    /// All alike: the binomial law. 1 − Σ_{k<n} C(20, k) 0.3^k 0.7^(20 − k), added up in rational numbers (Python's `fractions`).
+    /// All alike: the binomial distribution. 1 − Σ_{k<n} C(20, k) 0.3^k 0.7^(20 − k), added up in rational numbers (Python's `fractions`).
     #[test]
     fn equal_probabilities_give_the_binomial_distribution() {
         for (n_min, expected) in

@@ -42,7 +42,7 @@ pub(crate) fn camera_figures(
         zero_point_e_per_s: camera.radiometry.star(0.0, None, None),
         saturation_e: camera.config.sensor.saturation_e(),
         threshold_dn: design.rule.thresholds(camera, in_a_pixel).high_dn,
-        background_e_per_s: background_e_per_s,
+        background_e_per_s,
         star_trail_px: star_trail_px(camera, &design.motion, nominal_s),
         n_min: file.n_min,
         probability: file.probability,

@@ -12,7 +12,7 @@ table! {
         magnitude: f64,
         /// its electrons at the nominal exposure
         electrons: f64,
-        /// probability of detection by the analytic law
+        /// probability of detection by the analytic detection model
         probability: f64,
         /// stars of simulated frames about the magnitude that the detector found
         simulated_count: Option<u64>,
@@ -22,7 +22,7 @@ table! {
         simulated_low: Option<f64>,
         /// upper limit
         simulated_high: Option<f64>,
-        /// mean probability of those stars by the analytic law
+        /// mean probability of those stars by the analytic detection model
         simulated_analytic: Option<f64>,
     }
 }
