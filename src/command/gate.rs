@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use files::{AtomicFile, Failure};
-use gate::{Baseline, CompareOptions, GateReport, Replace, compare, junit, junit_of_failure, read_result};
+use gate::{
+    Baseline, CompareOptions, GateReport, Replacement, compare, junit, junit_of_failure, read_result,
+};
 use indexmap::IndexMap;
 use scenario::AttitudeChoice;
 
@@ -125,7 +127,7 @@ fn make_baseline(arguments: &BaselineArguments, output: &Output) -> Result<Answe
     let sample = read_result(&arguments.result, arguments.attitude.choice)?;
     let baseline = Baseline::new(sample, &arguments.reason, arguments.block_length)?;
     let mut baseline = baseline.with_tolerances(&sizes(&arguments.tolerance))?;
-    let replace = if arguments.replace { Replace::Allow } else { Replace::Refuse };
+    let replace = if arguments.replace { Replacement::Allow } else { Replacement::Refuse };
     baseline.write(&arguments.out, replace)?;
     let text = format!("{}baseline in {}", baseline_text(&baseline), arguments.out.display());
     output.answer(&baseline.header, text)?;

@@ -8,7 +8,7 @@ use boresight::scenario::FarRangeScenario;
 use boresight::statistics::clopper_pearson;
 use boresight::visibility::{
     Bench as TestBench, CameraConfig, CameraModel, Curves, Demand, Design, DetectionRule, MotionGuidance,
-    MotionTable, Over, Pointing, Requirements, Sky, SkyTable, StarTrial,
+    MotionTable, Pointing, Requirements, Sky, SkyStatistic, SkyTable, StarTrial,
 };
 use serde_json::Value;
 use sim::optics::{OpticsConfig, RadiometryConfig};
@@ -116,7 +116,7 @@ fn enough_stars_are_detected_as_often_as_the_model_predicts() {
     let requirements = requirements("");
     let design = Design::new(&requirements, &requirements.camera, 3000, 0.25).unwrap();
     for exposure_s in [0.07, 0.1] {
-        let expected = design.stars_chance(exposure_s, 10, Over::Sky).unwrap();
+        let expected = design.stars_chance(exposure_s, 10, SkyStatistic::Sky).unwrap();
         let rule = DetectionRule::Dn { low_dn: 46, high_dn: 67 };
         let bench = TestBench { camera: &requirements.camera, rule: &rule, motion: &MOTION, seed: 3 };
         let frames = bench.stars(&pointings(220, &MOTION), exposure_s).unwrap();

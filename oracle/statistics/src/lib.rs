@@ -61,5 +61,5 @@ pub use interval::{Interval, Z_95};
 pub use location::{below_median, mean_interval, median, median_interval, rms_interval};
 pub use normal_quantile::normal_quantile;
 pub use proportion::wilson;
-pub use quantile::{Clustered, cluster_quantile_interval};
+pub use quantile::{ClusterValue, cluster_quantile_interval};
 pub use rank_correlation::cluster_rank_correlation;

@@ -12,7 +12,7 @@ use crate::definition::{MAX_FAILED_CASES, Study};
 use crate::evaluate::CaseResult;
 use crate::evaluate::engine::{Workers, run_cases};
 use crate::evaluate::study_pipeline::StudyPipeline;
-use crate::findings::stopping::Stopping;
+use crate::findings::stopping::StoppingRule;
 use crate::findings::summary::Summary;
 use crate::shard::record::StudyRecord;
 use crate::shard::{Plan, ShardManifest, ShardStore};
@@ -155,7 +155,7 @@ impl<'a> Campaign<'a> {
         workers: Workers<'_>,
         done: impl Fn(CaseOutcome<'_>) + Sync,
     ) -> Result<CaseFile, Failure> {
-        let mut stopping = Stopping::new(self.study);
+        let mut stopping = StoppingRule::new(self.study);
         for shard in 1..=self.store.plan().shards {
             let (table, _) = self.shard(shard, workers, &done)?;
             if stopping.add(&table).is_some() {
@@ -193,7 +193,7 @@ impl<'a> Campaign<'a> {
     /// Writes the cases of the shards in order, up to where the stopping rule stops. Shards are read on all threads, some at a time.
     fn gather(&self) -> Result<CaseFile, Failure> {
         let empty = self.study.table();
-        let mut stopping = Stopping::new(self.study);
+        let mut stopping = StoppingRule::new(self.study);
         let shards: Vec<u64> = (1..=self.store.plan().shards).collect();
         let read = |shard: &u64| -> Result<Option<CaseTable>, Failure> {
             Ok(self.store.read(*shard, &empty)?.map(|(table, _)| table))

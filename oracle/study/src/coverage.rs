@@ -2,7 +2,7 @@
 
 use sim::randomness::{Effect, Seed, normal, uniform};
 use statistics::{
-    ClusterSum, Clustered, Interval, cluster_quantile_interval, cluster_rank_correlation,
+    ClusterSum, ClusterValue, Interval, cluster_quantile_interval, cluster_rank_correlation,
     mean_difference_interval, normal_quantile, rate_difference_interval,
 };
 
@@ -72,7 +72,7 @@ fn difference(is_rate: bool, cases: &[SweptCase]) -> Option<Interval> {
 }
 
 fn quantile(cases: &[SweptCase], p: f64) -> Option<Interval> {
-    let mut sorted: Vec<Clustered> = cases.iter().map(|case| (case.replication, case.amount[0])).collect();
+    let mut sorted: Vec<ClusterValue> = cases.iter().map(|case| (case.replication, case.amount[0])).collect();
     sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
     cluster_quantile_interval(&sorted, p)
 }

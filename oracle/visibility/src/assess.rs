@@ -16,7 +16,7 @@ use crate::design::{Design, DesignPerformance, design_with};
 use crate::report::curves;
 use crate::report::{SearchResult, SimulatedRate, Status, Verdict, VisibilityReport};
 use crate::requirement::definition::Requirements;
-use crate::requirement::{Demand, Extreme, FindTable, Over, Parameter, Requirement};
+use crate::requirement::{Demand, Extreme, FindTable, Parameter, Requirement, SkyStatistic};
 use crate::sky::Pointing;
 
 /// Factor of a step by which a value is moved that all boresights do not agree with, and most of such steps.
@@ -348,7 +348,7 @@ impl<'a> Assessment<'a> {
                 self.enough_stars(exposure_s, n_min.unwrap_or(file.n_min), *over)?
             }
             Demand::ExposureWindow { n_min, .. } if reached.exposure_s >= file.exposure.min_s => {
-                self.enough_stars(reached.exposure_s, n_min.unwrap_or(file.n_min), Over::Sky)?
+                self.enough_stars(reached.exposure_s, n_min.unwrap_or(file.n_min), SkyStatistic::Sky)?
             }
             Demand::ExposureWindow { .. } => return Ok(None),
             Demand::TargetDetected { phase_max_deg, .. } => {
@@ -371,10 +371,10 @@ impl<'a> Assessment<'a> {
     }
 
     /// How many frames have enough stars; `None` when no pointing counts.
-    fn enough_stars(&self, exposure_s: f64, n_min: u32, over: Over) -> Result<Option<u64>, Failure> {
+    fn enough_stars(&self, exposure_s: f64, n_min: u32, over: SkyStatistic) -> Result<Option<u64>, Failure> {
         let frames = match over {
-            Over::Sky => self.star_frames(exposure_s)?,
-            Over::EveryPointing => Rc::new(self.frames_of_the_worst(exposure_s, n_min)?),
+            SkyStatistic::Sky => self.star_frames(exposure_s)?,
+            SkyStatistic::EveryPointing => Rc::new(self.frames_of_the_worst(exposure_s, n_min)?),
         };
         let enough = frames.iter().filter(|frame| frame.detected >= n_min).count() as u64;
         Ok((!frames.is_empty()).then_some(enough))
@@ -446,8 +446,8 @@ impl<'a> Assessment<'a> {
             (Demand::Stars { n_min, over, .. }, _) => {
                 let n_min = n_min.unwrap_or(self.requirements.file.n_min);
                 let place = match over {
-                    Over::Sky => "over the sky",
-                    Over::EveryPointing => "at the worst pointing",
+                    SkyStatistic::Sky => "over the sky",
+                    SkyStatistic::EveryPointing => "at the worst pointing",
                 };
                 format!("{n_min} stars at {exposure} {place}: {percent}")
             }

@@ -62,7 +62,8 @@ pub use report::{
 pub use requirement::definition::{BUILT_IN_REQUIREMENTS, Requirements};
 pub use requirement::{
     CameraTable, ConfirmTable, Demand, DetectionRule, ExposureTable, Extreme, FindTable, MotionGuidance,
-    MotionTable, Over, Parameter, Requirement, RequirementFile, SkyTable, SkyTime, TargetLight, TargetTable,
+    MotionTable, Parameter, Requirement, RequirementFile, SkyStatistic, SkyTable, SkyTime, TargetLight,
+    TargetTable,
 };
 pub use sky::star_count::{Curves, StarCount, over_sky, star_trail_px};
 pub use sky::{Exclusion, Field, Pointing, Sky, SkyStar};

@@ -42,7 +42,7 @@ const ROWS: ReplaceableFile<'static> = ReplaceableFile {
 };
 /// What becomes of a baseline that is there already.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Replace {
+pub enum Replacement {
     /// It stays, and making another in its place is an error.
     Refuse,
     /// It is replaced.
@@ -193,12 +193,12 @@ impl Baseline {
     /// # Errors
     /// [`Failure`] when there is a baseline already and `replace` refuses it, when the folder has other files of these names or checksums
     /// of other files, or when a file cannot be written.
-    pub fn write(&mut self, folder: &Path, replace: Replace) -> Result<(), Failure> {
+    pub fn write(&mut self, folder: &Path, replace: Replacement) -> Result<(), Failure> {
         let [header, rows] = paths(folder);
         HEADERS.check(&header)?;
         ROWS.check(&rows)?;
         for path in [&header, &rows] {
-            if replace == Replace::Refuse && path.exists() {
+            if replace == Replacement::Refuse && path.exists() {
                 return Err(Failure::Usage(format!(
                     "{}: exists; a baseline is replaced with --replace alone",
                     path.display()
@@ -218,8 +218,8 @@ impl Baseline {
         // Those of the earlier baseline, which would say that the new header is damaged.
         Checksums::remove(folder)?;
         match replace {
-            Replace::Allow => new_header.replace(HEADERS)?,
-            Replace::Refuse => new_header.commit_new()?,
+            Replacement::Allow => new_header.replace(HEADERS)?,
+            Replacement::Refuse => new_header.commit_new()?,
         }
         std::fs::rename(&waiting, &rows).map_err(|source| FileError::io(&rows, "create", source))?;
         AtomicFile::remove_abandoned_of(folder, is_waiting);
@@ -370,7 +370,7 @@ mod tests {
     fn written(units: usize) -> (Baseline, TempDir) {
         let mut baseline = Baseline::new(run(units), "a test", Some(1)).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        baseline.write(folder.path(), Replacement::Refuse).unwrap();
         (baseline, folder)
     }
 
@@ -395,7 +395,7 @@ mod tests {
         (figure.limit_deg, figure.attitude) = (Some(0.024), Some("true".to_owned()));
         let mut baseline = Baseline::new(sample, "a test", Some(1)).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        baseline.write(folder.path(), Replacement::Refuse).unwrap();
         let read = &Baseline::read(folder.path()).unwrap();
         assert_eq!(read, &baseline);
         assert_eq!(read.header.figures["ra_median_deg"].limit_deg, Some(0.024));
@@ -416,7 +416,7 @@ mod tests {
         assert_eq!(Baseline::read(folder.path()).unwrap(), new);
         // Of what was killed here, the next one has no need; and until it has its own header, it leaves what the old one means.
         let mut third = Baseline::new(run(8), "third", Some(1)).unwrap();
-        third.write(folder.path(), Replace::Allow).unwrap();
+        third.write(folder.path(), Replacement::Allow).unwrap();
         assert_eq!(Baseline::read(folder.path()).unwrap(), third);
     }
 
@@ -426,7 +426,7 @@ mod tests {
         let parts = |name: &str, text: &str, expected: &str| {
             let other = tempfile::tempdir().unwrap();
             std::fs::write(other.path().join(name), text).unwrap();
-            for replace in [Replace::Refuse, Replace::Allow] {
+            for replace in [Replacement::Refuse, Replacement::Allow] {
                 let message = baseline.clone().write(other.path(), replace).unwrap_err().to_string();
                 assert!(message.contains(name) && message.contains(expected), "{message}");
             }
@@ -436,27 +436,27 @@ mod tests {
         parts("baseline.toml", "name = 1\n", "another file");
         parts("rows.parquet", "mine", "another file");
         parts("SHA256SUMS", &format!("{}  run.toml\n", "0".repeat(64)), "checksums of the files");
-        baseline.write(folder.path(), Replace::Allow).unwrap();
+        baseline.write(folder.path(), Replacement::Allow).unwrap();
     }
 
     #[test]
     fn a_baseline_is_replaced_when_that_is_allowed_and_not_otherwise() {
         let (_, folder) = written(6);
         let mut other = Baseline::new(run(7), "another", Some(1)).unwrap();
-        let message = other.write(folder.path(), Replace::Refuse).unwrap_err().to_string();
+        let message = other.write(folder.path(), Replacement::Refuse).unwrap_err().to_string();
         assert!(
             message.contains("baseline.toml: exists; a baseline is replaced with --replace"),
             "{message}"
         );
         assert_eq!(Baseline::read(folder.path()).unwrap().header.units, 6);
-        other.write(folder.path(), Replace::Allow).unwrap();
+        other.write(folder.path(), Replacement::Allow).unwrap();
         assert_eq!(Baseline::read(folder.path()).unwrap(), other);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
         // A folder that is not there yet, and one with the rows alone.
         let inner = folder.path().join("a/b");
-        other.write(&inner, Replace::Allow).unwrap();
+        other.write(&inner, Replacement::Allow).unwrap();
         std::fs::remove_file(inner.join("baseline.toml")).unwrap();
-        let message = other.write(&inner, Replace::Refuse).unwrap_err().to_string();
+        let message = other.write(&inner, Replacement::Refuse).unwrap_err().to_string();
         assert!(message.contains("rows.parquet: exists"), "{message}");
     }
 
@@ -507,7 +507,7 @@ mod tests {
         };
         let mut baseline = with("hit_rate").unwrap();
         let folder = tempfile::tempdir().unwrap();
-        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        baseline.write(folder.path(), Replacement::Refuse).unwrap();
         let read = Baseline::read(folder.path()).unwrap();
         let tolerance = |name: &str| read.header.figures[name].tolerance;
         assert_eq!((tolerance("hit_rate"), tolerance("ra_median_deg")), (0.25, 0.022));
@@ -535,7 +535,7 @@ mod tests {
         baseline.blocks = Blocks::every(8, 2);
         baseline.header.blocks.count = 4;
         let folder = tempfile::tempdir().unwrap();
-        baseline.write(folder.path(), Replace::Refuse).unwrap();
+        baseline.write(folder.path(), Replacement::Refuse).unwrap();
         let message = Baseline::read(folder.path()).unwrap_err().to_string();
         let parts = ["blocks.count", "is 4, expected the blocks of", "(4), at least 5"];
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");

@@ -67,7 +67,7 @@ pub fn serve(
     let context = world.context(measurements)?;
     let overview = Overview::from_feed(monitored, &context)?;
     let session = Arc::new(Session::new(context.frames.clone()));
-    let shared = Arc::new(Shared {
+    let shared = Arc::new(ServerState {
         overview,
         ground: context.ground.clone(),
         times: context.frames.clone().filter_map(|frame| world.time(frame)).collect(),
@@ -94,7 +94,7 @@ pub fn serve(
 }
 
 /// What requests look at.
-struct Shared {
+struct ServerState {
     overview: Overview,
     ground: Option<GroundTrack>,
     times: Vec<Epoch>,
@@ -103,7 +103,7 @@ struct Shared {
 }
 
 fn answer_requests(
-    shared: &Arc<Shared>,
+    shared: &Arc<ServerState>,
     bind: SocketAddr,
     ready: impl FnOnce(SocketAddr),
     stop: impl Future<Output = ()> + Send + 'static,
@@ -141,7 +141,7 @@ fn answer_requests(
     served
 }
 
-fn router(shared: Arc<Shared>, guard: Guard) -> Router {
+fn router(shared: Arc<ServerState>, guard: Guard) -> Router {
     Router::new()
         .route("/api/session.json", get(session))
         .route("/api/scene.json", get(scene))
@@ -197,24 +197,24 @@ fn document(status: StatusCode, value: &impl Serialize) -> Response {
     }
 }
 
-async fn session(State(shared): State<Arc<Shared>>) -> Response {
+async fn session(State(shared): State<Arc<ServerState>>) -> Response {
     json(shared.overview.session.clone())
 }
 
-async fn scene(State(shared): State<Arc<Shared>>) -> Response {
+async fn scene(State(shared): State<Arc<ServerState>>) -> Response {
     json(shared.overview.scene.clone())
 }
 
-async fn progress(State(shared): State<Arc<Shared>>) -> Response {
+async fn progress(State(shared): State<Arc<ServerState>>) -> Response {
     document(StatusCode::OK, &shared.session.progress())
 }
 
-async fn history(State(shared): State<Arc<Shared>>) -> Response {
+async fn history(State(shared): State<Arc<ServerState>>) -> Response {
     document(StatusCode::OK, &shared.session.history())
 }
 
 /// The track over the ground about a frame: longitude and latitude, degrees.
-async fn ground(State(shared): State<Arc<Shared>>, Path(file): Path<String>) -> Response {
+async fn ground(State(shared): State<Arc<ServerState>>, Path(file): Path<String>) -> Response {
     let number = file.strip_suffix(".json").and_then(|number| number.parse::<u64>().ok());
     let index = number.and_then(|number| usize::try_from(number.checked_sub(shared.first)?).ok());
     match index.and_then(|index| shared.times.get(index)) {
@@ -227,7 +227,7 @@ async fn ground(State(shared): State<Arc<Shared>>, Path(file): Path<String>) -> 
 }
 
 /// `N.json`, what is known of a frame, or `N.gray`, its picture: one byte a pixel, row by row.
-async fn frame(State(shared): State<Arc<Shared>>, Path(file): Path<String>) -> Response {
+async fn frame(State(shared): State<Arc<ServerState>>, Path(file): Path<String>) -> Response {
     let Some((number, kind)) = file.split_once('.') else { return not_a_frame() };
     let Some(number) = number.parse().ok().filter(|number| shared.session.contains(*number)) else {
         return not_a_frame();

@@ -19,7 +19,7 @@ use crate::figures::words::display_name;
 use crate::figures::{cell, figure_table, least_to_most, percent_cell, shown_percent};
 use crate::page::colours::colour_of;
 use crate::page::data_table::DataTable;
-use crate::page::picture::Rendered;
+use crate::page::picture::RenderedPictures;
 use crate::page::{Page, Section};
 use ::run::AnyJudgement;
 use files::{Checksums, Failure};
@@ -34,7 +34,7 @@ pub(crate) fn page(directory: &Path, _: Option<&mut dyn AnyJudgement>) -> Result
 }
 
 /// Pictures of some fields of a run directory.
-pub(crate) fn pictures(directory: &Path, fields: &[u64]) -> Result<Rendered, Failure> {
+pub(crate) fn pictures(directory: &Path, fields: &[u64]) -> Result<RenderedPictures, Failure> {
     let run = DockingRun::read(directory)?;
     let row = |field: &u64| run.truths.binary_search_by_key(field, |truth| truth.field).ok();
     let sheet = FieldDetail::open(directory)?;

@@ -25,7 +25,7 @@ use crate::figures::words::display_name;
 use crate::figures::{figure_table, least_to_most, percent_cell, shown_percent};
 use crate::page::colours::colour_of;
 use crate::page::data_table::DataTable;
-use crate::page::picture::Rendered;
+use crate::page::picture::RenderedPictures;
 use crate::page::{Page, Section};
 use ::run::AnyJudgement;
 use files::{Checksums, Failure};
@@ -47,7 +47,7 @@ pub(crate) fn page(directory: &Path, scored: Option<&mut dyn AnyJudgement>) -> R
 }
 
 /// Pictures of some frames of a run directory.
-pub(crate) fn pictures(directory: &Path, frames: &[u64]) -> Result<Rendered, Failure> {
+pub(crate) fn pictures(directory: &Path, frames: &[u64]) -> Result<RenderedPictures, Failure> {
     let run = FarRangeRun::read(directory)?;
     let row = |frame: &u64| run.truths.binary_search_by_key(frame, |truth| truth.frame).ok();
     let sheet = FrameDetail::open(directory)?;

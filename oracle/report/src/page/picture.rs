@@ -11,7 +11,7 @@ use image::{GrayImage, ImageFormat};
 const MAX_SAMPLES: usize = 60_000;
 
 /// Pictures of frames; without them the reason why there are none.
-pub(crate) type Rendered = (Vec<Picture>, Option<String>);
+pub(crate) type RenderedPictures = (Vec<Picture>, Option<String>);
 
 /// A window of a frame, with what is drawn over it.
 #[derive(Debug, Clone)]

@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 use run::figure_by_name;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use statistics::{Bounds, Clustered, cluster_mean_bounds, cluster_quantile_bounds, cluster_rate_bounds};
+use statistics::{Bounds, ClusterValue, cluster_mean_bounds, cluster_quantile_bounds, cluster_rate_bounds};
 
 use super::estimate::{ratio, sorted_quantile, sums};
 use crate::cases::CaseFigure;
@@ -220,7 +220,7 @@ fn verdict(limit: Limit, bounds: Option<Bounds>, may_be_met: bool) -> Requiremen
 enum Sample {
     Rate(Vec<statistics::ClusterSum>),
     Mean(Vec<statistics::ClusterSum>),
-    Quantile { sorted: Vec<Clustered>, p: f64 },
+    Quantile { sorted: Vec<ClusterValue>, p: f64 },
 }
 
 impl Sample {
@@ -235,7 +235,7 @@ impl Sample {
                     Limit::AtMost(_) => f64::INFINITY,
                 };
                 let value = |figure: &CaseFigure| figure.value.unwrap_or(worse);
-                let mut sorted: Vec<Clustered> =
+                let mut sorted: Vec<ClusterValue> =
                     draws.iter().copied().zip(figures.iter().map(value)).collect();
                 sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
                 Self::Quantile { sorted, p }

@@ -29,7 +29,7 @@ pub enum StoppingStatus {
 /// Looks whether the figure of a stopping rule is known well enough: after 16 draws, 32, 48, from 256 on after a sixteenth more each time, and
 /// after all. A draw is one case at every point of the sweep. The numbers do not depend on how the study is cut into shards, so neither
 /// does where it stops.
-pub(crate) struct Stopping<'a> {
+pub(crate) struct StoppingRule<'a> {
     until: Option<&'a Until>,
     points: u64,
     most: u64,
@@ -40,7 +40,7 @@ pub(crate) struct Stopping<'a> {
     draws: Vec<usize>,
 }
 
-impl<'a> Stopping<'a> {
+impl<'a> StoppingRule<'a> {
     /// Before the first case.
     pub(crate) fn new(study: &'a Study) -> Self {
         Self::from_rule(study.file.stop.until.as_ref(), study.sweep_points(), study.cases())
@@ -111,7 +111,7 @@ mod tests {
         case: impl Fn(&mut Stream, &mut dyn FnMut(CaseFigure)),
     ) -> (u64, f64) {
         let until = Until { figure: figure.to_owned(), half_width };
-        let mut stopping = Stopping::from_rule(Some(&until), points, 4000 * points);
+        let mut stopping = StoppingRule::from_rule(Some(&until), points, 4000 * points);
         let mut table = CaseTable::from_rows(&[figure], Vec::new());
         for draw in 0..4000 {
             let random = &mut Seed { seed: 5, case: study }.stream(draw, Effect::StudyParameter, 0);
@@ -183,8 +183,8 @@ mod tests {
         assert_eq!(after(7, 0.03), StoppingStatus::NearlyConstant);
         assert_eq!(after(8, 0.03), StoppingStatus::NarrowEnough);
         assert_eq!(after(8, 0.0001), StoppingStatus::TooWide);
-        assert_eq!(Stopping::from_rule(Some(&until), 1, 100).add(&table(3)), None);
+        assert_eq!(StoppingRule::from_rule(Some(&until), 1, 100).add(&table(3)), None);
         // The first look that knows eight of either.
-        assert_eq!(Stopping::from_rule(Some(&until), 1, 100).add(&table(60)), Some(80));
+        assert_eq!(StoppingRule::from_rule(Some(&until), 1, 100).add(&table(60)), Some(80));
     }
 }

@@ -4,7 +4,7 @@ use files::Failure;
 use crate::design::{Design, design_with};
 use crate::detection_model::detection::{background_e, is_flooded};
 use crate::requirement::definition::Requirements;
-use crate::requirement::{Demand, DetectionRule, Over, Parameter};
+use crate::requirement::{Demand, DetectionRule, Parameter, SkyStatistic};
 
 /// Boresights that the question is looked at from.
 const POINTINGS: usize = 1000;
@@ -40,7 +40,7 @@ pub fn binding_of(
     let again = || Design::new(requirements, &design.camera.config, POINTINGS, exposure_s.unwrap_or(0.0));
     if let Demand::ExposureWindow { n_min, .. } = demand {
         let n_min = n_min.unwrap_or(file.n_min);
-        if design.stars_chance(file.exposure.max_s, n_min, Over::Sky)? >= required {
+        if design.stars_chance(file.exposure.max_s, n_min, SkyStatistic::Sky)? >= required {
             return Ok(
                 "saturation: the exposure that leaves the target not over-exposed is too short for the stars"
                     .to_owned(),
@@ -76,7 +76,7 @@ pub fn binding_of(
     if counted == 0 {
         return Ok("exclusion: no pointing is left by the exclusion angles".to_owned());
     }
-    let everywhere = matches!(demand, Demand::Stars { over: Over::EveryPointing, .. });
+    let everywhere = matches!(demand, Demand::Stars { over: SkyStatistic::EveryPointing, .. });
     let share = enough as f64 / counted as f64;
     if share < required || (everywhere && enough < counted) {
         return Ok(format!(

@@ -15,7 +15,9 @@ use sim::SimError;
 use crate::camera::{CameraConfig, CameraModel};
 use crate::detection_model::detection::DetectionCurve;
 use crate::requirement::definition::Requirements;
-use crate::requirement::{Demand, DetectionRule, MotionGuidance, MotionTable, Over, Parameter, TargetLight};
+use crate::requirement::{
+    Demand, DetectionRule, MotionGuidance, MotionTable, Parameter, SkyStatistic, TargetLight,
+};
 use crate::sky::Sky;
 use crate::sky::star_count::{Curves, StarCount, over_sky, star_trail_px};
 use crate::target::{Aspect, TargetModel, TargetObservation, longest_exposures_s, longest_with};
@@ -169,7 +171,7 @@ impl<'a> Design<'a> {
     ///
     /// # Errors
     /// As [`Design::sky`].
-    pub fn stars_chance(&self, exposure_s: f64, n_min: u32, over: Over) -> Result<f64, SimError> {
+    pub fn stars_chance(&self, exposure_s: f64, n_min: u32, over: SkyStatistic) -> Result<f64, SimError> {
         Ok(over_sky(&self.stars(exposure_s, n_min)?, over))
     }
 
@@ -314,7 +316,8 @@ impl<'a> Design<'a> {
                 };
                 for part in [1.0, 0.5, 0.25] {
                     let exposure_s = (part * longest_s.min(file.exposure.max_s)).max(file.exposure.min_s);
-                    let chance = self.stars_chance(exposure_s, n_min.unwrap_or(file.n_min), Over::Sky)?;
+                    let chance =
+                        self.stars_chance(exposure_s, n_min.unwrap_or(file.n_min), SkyStatistic::Sky)?;
                     if chance > best.probability {
                         best = DesignPerformance { probability: chance, exposure_s, ..best };
                     }

@@ -11,7 +11,7 @@ use crate::report::{
     StarsLost, WindowPoint,
 };
 use crate::requirement::definition::Requirements;
-use crate::requirement::{Over, TargetLight};
+use crate::requirement::{SkyStatistic, TargetLight};
 use crate::sky::star_count::star_trail_px;
 
 /// Points of the curves over exposures and ranges.
@@ -173,7 +173,7 @@ pub(crate) fn shortest_for_stars(
     probability: f64,
 ) -> Result<Option<f64>, SimError> {
     let file = &requirements.file;
-    let chance = |exposure_s| design.stars_chance(exposure_s, file.n_min, Over::Sky);
+    let chance = |exposure_s| design.stars_chance(exposure_s, file.n_min, SkyStatistic::Sky);
     let mut fails = None;
     for exposure_s in between(file.exposure.min_s, file.exposure.max_s, 13) {
         if chance(exposure_s)? < probability {

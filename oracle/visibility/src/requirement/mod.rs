@@ -280,7 +280,7 @@ pub enum Demand {
         exposure_s: Option<f64>,
         /// Whether the probability is that of all the sky together, or of each pointing.
         #[serde(default)]
-        over: Over,
+        over: SkyStatistic,
     },
     /// A star of a magnitude, of the mean colour of the catalogue, is detected with a probability.
     LimitingMagnitude {
@@ -336,7 +336,7 @@ pub enum Demand {
 /// Of what a probability over the sky is meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Over {
+pub enum SkyStatistic {
     /// Of a boresight that is equally likely anywhere.
     #[default]
     Sky,

@@ -6,7 +6,7 @@ use crate::camera::CameraModel;
 use crate::detection_model::detection::{DetectionCurve, background_e};
 use crate::detection_model::pixel::readout_e;
 use crate::detection_model::poisson_binomial::at_least;
-use crate::requirement::{DetectionRule, MotionGuidance, MotionTable, Over};
+use crate::requirement::{DetectionRule, MotionGuidance, MotionTable, SkyStatistic};
 use crate::sky::{Field, Sky};
 
 /// Chances below this are left out of sums over stars.
@@ -132,12 +132,12 @@ pub fn star_trail_px(camera: &CameraModel, motion: &MotionTable, exposure_s: f64
 }
 
 /// The probability over a sky: the mean, or the smallest; 0 where no boresight counts.
-pub fn over_sky(seen: &[StarCount], over: Over) -> f64 {
+pub fn over_sky(seen: &[StarCount], over: SkyStatistic) -> f64 {
     if seen.is_empty() {
         return 0.0;
     }
     match over {
-        Over::Sky => seen.iter().map(|seen| seen.chance).sum::<f64>() / seen.len() as f64,
-        Over::EveryPointing => seen.iter().map(|seen| seen.chance).fold(1.0, f64::min),
+        SkyStatistic::Sky => seen.iter().map(|seen| seen.chance).sum::<f64>() / seen.len() as f64,
+        SkyStatistic::EveryPointing => seen.iter().map(|seen| seen.chance).fold(1.0, f64::min),
     }
 }
